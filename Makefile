@@ -1,0 +1,61 @@
+# `make demo` runs the main job, `make test` passes the tests; both set up everything they need.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+DANCETUTOR := $(BIN)/dancetutor
+DEMO := build/demo
+SHARED ?= ../shared
+DEV_SHARED := build/shared
+
+# The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.PHONY: help setup setup-dev demo test lint bench clean
+
+help:
+	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
+	@echo "make test    run the tests (sets up the development tools too)"
+	@echo "make lint    ruff and mypy --strict"
+	@echo "make bench   measure speed; print a table"
+	@echo "make setup   only set up $(VENV)"
+	@echo "make clean   remove $(VENV), build/ and caches"
+
+setup: $(VENV)/.runtime
+
+setup-dev: $(VENV)/.dev
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "dancetutor needs Python 3.11 or newer; set PYTHON=python3.X" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
+	  { echo "Python's venv is missing. Debian/Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.runtime: requirements.lock pyproject.toml | $(BIN)/python
+	@if [ -e $(VENV)/.dev ]; then :; else $(BIN)/pip install --quiet --require-hashes -r requirements.lock; fi
+	@$(BIN)/pip install --quiet --no-deps -e .
+	@touch $@
+
+$(VENV)/.dev: requirements-dev.lock requirements.lock pyproject.toml | $(BIN)/python
+	@$(BIN)/pip install --quiet --require-hashes -r requirements-dev.lock
+	@$(BIN)/pip install --quiet --no-deps -e .
+	@touch $@ $(VENV)/.runtime
+
+demo: setup
+	@$(BIN)/python tools/demo.py $(DEMO)
+
+test: setup-dev
+	@tools/gl_packages.sh
+	$(BIN)/python -m pytest -n 2 --dist loadfile $(PYTEST_ARGS)
+
+lint: setup-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: setup-dev
+	@$(BIN)/python tools/bench.py $(BENCH_ARGS)
+
+clean:
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

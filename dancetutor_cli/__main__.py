@@ -1,0 +1,51 @@
+"""Start of the program: runs the command line and turns every expected failure into one line and an exit status."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run `dancetutor`; ends the process with 0, 1 (findings) or 2 (something could not be read or run)."""
+    import click
+
+    from dancetutor_cli.commands import cli
+    from dancetutor_cli.errors import DancetutorError
+
+    try:
+        status = cli.main(arguments, prog_name="dancetutor", standalone_mode=False)
+        sys.stdout.flush()
+    except click.exceptions.Exit as stop:
+        status = stop.exit_code
+    except click.ClickException as error:
+        error.show()
+        status = 2
+    except (KeyboardInterrupt, click.exceptions.Abort):
+        _say("interrupted")
+        status = 130
+    except DancetutorError as error:
+        _say(str(error))
+        status = error.exit_status
+    except BrokenPipeError:
+        # The reader of a pipe has gone (`| head`); nothing to say, and nobody to say it to.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 141
+    except MemoryError:
+        _say("out of memory")
+        status = 2
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        _say(f"{where}{error.strerror or error}")
+        status = 2
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _say(message: str) -> None:
+    one_line = " ".join(message.splitlines())
+    sys.stderr.write(f"dancetutor: {one_line}\n")
+
+
+if __name__ == "__main__":
+    main()

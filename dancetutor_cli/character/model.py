@@ -1,0 +1,48 @@
+"""A character: triangle meshes skinned to a skeleton, ready for either renderer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.rig.skeleton import Skeleton
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """Colour of a mesh. base_color : sRGB (4,) in 0..1; texture : uint8 (h, w, 4) sRGB or None ."""
+
+    name: str
+    base_color: tuple[float, float, float, float]
+    texture: NDArray[np.uint8] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """v vertices, t triangles, in the binding pose.
+
+    positions, normals : float32 (v, 3); uv : float32 (v, 2), (0, 0) the top left of the texture as in glTF
+    triangles : int32 (t, 3), counter-clockwise seen from outside
+    joints : uint16 (v, 4), indices into the character's skeleton; weights : float32 (v, 4), rows sum to 1
+    """
+
+    name: str
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    uv: NDArray[np.float32]
+    triangles: NDArray[np.int32]
+    joints: NDArray[np.uint16]
+    weights: NDArray[np.float32]
+    material: Material
+
+
+@dataclass(frozen=True, slots=True)
+class Character:
+    """Meshes and their skeleton. inverse_bind : float64 (j, 4, 4), world to joint in the binding pose."""
+
+    name: str
+    skeleton: Skeleton
+    meshes: tuple[Mesh, ...]
+    inverse_bind: NDArray[np.float64]

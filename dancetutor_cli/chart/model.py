@@ -1,0 +1,150 @@
+"""What a chart file says: plain frozen data, made by the reader, used by every other room.
+
+Positions are kept for every row, so that findings can point and markers can be spliced in. Beats are counted in
+ticks of 1/48 beat (`TICKS_PER_BEAT`), the grid of the games.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+
+TICKS_PER_BEAT = 48
+TICKS_PER_MEASURE = 4 * TICKS_PER_BEAT
+
+
+class Kind(IntEnum):
+    """What stands in a cell of the note grid."""
+
+    EMPTY = 0
+    TAP = 1
+    HOLD = 2  # head
+    ROLL = 3  # head
+    MINE = 4
+    LIFT = 5
+    FAKE = 6
+    KEYSOUND = 7
+
+
+@dataclass(frozen=True, slots=True)
+class NoteTable:
+    """All notes of a chart as arrays of one length n, sorted by (tick, column); tails are in `end`.
+
+    tick : int64, 1/48 beats from beat 0
+    column : int16, from 0
+    kind : uint8, `Kind`, never EMPTY
+    end : int64, tick of the tail for HOLD and ROLL, else -1
+    line : int32, 1-based line of the note's row in the file
+    judged : bool, False for fakes, keysounds and whatever lies in a warp or a fake segment
+    """
+
+    tick: NDArray[np.int64]
+    column: NDArray[np.int16]
+    kind: NDArray[np.uint8]
+    end: NDArray[np.int64]
+    line: NDArray[np.int32]
+    judged: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.tick)
+
+
+@dataclass(frozen=True, slots=True)
+class RowTable:
+    """Every row of the note data as written, also the empty ones, in file order; arrays of one length.
+
+    start, end : int64, byte span of the trimmed row text in `Song.data` (comment not included)
+    line : int32, 1-based
+    tick : int64, 1/48 beats
+    measure : int32, from 0
+    """
+
+    start: NDArray[np.int64]
+    end: NDArray[np.int64]
+    line: NDArray[np.int32]
+    tick: NDArray[np.int64]
+    measure: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureTable:
+    """Every measure of the note data; arrays of one length, index = measure number.
+
+    anchor : int64, byte offset directly after the `:` or `,` that opens the measure
+    line : int32, 1-based line of that `:` or `,`
+    first_row, row_count : int32, its rows in the `RowTable`
+    """
+
+    anchor: NDArray[np.int64]
+    line: NDArray[np.int32]
+    first_row: NDArray[np.int32]
+    row_count: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class Warning_:
+    """Something odd that was read around. `code` is a short stable name such as "short-row"."""
+
+    code: str
+    message: str
+    line: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """One chart of a song.
+
+    index : place among all charts of the file, from 0
+    steps_type : lower case, e.g. "dance-single"
+    difficulty : "Beginner", "Easy", "Medium", "Hard", "Challenge" or "Edit" as the games name it
+    meter : never negative
+    columns : number of columns of the steps type; 0 if the type is unknown
+    notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
+    tags : the chart's own tags, upper-case name -> decoded value (the first value only)
+    """
+
+    index: int
+    steps_type: str
+    difficulty: str
+    meter: int
+    description: str
+    columns: int
+    notes: NoteTable
+    rows: RowTable
+    measures: MeasureTable
+    timing: Timing
+    notes_span: tuple[int, int]
+    line: int
+    tags: dict[str, str]
+    warnings: tuple[Warning_, ...]
+
+    @property
+    def label(self) -> str:
+        """For people: "dance-single Hard 8"."""
+        return f"{self.steps_type} {self.difficulty} {self.meter}"
+
+
+@dataclass(frozen=True, slots=True)
+class Song:
+    """One .sm or .ssc file. `data` are its bytes; everything else was read from them."""
+
+    path: Path
+    format: str  # "sm" or "ssc"
+    data: bytes
+    encoding: str
+    title: str
+    subtitle: str
+    artist: str
+    music: str
+    tags: dict[str, str]
+    timing: Timing  # the song's own, without split timing
+    charts: tuple[Chart, ...]
+    warnings: tuple[Warning_, ...]

@@ -1,0 +1,45 @@
+"""The command line: one file per subcommand, imported only when it is called."""
+
+from __future__ import annotations
+
+import importlib
+
+import click
+
+import dancetutor_cli
+
+# name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
+COMMANDS = {
+    "analyze": ("analyze", "Find the feet of charts and lint them."),
+    "annotate": ("annotate", "Write L/R foot markers into chart files, or take them out."),
+    "animate": ("animate", "Bake a 3D dancer who plays a chart."),
+    "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
+}
+
+
+class _LazyGroup(click.Group):
+    """Imports a subcommand's module when it is called, not before."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"dancetutor_cli.commands.{COMMANDS[cmd_name][0]}")
+        command = module.command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+@click.version_option(dancetutor_cli.__version__, prog_name="dancetutor")
+def cli() -> None:
+    """Find the feet of a stepchart, lint it, annotate it, and make a dancer play it.
+
+    Charts are .sm and .ssc files of StepMania, ITGmania and their kin.
+    """

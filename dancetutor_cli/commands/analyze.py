@@ -1,0 +1,11 @@
+"""`dancetutor analyze`."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command()
+def command() -> None:
+    """Not there yet."""
+    raise click.ClickException("analyze is not there yet")

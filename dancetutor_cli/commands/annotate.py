@@ -1,0 +1,11 @@
+"""`dancetutor annotate`."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command()
+def command() -> None:
+    """Not there yet."""
+    raise click.ClickException("annotate is not there yet")

@@ -1,0 +1,45 @@
+"""The one base of all errors that a user may see: one line each, saying what, where and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class DancetutorError(Exception):
+    """Base of every expected error. `str(error)` is the one line printed; `exit_status` ends the process."""
+
+    exit_status = 2
+
+
+class UsageError(DancetutorError):
+    """The command line, a preset or a configuration asks for something that does not exist; names what does."""
+
+
+class FileError(DancetutorError):
+    """A file could not be read or written.
+
+    Parameters
+    ----------
+    path : the file
+    message : cause and, where there is one, what to do
+    line, column : 1-based place in the file, if known
+    """
+
+    def __init__(self, path: Path | str, message: str, line: int | None = None, column: int | None = None) -> None:
+        super().__init__(path, message, line, column)  # all arguments, so that the error survives pickling
+        self.path = Path(path)
+        self.message = message
+        self.line = line
+        self.column = column
+
+    def __str__(self) -> str:
+        place = "".join(f":{n}" for n in (self.line, self.column) if n is not None)
+        return f"{self.path}{place}: {self.message}"
+
+
+class ChartError(FileError):
+    """A chart file that cannot be understood."""
+
+
+class EnvironmentProblem(DancetutorError):
+    """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to mend it."""

@@ -1,0 +1,46 @@
+"""The baked motion: joint rotations per frame, and the contacts they must keep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.rig.skeleton import Skeleton
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A limb that presses a panel: from `start` (the note) to `end`, seconds of the song's music.
+
+    limb : `play.model.Limb` value; column : note column; kind : `play.model.StepKind` value; part : `play.model.Part` value
+    row : index of the row in the play; panel : (x, z) of the panel's centre in the world, metres
+    """
+
+    start: float
+    end: float
+    limb: int
+    column: int
+    kind: int
+    part: int
+    row: int
+    panel: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """Joint rotations over time. f frames, j joints.
+
+    times : float64 (f,), seconds of the music, strictly increasing; regular at `fps` plus extra keys at contacts
+    rotations : float64 (f, j, 4), local unit quaternions (w, x, y, z)
+    root : float64 (f, 3), position of joint 0 in the world, metres
+    fps : nominal frames per second; contacts : sorted by start
+    """
+
+    skeleton: Skeleton
+    fps: float
+    times: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    root: NDArray[np.float64]
+    contacts: tuple[Contact, ...]

@@ -1,0 +1,92 @@
+"""The result of the solver: who steps what, and what it costs. Arrays with one entry per row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Limb(IntEnum):
+    """Who presses a panel. `NONE`: there is no step in that cell; `UNPLAYED`: no limb is left for the step."""
+
+    LEFT_FOOT = 0
+    RIGHT_FOOT = 1
+    LEFT_HAND = 2
+    RIGHT_HAND = 3
+    NONE = -1
+    UNPLAYED = -2
+
+
+class Part(IntEnum):
+    """Which part of a foot: only brackets (one foot on two panels) tell heel and toe apart."""
+
+    WHOLE = 0
+    HEEL = 1
+    TOE = 2
+
+
+class StepKind(IntEnum):
+    """What a limb does in a cell of `Rows.steps`."""
+
+    NONE = 0
+    TAP = 1
+    LIFT = 2
+    HOLD = 3
+    ROLL = 4  # the head of a roll
+    ROLL_TAP = 5  # a virtual tap of a roll
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The rows a solver sees: beats with at least one step or mine, rolls already tapped. n rows, c columns.
+
+    tick : int64 (n,), 1/48 beats; second : float64 (n,); line : int32 (n,), 0 for rows that only a roll made
+    steps : uint8 (n, c), `StepKind`
+    hold_end : int64 (n, c), tick at which a HOLD that starts here ends, else -1
+    mines : bool (n, c)
+    milliseconds : int64 (n,), exact time since the previous row, rounded half up; 0 in the first row
+    """
+
+    tick: NDArray[np.int64]
+    second: NDArray[np.float64]
+    line: NDArray[np.int32]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.tick)
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """The cheapest way to play `rows`. n rows, c columns, t cost terms.
+
+    limb : int8 (n, c), `Limb`; part : uint8 (n, c), `Part`
+    feet : int16 (n, 2), panel that the left and right foot stand on after the row (a bracket: the heel's), -1 at home
+    facing : float64 (n,), degrees after the row, positive left
+    terms : names of the cost terms, in the preset's order; cost : int64 (n, t), cost of each row by term
+    margin : int64 (n,) or None; how much more the best play with other limbs in this row costs, -1: no other way
+    moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
+    preset : name of the cost preset
+    """
+
+    rows: Rows
+    limb: NDArray[np.int8]
+    part: NDArray[np.uint8]
+    feet: NDArray[np.int16]
+    facing: NDArray[np.float64]
+    terms: tuple[str, ...]
+    cost: NDArray[np.int64]
+    margin: NDArray[np.int64] | None
+    moves: tuple[tuple[str, ...], ...]
+    preset: str
+
+    @property
+    def total(self) -> int:
+        """Cost of the whole play: the minimum possible."""
+        return int(self.cost.sum())
