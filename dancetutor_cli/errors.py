@@ -41,5 +41,5 @@ class ChartError(FileError):
     """A chart file that cannot be understood."""
 
 
-class EnvironmentProblem(DancetutorError):
+class UnavailableError(DancetutorError):
     """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to mend it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.errors import EnvironmentProblem
+from dancetutor_cli.errors import UnavailableError
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -15,7 +15,7 @@ def _root(name: str) -> Path:
     for candidate in (PACKAGE / "_data" / name, PACKAGE.parent / name):
         if candidate.is_dir():
             return candidate
-    raise EnvironmentProblem(f"the installation is incomplete: folder '{name}' is missing; install dancetutor again")
+    raise UnavailableError(f"the installation is incomplete: folder '{name}' is missing; install dancetutor again")
 
 
 def config_path(name: str) -> Path:

@@ -90,7 +90,7 @@ class MeasureTable:
 
 
 @dataclass(frozen=True, slots=True)
-class Warning_:
+class ReadWarning:
     """Something odd that was read around. `code` is a short stable name such as "short-row"."""
 
     code: str
@@ -124,7 +124,7 @@ class Chart:
     notes_span: tuple[int, int]
     line: int
     tags: dict[str, str]
-    warnings: tuple[Warning_, ...]
+    warnings: tuple[ReadWarning, ...]
 
     @property
     def label(self) -> str:
@@ -147,4 +147,4 @@ class Song:
     tags: dict[str, str]
     timing: Timing  # the song's own, without split timing
     charts: tuple[Chart, ...]
-    warnings: tuple[Warning_, ...]
+    warnings: tuple[ReadWarning, ...]

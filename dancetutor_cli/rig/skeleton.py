@@ -1,7 +1,7 @@
 """The dancer's joints: H-Anim names, hierarchy and rest positions.
 
-World: metres, +Y up, the dancer looks to +Z, so her left is +X. The pad's surface is y = 0. Rest pose: standing upright, feet
-parallel, arms in an A pose 45 degrees down in the frontal plane, palms facing the thighs. In the rest pose every local
+World: metres, +Y up, the dancer looks to +Z, so her left is +X. The pad's surface is y = 0. Rest pose: standing
+upright, feet parallel, arms in an A pose 45 degrees down in the frontal plane, palms facing the thighs. In the rest pose every local
 rotation is the identity and every joint's axes are the world's.
 """
 
@@ -76,7 +76,7 @@ ORDER = (
 
 
 def dancer_skeleton() -> Skeleton:
-    """The skeleton of the project's own dancer: 1.70 m tall, 29 joints."""
+    """The skeleton of the project's own dancer: 1.70 m tall, 30 joints."""
     world: dict[str, tuple[str | None, tuple[float, float, float]]] = {n: (p, x) for n, p, x in _MIDDLE}
     for name, parent, (x, y, z) in _LEFT_SIDE:
         world[name] = (parent, (x, y, z))

@@ -1,0 +1,43 @@
+"""What all tests share: where the test data is, and skipping with a reason where it is absent."""
+
+from __future__ import annotations
+
+import tarfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+SHARED = ROOT.parent / "shared"
+
+
+def _shared(name: str) -> Path:
+    path = SHARED / "data" / name
+    if not path.exists():
+        pytest.skip(f"test data ../shared/data/{name} is not here")
+    return path
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder ../shared/data, or a skip."""
+    return _shared(".")
+
+
+@pytest.fixture(scope="session")
+def corpus() -> Path:
+    """The 435 real chart files, unpacked once into build/ (git ignores it), or a skip."""
+    archive = _shared("charts/charts.tar.xz")
+    target = ROOT / "build" / "corpus"
+    if not (target / ".complete").exists():
+        target.mkdir(parents=True, exist_ok=True)
+        with tarfile.open(archive) as tar:
+            tar.extractall(target, filter="data")
+        (target / ".complete").touch()
+    return target / "dev"
+
+
+@pytest.fixture(scope="session")
+def hostile() -> Path:
+    """The odd and broken files with expectations.csv; they are the project's own."""
+    return ROOT / "tests" / "data" / "hostile"
