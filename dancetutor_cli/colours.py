@@ -1,0 +1,60 @@
+"""The colours that mean left foot, right foot and the hands, everywhere in the program (configs/colours.yaml)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.resources import config_path
+
+RGB = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class LimbColours:
+    """sRGB colours, 0..255, of what presses a panel."""
+
+    left_foot: RGB
+    right_foot: RGB
+    left_hand: RGB
+    right_hand: RGB
+
+    @property
+    def by_limb(self) -> tuple[RGB, RGB, RGB, RGB]:
+        """In the order of `play.model.Limb`: left foot, right foot, left hand, right hand."""
+        return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
+
+
+def hex_colour(rgb: RGB) -> str:
+    """``(255, 138, 31)`` to ``"#ff8a1f"``."""
+    return "#{:02x}{:02x}{:02x}".format(*rgb)
+
+
+def read_limb_colours(path: Path) -> LimbColours:
+    """Read and check the colours of one file; FileError names what is wrong and which names exist."""
+    try:
+        data = yaml.safe_load(path.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise FileError(path, f"cannot be read as YAML: {' '.join(str(error).split())}") from error
+    limbs = data.get("limbs") if isinstance(data, dict) else None
+    names = [field.name for field in fields(LimbColours)]
+    if not isinstance(limbs, dict) or sorted(map(str, limbs)) != sorted(names):
+        raise FileError(path, f"'limbs' must give a colour for each of: {', '.join(names)}")
+    return LimbColours(*(_rgb(path, name, limbs[name]) for name in names))
+
+
+@cache
+def limb_colours() -> LimbColours:
+    """The colours of configs/colours.yaml."""
+    return read_limb_colours(config_path("colours.yaml"))
+
+
+def _rgb(path: Path, name: str, value: object) -> RGB:
+    if not isinstance(value, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
+        raise FileError(path, f'limbs.{name}: {value!r} is not a colour; write it as "#rrggbb"')
+    return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
