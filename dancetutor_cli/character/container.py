@@ -1,0 +1,208 @@
+"""The GLB container: its JSON, its binary chunk, accessors and images, with every size checked before it is used.
+
+A user's file may be broken or hostile: nothing outside the file is ever opened, and each bound is stated here.
+Source: glTF 2.0 specification, Khronos Group, sections 3.6 (binary data) and 4 (GLB).
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import io
+import json
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import FileError
+
+MAX_FILE = 100_000_000  # bytes; a file of this size or more is refused unread
+MAX_JSON = 32_000_000  # bytes
+MAX_ITEMS = 20_000  # nodes, accessors, buffer views, meshes ...
+MAX_ELEMENTS = 20_000_000  # numbers in one accessor
+MAX_PIXELS = 4096 * 4096  # of one image
+MAX_ALL_PIXELS = 8 * MAX_PIXELS  # of all images of a file
+
+_DTYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_SUPPORTED = frozenset(
+    ("KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_emissive_strength")
+)
+
+
+@dataclass(slots=True)
+class Container:
+    """A checked GLB. document : its JSON; binary : its binary chunk."""
+
+    path: Path
+    document: dict[str, Any]
+    binary: memoryview
+    _pixels: int = field(default=0)
+
+    def fail(self, message: str) -> FileError:
+        """The error to raise about this file."""
+        return FileError(self.path, message)
+
+    def items(self, name: str) -> list[dict[str, Any]]:
+        """A top-level array of objects, empty if absent; FileError if it is something else or too long."""
+        value = self.document.get(name, [])
+        if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+            raise self.fail(f"'{name}' is not a list of objects; export the character again")
+        if len(value) > MAX_ITEMS:
+            raise self.fail(f"{len(value)} {name} are more than the {MAX_ITEMS} allowed")
+        return value
+
+    def item(self, name: str, index: object) -> dict[str, Any]:
+        """One object of a top-level array; FileError if the index is not one of it."""
+        items = self.items(name)
+        return items[self.integer(index, 0, len(items) - 1, f"index into {name}")]
+
+    def integer(self, value: object, low: int, high: int, what: str) -> int:
+        """`value` if it is an int in low..high, else FileError."""
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            raise self.fail(f"{what} {str(value)[:40]} is not in {low}..{high}; the file is broken")
+        return value
+
+    def numbers(self, value: object, count: int, what: str) -> NDArray[np.float64]:
+        """`value` if it is a list of `count` finite numbers, else FileError."""
+        rows = value if isinstance(value, list) and len(value) == count else [None]
+        if not all(isinstance(x, (int, float)) and abs(x) < 1e12 for x in rows):
+            raise self.fail(f"{what} is not a list of {count} numbers; the file is broken")
+        return np.array(rows, dtype=np.float64)
+
+    def view(self, index: object) -> tuple[memoryview, int]:
+        """Bytes of a buffer view and its stride (0 where elements are packed)."""
+        view = self.item("bufferViews", index)
+        data = self._buffer(view.get("buffer"))
+        start = self.integer(view.get("byteOffset", 0), 0, len(data), "byteOffset")
+        length = self.integer(view.get("byteLength"), 1, len(data) - start, "byteLength")
+        return data[start : start + length], self.integer(view.get("byteStride", 0), 0, 252, "byteStride")
+
+    def accessor(self, index: object) -> NDArray[Any]:
+        """Values of an accessor, (n,) or (n, width); normalised integers come as float64."""
+        item = self.item("accessors", index)
+        if "sparse" in item or "bufferView" not in item:
+            raise self.fail("sparse accessors are not supported; export the character without them")
+        dtype = np.dtype(_DTYPES.get(item.get("componentType", 0), "V1"))
+        width = _WIDTHS.get(str(item.get("type")), 0)
+        if dtype.kind == "V" or not width:
+            raise self.fail(f"accessor {index} has an unknown type; the file is broken")
+        count = self.integer(item.get("count"), 1, MAX_ELEMENTS // width, "accessor count")
+        data, stride = self.view(item["bufferView"])
+        size = dtype.itemsize * width
+        stride = stride or size
+        offset = self.integer(item.get("byteOffset", 0), 0, len(data), "byteOffset")
+        if stride < size or offset + stride * (count - 1) + size > len(data):
+            raise self.fail(f"accessor {index} reaches past its buffer; the file is broken")
+        raw = np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
+        values = raw.astype(np.float64) / np.iinfo(dtype).max if item.get("normalized") and dtype.kind in "iu" else raw
+        if values.dtype.kind == "f" and not np.isfinite(values).all():
+            raise self.fail(f"accessor {index} holds values that are not numbers; the file is broken")
+        if item.get("normalized") and dtype.kind == "i":
+            values = np.maximum(values, -1.0)
+        return values[:, 0] if width == 1 else values
+
+    def image(self, index: object) -> NDArray[np.uint8]:
+        """Pixels of an image, (h, w, 4) sRGB."""
+        from PIL import Image, UnidentifiedImageError
+
+        item = self.item("images", index)
+        data = self._uri(item["uri"]) if "uri" in item else self.view(item.get("bufferView"))[0]
+        try:
+            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG", "WEBP")) as picture:
+                pixels = picture.width * picture.height
+                self._pixels += pixels
+                if pixels > MAX_PIXELS or self._pixels > MAX_ALL_PIXELS:
+                    raise self.fail(f"a texture of {picture.width} x {picture.height} is too large; use 4096 x 4096")
+                return np.array(picture.convert("RGBA"))
+        except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+            raise self.fail(f"texture {index} cannot be read: {' '.join(str(error).split())}") from error
+
+    def _buffer(self, index: object) -> memoryview:
+        item = self.item("buffers", index)
+        if "uri" in item:
+            return memoryview(self._uri(item["uri"]))
+        if index != 0:
+            raise self.fail(f"buffer {index} has no data; the file is broken")
+        return self.binary
+
+    def _uri(self, uri: object) -> bytes:
+        head, _, body = str(uri).partition(",")
+        if not head.startswith("data:") or not head.endswith(";base64"):
+            raise self.fail(
+                f"refers to something outside the file ({str(uri)[:60]!r}), which is never opened; "
+                "export one .glb with everything in it"
+            )
+        try:
+            return base64.b64decode(body, validate=True)
+        except binascii.Error as error:
+            raise self.fail("a data: URI is not base64; the file is broken") from error
+
+
+def read_container(path: Path) -> Container:
+    """Read a .glb or .vrm file.
+
+    Raises FileError, one line, for a file that is missing, too large, no GLB 2.0, damaged, or needs an extension
+    this reader lacks.
+    """
+    try:
+        size = path.stat().st_size
+        if size >= MAX_FILE:
+            raise FileError(path, f"{size / 1e6:.0f} MB is too large for a character; the limit is 100 MB")
+        data = memoryview(path.read_bytes())
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}") from error
+    document, binary = _chunks(path, data)
+    container = Container(path, _parse(path, document), binary)
+    _check_head(container)
+    return container
+
+
+def _chunks(path: Path, data: memoryview) -> tuple[memoryview, memoryview]:
+    if len(data) < 20 or bytes(data[:4]) != b"glTF":
+        raise FileError(path, "is not a binary glTF file; give a .glb or .vrm")
+    version, total = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        raise FileError(path, f"is glTF version {version}; export it as glTF 2.0")
+    chunks: dict[bytes, memoryview] = {}
+    at = 12
+    end = min(total, len(data))
+    while at + 8 <= end:
+        length, kind = struct.unpack_from("<I4s", data, at)
+        if at + 8 + length > end:
+            raise FileError(path, "ends in the middle of a chunk; the file is cut off")
+        chunks.setdefault(kind, data[at + 8 : at + 8 + length])
+        at += 8 + length + (-length % 4)
+    if b"JSON" not in chunks:
+        raise FileError(path, "has no JSON chunk; the file is broken")
+    return chunks[b"JSON"], chunks.get(b"BIN\0", memoryview(b""))
+
+
+def _parse(path: Path, data: memoryview) -> dict[str, Any]:
+    if len(data) > MAX_JSON:
+        raise FileError(
+            path, f"its JSON of {len(data) / 1e6:.0f} MB is too large; the limit is {MAX_JSON / 1e6:.0f} MB"
+        )
+    try:
+        document = json.loads(bytes(data))
+    except (ValueError, RecursionError) as error:
+        raise FileError(path, f"its JSON cannot be read: {str(error)[:80]}") from error
+    if not isinstance(document, dict):
+        raise FileError(path, "its JSON is not an object; the file is broken")
+    return document
+
+
+def _check_head(container: Container) -> None:
+    required = container.document.get("extensionsRequired", [])
+    names = [str(name) for name in required] if isinstance(required, list) else []
+    missing = [n for n in names if n not in _SUPPORTED and not n.startswith("VRM")]
+    if missing:
+        raise container.fail(f"needs {', '.join(missing)[:120]}, not supported here; export it without compression")
+    for name in ("buffers", "images"):
+        for item in container.items(name):
+            if "uri" in item and not str(item["uri"]).startswith("data:"):
+                container._uri(item["uri"])

@@ -1,0 +1,246 @@
+"""A glTF file's skinned meshes as a Character, as they are stored: no joint is renamed or moved.
+
+Every joint of the result has the identity as rest rotation (its axes are the world's); what the file's own rest
+rotations and scales do to the mesh is kept in `inverse_bind`, so the picture at rest is the same.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.container import Container, read_container
+from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.nodes import Nodes, read_nodes
+from dancetutor_cli.rig.skeleton import Skeleton
+
+MAX_JOINTS = 1024
+MAX_VERTICES = 2_000_000
+MAX_TRIANGLES = 4_000_000
+_TRIANGLES = 4  # glTF's primitive mode
+
+
+def read_character(path: Path) -> Character:
+    """Read the meshes and the skeleton of a .glb file. Raises FileError, one line, for what it cannot use."""
+    return character_of(read_container(path))
+
+
+def character_of(container: Container) -> Character:
+    """The character in a container that was read and checked."""
+    nodes = read_nodes(container)
+    reader = _Reader(container, nodes)
+    for index, node in enumerate(container.items("nodes")):
+        if "mesh" in node:
+            reader.add_mesh(index, node)
+    if not reader.meshes:
+        raise container.fail("holds no triangle meshes moved by a skeleton; export the character with its skin")
+    return Character(container.path.stem, reader.skeleton, tuple(reader.meshes), reader.inverse_bind)
+
+
+class _Reader:
+    """Collects joints and meshes of one file."""
+
+    def __init__(self, container: Container, nodes: Nodes) -> None:
+        self.container = container
+        self.nodes = nodes
+        self.meshes: list[Mesh] = []
+        self.images: dict[int, NDArray[np.uint8]] = {}
+        self.vertices = 0
+        self.triangles = 0
+        self.skins = [self._skin(skin) for skin in container.items("skins")]
+        self.joint_of = self._joints()
+        self.skeleton = self._skeleton()
+        self.inverse_bind = np.tile(np.eye(4), (len(self.joint_of), 1, 1))
+        self.inverse_bind[:, :3, 3] = -self.skeleton.rest
+        self._bind: dict[int, NDArray[np.float64]] = {}
+        for joints, matrices in self.skins:
+            for node, matrix in zip(joints, matrices, strict=True):
+                self._bind.setdefault(node, matrix)
+        for node, matrix in self._bind.items():
+            j = self.joint_of[node]
+            self.inverse_bind[j] = self.inverse_bind[j] @ nodes.world[node] @ matrix
+
+    def _skin(self, skin: dict[str, Any]) -> tuple[list[int], NDArray[np.float64]]:
+        fail, items = self.container.fail, self.container.items("nodes")
+        joints = skin.get("joints")
+        if not isinstance(joints, list) or not 0 < len(joints) <= MAX_JOINTS:
+            raise fail(f"a skin has no joints or more than {MAX_JOINTS}; the file is broken")
+        joints = [self.container.integer(j, 0, len(items) - 1, "joint of a skin") for j in joints]
+        if "inverseBindMatrices" not in skin:
+            return joints, np.tile(np.eye(4), (len(joints), 1, 1))
+        matrices = np.asarray(self.container.accessor(skin["inverseBindMatrices"]), dtype=np.float64)
+        if matrices.ndim != 2 or matrices.shape[1] != 16 or len(matrices) < len(joints):
+            raise fail("a skin has fewer inverse bind matrices than joints; the file is broken")
+        return joints, matrices[: len(joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
+
+    def _joints(self) -> dict[int, int]:
+        """Joint index of each node that is a joint of a skin, or above one."""
+        used: set[int] = set()
+        for joints, _ in self.skins:
+            for node in joints:
+                while node >= 0 and node not in used:
+                    used.add(node)
+                    node = int(self.nodes.parents[node])
+        if len(used) > 2 * MAX_JOINTS:
+            raise self.container.fail(f"its skeleton has more than {2 * MAX_JOINTS} nodes")
+        if not used:
+            raise self.container.fail("has no skeleton; export the character with its skin")
+        return {node: j for j, node in enumerate(n for n in self.nodes.order if n in used)}
+
+    def _skeleton(self) -> Skeleton:
+        order = list(self.joint_of)
+        rest = self.nodes.world[order][:, :3, 3]
+        parents = np.array([self.joint_of.get(int(self.nodes.parents[n]), -1) for n in order], dtype=np.int32)
+        offsets = rest.copy()
+        inner = parents >= 0
+        offsets[inner] -= rest[parents[inner]]
+        return Skeleton(tuple(self.nodes.names[n] for n in order), parents, offsets)
+
+    def add_mesh(self, index: int, node: dict[str, Any]) -> None:
+        mesh = self.container.item("meshes", node["mesh"])
+        primitives = mesh.get("primitives", [])
+        if not isinstance(primitives, list):
+            raise self.container.fail("a mesh's primitives are not a list; the file is broken")
+        for primitive in primitives:
+            if not isinstance(primitive, dict) or primitive.get("mode", _TRIANGLES) != _TRIANGLES:
+                continue
+            name = str(node.get("name") or mesh.get("name") or f"mesh{index}")[:200]
+            self._primitive(name, index, node, primitive)
+
+    def _primitive(self, name: str, index: int, node: dict[str, Any], primitive: dict[str, Any]) -> None:
+        attributes = primitive.get("attributes")
+        if not isinstance(attributes, dict) or "POSITION" not in attributes:
+            return
+        positions = self._attribute(attributes, "POSITION", 3).astype(np.float32)
+        count = len(positions)
+        triangles = self._triangles(primitive, count)
+        self.vertices += count
+        self.triangles += len(triangles)
+        if self.vertices > MAX_VERTICES or self.triangles > MAX_TRIANGLES:
+            raise self.container.fail(f"has more than {MAX_VERTICES} vertices or {MAX_TRIANGLES} triangles")
+        normals = self._attribute(attributes, "NORMAL", 3, count) if "NORMAL" in attributes else None
+        if "skin" in node:
+            joints, weights = self._weights(node, attributes, count)
+        else:
+            rigid = self._attach(index, positions, normals)
+            if rigid is None:
+                return  # scenery that hangs on no joint
+            positions, normals, joint = rigid
+            joints = np.full((count, 4), joint, dtype=np.uint16)
+            weights = np.tile(np.array([1, 0, 0, 0], dtype=np.float32), (count, 1))
+        if normals is None:
+            normals = vertex_normals(positions, triangles)
+        length = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+        material, uv = self._material(primitive, attributes, count)
+        self.meshes.append(
+            Mesh(name, positions, (normals / length).astype(np.float32), uv, triangles, joints, weights, material)
+        )
+
+    def _attribute(self, attributes: dict[str, Any], name: str, width: int, count: int | None = None) -> NDArray[Any]:
+        values = self.container.accessor(attributes[name])
+        if values.ndim != 2 or values.shape[1] < width or (count is not None and len(values) != count):
+            raise self.container.fail(f"{name} of a mesh has the wrong shape; the file is broken")
+        return values[:, :width]
+
+    def _triangles(self, primitive: dict[str, Any], count: int) -> NDArray[np.int32]:
+        if "indices" in primitive:
+            indices = np.asarray(self.container.accessor(primitive["indices"]))
+        else:
+            indices = np.arange(count)
+        if indices.ndim != 1 or indices.dtype.kind == "f" or (indices.size and int(indices.max()) >= count):
+            raise self.container.fail("a mesh's indices point past its vertices; the file is broken")
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3).astype(np.int32)
+
+    def _weights(
+        self, node: dict[str, Any], attributes: dict[str, Any], count: int
+    ) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+        skin = self.container.integer(node["skin"], 0, len(self.skins) - 1, "skin of a node")
+        names = self.skins[skin][0]
+        if "JOINTS_0" not in attributes or "WEIGHTS_0" not in attributes:
+            raise self.container.fail("a skinned mesh has no joints or weights; the file is broken")
+        local = self._attribute(attributes, "JOINTS_0", 4, count).astype(np.int64)
+        weights = np.maximum(self._attribute(attributes, "WEIGHTS_0", 4, count).astype(np.float64), 0.0)
+        if local.min() < 0 or local.max() >= len(names):
+            raise self.container.fail("a mesh's joints are not in its skin; the file is broken")
+        total = weights.sum(axis=1, keepdims=True)
+        weights = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0.0, 0.0, 0.0])
+        table = np.array([self.joint_of[n] for n in names], dtype=np.uint16)
+        return table[local], weights.astype(np.float32)
+
+    def _attach(
+        self, node: int, positions: NDArray[np.float32], normals: NDArray[Any] | None
+    ) -> tuple[NDArray[np.float32], NDArray[Any] | None, int] | None:
+        """A mesh without skin, moved into the space of the nearest joint above it."""
+        above = node
+        while above >= 0 and above not in self.joint_of:
+            above = int(self.nodes.parents[above])
+        if above < 0:
+            return None
+        joint = self.joint_of[above]
+        world = np.eye(4)
+        world[:3, 3] = self.skeleton.rest[joint]
+        matrix = np.linalg.pinv(world @ self.inverse_bind[joint]) @ self.nodes.world[node]
+        placed = positions @ matrix[:3, :3].T + matrix[:3, 3]
+        turned = None if normals is None else normals @ np.linalg.pinv(matrix[:3, :3])
+        return placed.astype(np.float32), turned, joint
+
+    def _material(
+        self, primitive: dict[str, Any], attributes: dict[str, Any], count: int
+    ) -> tuple[Material, NDArray[np.float32]]:
+        uv = np.zeros((count, 2), dtype=np.float32)
+        if "material" not in primitive:
+            return Material("plain", (0.8, 0.8, 0.8, 1.0)), uv
+        item = self.container.item("materials", primitive["material"])
+        pbr = item.get("pbrMetallicRoughness", {})
+        pbr = pbr if isinstance(pbr, dict) else {}
+        factor = self.container.numbers(pbr.get("baseColorFactor", [1, 1, 1, 1]), 4, "a material's colour")
+        factor[:3] = srgb_from_linear(np.clip(factor[:3], 0, 1))
+        r, g, b, a = (round(float(x), 6) for x in np.clip(factor, 0, 1))
+        texture = None
+        info = pbr.get("baseColorTexture")
+        if isinstance(info, dict):
+            name = f"TEXCOORD_{info.get('texCoord', 0)}"
+            texture = self._texture(info)
+            if texture is not None and name in attributes:
+                uv = _transformed(self._attribute(attributes, name, 2, count), info)
+        return Material(str(item.get("name", "material"))[:200], (r, g, b, a), texture), uv
+
+    def _texture(self, info: dict[str, Any]) -> NDArray[np.uint8] | None:
+        source = self.container.item("textures", info.get("index")).get("source")
+        if source is None:
+            return None
+        key = self.container.integer(source, 0, len(self.container.items("images")) - 1, "image of a texture")
+        if key not in self.images:
+            self.images[key] = self.container.image(key)
+        return self.images[key]
+
+
+def _transformed(uv: NDArray[Any], info: dict[str, Any]) -> NDArray[np.float32]:
+    """Apply KHR_texture_transform's offset and scale (its rotation is not used by character exporters)."""
+    transform = info.get("extensions", {}).get("KHR_texture_transform", {}) if "extensions" in info else {}
+    scale = np.array(transform.get("scale", [1, 1]), dtype=np.float64)
+    offset = np.array(transform.get("offset", [0, 0]), dtype=np.float64)
+    return np.asarray(uv * scale[:2] + offset[:2], dtype=np.float32)
+
+
+def vertex_normals(positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Area-weighted vertex normals, (v, 3), not unit length."""
+    a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
+    face = np.cross(b - a, c - a)
+    out = np.zeros((len(positions), 3))
+    for k in range(3):
+        np.add.at(out, triangles[:, k], face)
+    return out
+
+
+def srgb_from_linear(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Linear light 0..1 to sRGB 0..1 (IEC 61966-2-1)."""
+    return np.asarray(np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055))
+
+
+def linear_from_srgb(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """sRGB 0..1 to linear light 0..1 (IEC 61966-2-1)."""
+    return np.asarray(np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4))

@@ -1,0 +1,223 @@
+"""GLB out and in: a character with its skin, and the motion as an animation any glTF viewer plays.
+
+Source: glTF 2.0 specification, Khronos Group.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.model import Character, Mesh
+from dancetutor_cli.character.reader import linear_from_srgb, read_character
+from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.motion.model import Motion
+
+_BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
+_COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+_VERTICES, _INDICES = 34962, 34963
+_SETTLED = 1e-6  # a rotation or position that varies less than this is not animated
+
+
+def read_glb(path: Path) -> Character:
+    """The character in a .glb file, as stored. Raises FileError, one line, for a file it cannot use."""
+    return read_character(path)
+
+
+def write_glb(path: Path, character: Character, motion: Motion | None = None) -> None:
+    """Write a character, and the motion as its animation, atomically.
+
+    The motion must be of the character's skeleton. Rotations are normalised 16-bit quaternions (0.03 mm at the foot);
+    joints that never move have no channel; all channels share one array of times. glTF counts time from 0: the
+    animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is kept in the
+    animation's extras as `start_second`.
+
+    Raises FileError when the file cannot be written, ValueError when motion and character differ in joints.
+    """
+    if motion is not None and motion.skeleton.names != character.skeleton.names:
+        raise ValueError("motion and character have different joints; retarget the motion first")
+    writer = _Writer()
+    writer.character(character)
+    if motion is not None:
+        writer.animation(motion)
+    write_bytes(path, writer.whole())
+
+
+class _Writer:
+    """Builds the JSON and the binary chunk."""
+
+    def __init__(self) -> None:
+        self.binary = bytearray()
+        self.doc: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": "dancetutor"},
+            "scene": 0,
+            "scenes": [{"nodes": []}],
+            "nodes": [],
+            "meshes": [],
+            "skins": [],
+            "materials": [],
+            "accessors": [],
+            "bufferViews": [],
+        }
+        self.textures: dict[int, int] = {}
+
+    def whole(self) -> bytes:
+        """The whole file."""
+        self.doc["buffers"] = [{"byteLength": len(self.binary)}]
+        text = json.dumps(self.doc, separators=(",", ":"), ensure_ascii=False).encode("utf-8")
+        text += b" " * (-len(text) % 4)
+        body = bytes(self.binary) + bytes(-len(self.binary) % 4)
+        head = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(body))
+        chunk = struct.Struct("<I4s")
+        return head + chunk.pack(len(text), b"JSON") + text + chunk.pack(len(body), b"BIN\0") + body
+
+    def view(self, data: bytes, target: int | None = None) -> int:
+        self.binary += bytes(-len(self.binary) % 4)
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)}
+        if target is not None:
+            view["target"] = target
+        self.binary += data
+        self.doc["bufferViews"].append(view)
+        return len(self.doc["bufferViews"]) - 1
+
+    def accessor(self, values: NDArray[Any], target: int | None = None, **more: Any) -> int:
+        """Add an accessor of (n,) or (n, width) values; `more` goes into its JSON."""
+        values = np.ascontiguousarray(values)
+        width = 1 if values.ndim == 1 else values.shape[1]
+        item = {
+            "bufferView": self.view(values.tobytes(), target),
+            "componentType": _COMPONENTS[values.dtype.str],
+            "count": len(values),
+            "type": _TYPES[width],
+            **more,
+        }
+        self.doc["accessors"].append(item)
+        return len(self.doc["accessors"]) - 1
+
+    def character(self, character: Character) -> None:
+        skeleton = character.skeleton
+        nodes = self.doc["nodes"]
+        for name, offset in zip(skeleton.names, skeleton.offsets, strict=True):
+            nodes.append({"name": name, "translation": [float(np.float32(x)) for x in offset]})
+        for child, parent in enumerate(skeleton.parents.tolist()):
+            if parent >= 0:
+                nodes[parent].setdefault("children", []).append(child)
+            else:
+                self.doc["scenes"][0]["nodes"].append(child)
+        matrices = np.asarray(character.inverse_bind.transpose(0, 2, 1).reshape(-1, 16), dtype="<f4").copy()
+        matrices[:, [3, 7, 11]], matrices[:, 15] = 0.0, 1.0
+        joints = list(range(len(skeleton.names)))
+        self.doc["skins"].append(
+            {"name": character.name, "inverseBindMatrices": self.accessor(matrices), "joints": joints, "skeleton": 0}
+        )
+        for mesh in character.meshes:
+            self.mesh(mesh)
+
+    def mesh(self, mesh: Mesh) -> None:
+        positions = np.asarray(mesh.positions, dtype="<f4")
+        small = len(positions) < 65535
+        bounds = {"min": positions.min(axis=0).tolist(), "max": positions.max(axis=0).tolist()}
+        joints, weights = _four_joints(mesh)
+        attributes = {
+            "POSITION": self.accessor(positions, _VERTICES, **bounds),
+            "NORMAL": self.accessor(np.asarray(mesh.normals, dtype="<f4"), _VERTICES),
+            "TEXCOORD_0": self.accessor(np.asarray(mesh.uv, dtype="<f4"), _VERTICES),
+            "JOINTS_0": self.accessor(joints, _VERTICES),
+            "WEIGHTS_0": self.accessor(weights, _VERTICES),
+        }
+        indices = mesh.triangles.reshape(-1).astype("<u2" if small else "<u4")
+        primitive = {
+            "attributes": attributes,
+            "indices": self.accessor(indices, _INDICES),
+            "material": self.material(mesh),
+            "mode": 4,
+        }
+        self.doc["meshes"].append({"name": mesh.name, "primitives": [primitive]})
+        self.doc["scenes"][0]["nodes"].append(len(self.doc["nodes"]))
+        self.doc["nodes"].append({"name": mesh.name, "mesh": len(self.doc["meshes"]) - 1, "skin": 0})
+
+    def material(self, mesh: Mesh) -> int:
+        material = mesh.material
+        rgb = linear_from_srgb(np.array(material.base_color[:3]))
+        pbr: dict[str, Any] = {
+            "baseColorFactor": [*(round(float(x), 7) for x in rgb), float(material.base_color[3])],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.85,
+        }
+        if material.texture is not None:
+            pbr["baseColorTexture"] = {"index": self.texture(material.texture)}
+        item: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": pbr}
+        if material.base_color[3] < 1:
+            item["alphaMode"] = "BLEND"
+        if item in self.doc["materials"]:
+            return int(self.doc["materials"].index(item))
+        self.doc["materials"].append(item)
+        return len(self.doc["materials"]) - 1
+
+    def texture(self, pixels: NDArray[np.uint8]) -> int:
+        if id(pixels) not in self.textures:
+            for name in ("images", "textures", "samplers"):
+                self.doc.setdefault(name, [])
+            image = {"mimeType": "image/png", "bufferView": self.view(_png(pixels))}
+            self.doc["images"].append(image)
+            self.doc["samplers"] = [{"magFilter": 9729, "minFilter": 9987}]
+            self.doc["textures"].append({"sampler": 0, "source": len(self.doc["images"]) - 1})
+            self.textures[id(pixels)] = len(self.doc["textures"]) - 1
+        return self.textures[id(pixels)]
+
+    def animation(self, motion: Motion) -> None:
+        start = min(0.0, float(motion.times[0]))
+        times = np.asarray(motion.times - start, dtype="<f4")
+        keep = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
+        times = times[keep]
+        clock = self.accessor(times, min=[float(times[0])], max=[float(times[-1])])
+        once = self.accessor(times[:1], min=[float(times[0])], max=[float(times[0])])
+        samplers: list[dict[str, Any]] = []
+        channels: list[dict[str, Any]] = []
+
+        def channel(node: int, path: str, values: NDArray[Any], moves: bool, **more: Any) -> None:
+            output = self.accessor(values if moves else values[:1], **more)
+            samplers.append({"input": clock if moves else once, "output": output, "interpolation": "LINEAR"})
+            channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+
+        for j in range(len(motion.skeleton.names)):
+            q = _continuous(motion.rotations[keep, j])
+            moves = bool(np.ptp(q, axis=0).max() > _SETTLED)
+            if moves or abs(abs(q[0, 0]) - 1) > _SETTLED:
+                channel(j, "rotation", np.rint(q[:, [1, 2, 3, 0]] * 32767).astype("<i2"), moves, normalized=True)
+        root = np.asarray(motion.root[keep], dtype="<f4")
+        channel(0, "translation", root, bool(np.ptp(root, axis=0).max() > _SETTLED))
+        animation: dict[str, Any] = {"name": "dance", "samplers": samplers, "channels": channels}
+        if start < 0:
+            animation["extras"] = {"start_second": start}
+        self.doc["animations"] = [animation]
+
+
+def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Joints and weights as glTF wants them: no joint named where its weight is 0."""
+    weights = np.asarray(mesh.weights, dtype="<f4")
+    joints = np.where(weights > 0, mesh.joints, 0)
+    return joints.astype("|u1" if joints.max(initial=0) < 256 else "<u2"), weights
+
+
+def _continuous(q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Flip quaternions so that each is on the short arc from the one before."""
+    flips = np.sign(np.sum(q[1:] * q[:-1], axis=1))
+    flips[flips == 0] = 1
+    return np.asarray(q * np.concatenate([[1.0], np.cumprod(flips)])[:, None])
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    from PIL import Image
+
+    opaque = bool((pixels[..., 3] == 255).all())
+    out = io.BytesIO()
+    Image.fromarray(pixels[..., :3] if opaque else pixels).save(out, "PNG", optimize=True)
+    return out.getvalue()
