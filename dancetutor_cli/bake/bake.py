@@ -1,0 +1,116 @@
+"""The one place that orders the work of a bake: plan, feet, body, inverse kinematics, look-at."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.body import body_path
+from dancetutor_cli.motion.feet import foot_path
+from dancetutor_cli.motion.ik import solve
+from dancetutor_cli.motion.look import look
+from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.plan import Planner
+from dancetutor_cli.motion.settings import MotionSettings, default_settings
+from dancetutor_cli.motion.targets import ik_targets
+from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.play.model import Play
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.pads import Pad
+
+Array = NDArray[np.float64]
+LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
+MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
+
+
+def bake(
+    chart: Chart,
+    play: Play,
+    pad: Pad,
+    *,
+    fps: float = 60.0,
+    section: tuple[float, float] | None = None,
+    settings: MotionSettings | None = None,
+) -> Motion:
+    """Make the dancer play a chart.
+
+    Parameters
+    ----------
+    chart : gives the times of beats; play : who steps what; pad : where the panels are
+    fps : frames per second of the result, which gets extra keys at every contact
+    section : (start, end) in seconds of the music; None: from before the first step to after the last
+    settings : numbers of the motion, None for those of `configs/motion.yaml`
+
+    Returns
+    -------
+    Motion whose feet and palms touch their panels at the notes' times.
+
+    Raises
+    ------
+    DancetutorError if the play has no steps or the section is empty.
+    """
+    settings = settings or default_settings()
+    plan = Planner(play, stage.panels_on_ground(pad), _clock(chart), settings).run()
+    start, end = section or (min(0.0, plan.first - LEAD_IN), plan.last + LEAD_OUT)
+    if not start < end:
+        raise DancetutorError(
+            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
+        )
+    return bake_plan(plan, fps, start, end, settings)
+
+
+def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: MotionSettings) -> Motion:
+    """Bake a plan from `start` to `end`, seconds; the work behind `bake`."""
+    skeleton = dancer_skeleton()
+    rate = settings.sampling.work_rate
+    grid = np.arange(np.floor((start - MARGIN) * rate), np.ceil((end + MARGIN) * rate) + 1) / rate
+    drop = settings.step.heel_drop
+    feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
+    body = body_path(plan, grid, feet, skeleton, settings)
+    at = _key_times(plan, fps, start, end)
+    sampled = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
+    targets = ik_targets(plan, body, sampled, at, skeleton, settings)
+    rotations, root = solve(skeleton, targets, settings.body.reach)
+    look(skeleton, rotations, root, body, at, settings)
+    contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
+    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
+
+
+def _clock(chart: Chart):  # type: ignore[no-untyped-def]
+    def second(tick: int) -> float:
+        return float(chart.timing.second_at_tick(tick))
+
+    return second
+
+
+def _key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
+    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land."""
+    regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
+    extra = [t for foot in plan.feet for s in foot.swings for t in (s.lift, s.land)]
+    extra += [t for p in plan.presses for t in (p.start, p.end)]
+    special = np.array([t for t in extra if start <= t <= end])
+    times = np.concatenate((special, regular))
+    kind = np.concatenate((np.zeros(len(special)), np.ones(len(regular))))
+    order = np.lexsort((kind, times))
+    times, kind = times[order], kind[order]
+    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds are one; the contact's own time stays
+    last = -np.inf
+    for k, t in enumerate(times):
+        if t - last < 1e-5:
+            keep[k] = False
+        else:
+            last = t
+    return np.asarray(times[keep])
+
+
+def contacts_of(motion: Motion, limb: int) -> tuple[Contact, ...]:
+    """The contacts of one limb, in order."""
+    return tuple(c for c in motion.contacts if c.limb == limb)

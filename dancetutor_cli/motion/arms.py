@@ -1,0 +1,119 @@
+"""Hands: hanging and swinging against the legs, or a palm going down to a panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.body import BodyPath
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_points
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class HandTargets:
+    """Targets of both hands at f times, as in `motion.ik.Targets`; the second axis is left, right."""
+
+    wrists: Array
+    turn: Array
+    pinned: Array
+    elbows: Array
+
+
+def arm_targets(
+    plan: Plan, body: BodyPath, at: Array, shoulders: Array, chest: Array, skeleton: Skeleton, settings: MotionSettings
+) -> HandTargets:
+    """Targets at times `at` (f,); shoulders (f, 2, 3) and chest (f, 4) as the IK will be asked for them."""
+    arms = settings.arms
+    wrists, elbows = np.empty_like(shoulders), np.empty_like(shoulders)
+    upright = quat.swing_twist(chest, np.array([0.0, 1.0, 0.0]))[1]
+    swing = _swing(plan, body, at, settings)
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        hang = np.zeros((len(at), 3))
+        hang[:, 0], hang[:, 1] = sign * arms.out, -arms.down + 0.25 * np.abs(swing[:, side])
+        hang[:, 2] = arms.forward + swing[:, side]
+        wrists[:, side] = shoulders[:, side] + quat.rotate(upright, hang)
+        elbows[:, side] = quat.rotate(upright, np.array([sign * 0.7, -0.25, -0.75]))
+    turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
+    pinned = np.zeros((len(at), 2))
+    for press in plan.presses:
+        _press(press, at, wrists, turn, pinned, elbows, shoulders, skeleton, settings)
+    return HandTargets(wrists, turn, pinned, elbows)
+
+
+def _swing(plan: Plan, body: BodyPath, at: Array, settings: MotionSettings) -> Array:
+    """How far forward each hand (f, 2) is: it follows the opposite foot."""
+    from dancetutor_cli.motion.feet import foot_path
+    from dancetutor_cli.motion.paths import smooth_path
+    from dancetutor_cli.motion.targets import sample_path
+
+    front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
+    ahead = []
+    for track in plan.feet[::-1]:  # the left hand goes with the right foot
+        path = foot_path(track, body.times, settings.step.heel_drop)
+        ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
+    both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
+    rate = 1.0 / float(body.times[1] - body.times[0])
+    return sample_path(smooth_path(both, np.ones(len(both)), rate, 0.09), body.times, at)
+
+
+def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
+    """World rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
+    along, normal = hand_direction(skeleton, SIDES[side]), palm_normal(skeleton, SIDES[side])
+    down = np.array([0.0, -1.0, 0.0])
+    rest = np.column_stack((along, normal, np.cross(along, normal)))
+    goal = np.column_stack((fingers, down, np.cross(fingers, down)))
+    return _from_matrix(goal @ rest.T)
+
+
+def _from_matrix(m: Array) -> Array:
+    """Quaternion of a rotation matrix, by its largest component."""
+    k = np.array([
+        [m[0, 0] + m[1, 1] + m[2, 2], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
+        [0, m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
+        [0, 0, m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2]],
+        [0, 0, 0, m[2, 2] - m[0, 0] - m[1, 1]],
+    ])  # fmt: skip
+    values, vectors = np.linalg.eigh(k, UPLO="U")
+    q = vectors[:, np.argmax(values)]
+    return np.asarray(q if q[0] >= 0 else -q)
+
+
+def _press(
+    press: object, at: Array, wrists: Array, turn: Array, pinned: Array, elbows: Array, shoulders: Array,
+    skeleton: Skeleton, settings: MotionSettings,
+) -> None:  # fmt: skip
+    from dancetutor_cli.motion.track import Press
+
+    assert isinstance(press, Press)
+    down, side = settings.hands.reach_down, press.side
+    near = np.flatnonzero((at > press.start - down) & (at < press.end + down))
+    if not len(near):
+        return
+    t = at[near]
+    middle = shoulders[near].mean(axis=1)
+    panel = np.array([press.target[0], 0.0, press.target[1]])
+    fingers = panel - middle[np.argmin(np.abs(t - press.start))]
+    fingers[1] = 0.0
+    fingers /= max(float(np.linalg.norm(fingers)), 1e-6)
+    hand = palm_down(skeleton, side, fingers)
+    wrist = panel - quat.rotate(hand, palm_points(skeleton)[side].offset)
+    going = np.clip((t - press.start + down) / down, 0.0, 1.0)
+    leaving = np.clip((t - press.end) / down, 0.0, 1.0)
+    across = smooth(going) * (1.0 - smooth(leaving))
+    # straight down at a definite speed, so that the touch has a time; up again softly
+    sink = np.sin(np.pi / 2 * going) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
+    free = wrists[near, side]
+    goal = free + across[:, None] * (wrist - free)
+    goal[:, 1] = wrist[1] + (1.0 - sink) * (free[:, 1] - wrist[1])
+    wrists[near, side] = goal
+    turn[near, side] = hand
+    pinned[near, side] = np.maximum(pinned[near, side], smooth(across * 1.25))

@@ -1,0 +1,176 @@
+"""The body over the feet: where the weight is, how high, which way pelvis and chest turn, and how far they bend."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.banded import BandedLeastSquares, differences
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.feet import GRAVITY, FootPath
+from dancetutor_cli.motion.paths import balanced_path, smooth_path
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import Plan, Press, Turn
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+COM_HEIGHT = 0.90  # metres, standing; only the lever arm of the balance
+
+
+@dataclass(frozen=True, slots=True)
+class BodyPath:
+    """The body at n times, `rate` per second.
+
+    ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
+    tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
+    the body has bent for the left and right hand
+    """
+
+    times: Array
+    ground: Array
+    height: Array
+    yaw: Array
+    chest_yaw: Array
+    head_yaw: Array
+    tilt: Array
+    reaching: Array
+
+
+def body_path(
+    plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings
+) -> BodyPath:
+    """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times."""
+    rate = 1.0 / float(times[1] - times[0])
+    flight = ~feet[0].down & ~feet[1].down
+    reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
+    ground = _ground(feet, flight, rate, settings)
+    yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
+    height = _height(feet, flight, ground, yaw, reaching.max(axis=1), rate, skeleton, settings)
+    chest, head = _looking(yaw, ground, rate, settings)
+    tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
+    return BodyPath(times, ground, height, yaw, chest, head, tilt, reaching)
+
+
+def _ground(feet: tuple[FootPath, FootPath], flight: NDArray[np.bool_], rate: float, settings: MotionSettings) -> Array:
+    """Over the ground: the weight on the standing foot, between the feet when both stand."""
+    middles = [f.ball[:, [0, 2]] - 0.03 * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
+    left, right = (f.down[:, None] for f in feet)
+    zmp = np.where(left & right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
+    weight = np.where(feet[0].down & feet[1].down, 0.03, 1.0)
+    return balanced_path(zmp, weight, flight, np.full(len(zmp), COM_HEIGHT), rate, settings.body.smooth)
+
+
+def _yaw_target(turns: tuple[Turn, ...], times: Array) -> Array:
+    if not turns:
+        return np.zeros_like(times)
+    start = np.array([t.start for t in turns])
+    end = np.array([t.end for t in turns])
+    yaw = np.array([0.0, *(t.yaw for t in turns)])
+    i = np.maximum(np.searchsorted(start, times, side="right") - 1, 0)
+    s = (times - start[i]) / (end[i] - start[i])
+    return np.asarray(yaw[i] + smooth(s) * (yaw[i + 1] - yaw[i]))
+
+
+def leg_room(
+    feet: tuple[FootPath, FootPath], ground: Array, yaw: Array, skeleton: Skeleton, reach: Array | float, side: int
+) -> Array:
+    """Highest root (n,) from which one leg still reaches its foot when hip and ankle are `reach` apart."""
+    name = "lr"[side]
+    hip = skeleton.offsets[skeleton.index(f"{name}_hip")]
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    hip_x = ground[:, 0] + hip[0] * cosine + hip[2] * sine
+    hip_z = ground[:, 1] - hip[0] * sine + hip[2] * cosine
+    ankle = ankle_of(feet[side], skeleton, side)
+    aside = np.hypot(hip_x - ankle[:, 0], hip_z - ankle[:, 2])
+    return np.asarray(ankle[:, 1] + np.sqrt(np.maximum(np.square(reach) - aside**2, 0.05)) - hip[1])
+
+
+def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
+    """World position (f, 3) of the ankle joint of a foot."""
+    meta = skeleton.offsets[skeleton.index(f"{'lr'[side]}_metatarsal")]
+    up = skeleton.rest[skeleton.index(f"{'lr'[side]}_metatarsal")][1]
+    sine, cosine = np.sin(foot.pitch), np.cos(foot.pitch)
+    y = -meta[1] * cosine + meta[2] * sine  # the ankle seen from the ball's joint, heel up by pitch
+    z = -meta[1] * sine - meta[2] * cosine
+    x = -meta[0]
+    out = foot.ball.copy()
+    out[:, 0] += x * np.cos(foot.yaw) + z * np.sin(foot.yaw)
+    out[:, 1] += up + y
+    out[:, 2] += -x * np.sin(foot.yaw) + z * np.cos(foot.yaw)
+    return out
+
+
+def _height(
+    feet: tuple[FootPath, FootPath], flight: NDArray[np.bool_], ground: Array, yaw: Array, bent: Array, rate: float,
+    skeleton: Skeleton, settings: MotionSettings,
+) -> Array:  # fmt: skip
+    """Height of the root: soft knees on the ground, gravity in flight, little jerk in between."""
+    body = settings.body
+    wanted = np.full(len(yaw), np.inf)
+    for side in (0, 1):
+        reach = np.where(feet[side].down, body.stance, body.reach - 0.004)
+        wanted = np.minimum(wanted, leg_room(feet, ground, yaw, skeleton, reach, side))
+    wanted = wanted + bent * (settings.hands.pelvis - wanted)
+    n = len(wanted)
+    problem = BandedLeastSquares(n, 1)
+    problem.add(np.arange(n), np.ones((n, 1)), np.where(flight, 1e-4, 1.0), wanted[:, None])
+    fly = np.flatnonzero(flight[1:-1])
+    second = np.tile(differences(2) * rate**2, (len(fly), 1))
+    problem.add(fly, second, np.full(len(fly), 1.0), np.full((len(fly), 1), -GRAVITY))
+    stand = np.flatnonzero(~(flight[:-3] | flight[1:-2] | flight[2:-1] | flight[3:]))
+    jerk = np.tile(differences(3) * (rate * body.smooth * 0.7) ** 3, (len(stand), 1))
+    problem.add(stand, jerk, np.ones(len(stand)), np.zeros((len(stand), 1)))
+    edge = np.flatnonzero(flight[:-3] | flight[1:-2] | flight[2:-1] | flight[3:])
+    jerk = np.tile(differences(3) * (rate * body.smooth * 0.3) ** 3, (len(edge), 1))
+    problem.add(edge, jerk, np.full(len(edge), 0.1), np.zeros((len(edge), 1)))
+    return problem.solve()[:, 0]
+
+
+def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
+    """Yaw (n,) from a place on the ground to the screen."""
+    return np.asarray(np.arctan2(-0.5 * ground[:, 0], settings.look.distance - ground[:, 1]))
+
+
+def _wrapped(angle: Array) -> Array:
+    return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
+
+
+def _looking(yaw: Array, ground: Array, rate: float, settings: MotionSettings) -> tuple[Array, Array]:
+    """Chest and head keep to the screen as far as they can (thesis 5.7); when the body turns past, they whip round."""
+    look = settings.look
+    ones = np.ones(len(yaw))
+    gap = _wrapped(screen_yaw(ground, settings) - yaw)
+    torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
+    chest = yaw + smooth_path(torso[:, None], ones, rate, 0.06)[:, 0]
+    gap = _wrapped(screen_yaw(ground, settings) - chest)
+    head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
+    return chest, chest + smooth_path(head[:, None], ones, rate, 0.04)[:, 0]
+
+
+def _reaching(presses: tuple[Press, ...], times: Array, side: int, settings: MotionSettings) -> Array:
+    out = np.zeros_like(times)
+    for press in presses:
+        if press.side == side:
+            down = settings.hands.reach_down
+            s = smooth((times - press.start + down) / down) * smooth((press.end + down - times) / down)
+            out = np.maximum(out, s)
+    return out
+
+
+def _tilt(
+    presses: tuple[Press, ...], times: Array, reaching: Array, chest: Array, ground: Array, rate: float,
+    settings: MotionSettings,
+) -> Array:  # fmt: skip
+    forward = np.column_stack((np.sin(chest), np.cos(chest)))
+    tilt = np.radians(settings.body.lean) * forward
+    for side in (0, 1):
+        for press in (p for p in presses if p.side == side):
+            down = settings.hands.reach_down
+            near = (times > press.start - down) & (times < press.end + down)
+            to = np.array(press.target) - ground[near] + 0.15 * forward[near]
+            to /= np.maximum(np.linalg.norm(to, axis=1, keepdims=True), 0.05)
+            s = smooth((times[near] - press.start + down) / down) * smooth((press.end + down - times[near]) / down)
+            tilt[near] = tilt[near] + s[:, None] * (np.radians(settings.hands.bend) * to - tilt[near])
+    return smooth_path(tilt, np.ones(len(times)), rate, 0.05)

@@ -1,0 +1,104 @@
+"""Foot paths: where each foot is at any time, from its swings. Nothing here knows joints above the ankle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.track import FootTrack
+
+Array = NDArray[np.float64]
+GRAVITY = 9.81
+HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
+
+
+@dataclass(frozen=True, slots=True)
+class FootPath:
+    """One foot at f times. ball : (f, 3), the ball of the foot over the ground (y = 0: standing); yaw, pitch : (f,) radians
+
+    pitch is heel up, the toes stay level with the ground; down : (f,) bool, the ball stands on the ground;
+    progress : (f,) 0 to 1 of the swing, 0 while standing
+    """
+
+    ball: Array
+    yaw: Array
+    pitch: Array
+    down: NDArray[np.bool_]
+    progress: Array
+
+
+def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
+    """Sample a foot at `times` (f,), seconds."""
+    swings = track.swings
+    lift = np.array([s.lift for s in swings])
+    land = np.array([s.land for s in swings])
+    place = np.array([track.start, *(s.target for s in swings)])
+    yaw = np.array([track.start_yaw, *(s.yaw for s in swings)])
+    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; swing done - 1 has begun
+    i = np.maximum(done - 1, 0)
+    if not swings:
+        still = np.zeros_like(times)
+        ball = np.column_stack((np.full_like(times, place[0, 0]), still, np.full_like(times, place[0, 1])))
+        return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
+    swinging = (done > 0) & (times < land[i])
+    s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
+    ground = np.where(swinging[:, None], _ground(track, place, i, s), place[done])
+    ball = np.column_stack((ground[:, 0], np.where(swinging, _height(track, i, s), 0.0), ground[:, 1]))
+    turned = yaw[i] + smooth(s / 0.95) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
+    return FootPath(ball, np.where(swinging, turned, yaw[done]), pitch, ~swinging, s)
+
+
+def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
+    """Ground path: straight, or for jumps half turning about the middle between the feet (thesis 5.6.2.2)."""
+    e = smooth(s)[:, None]
+    straight = place[i] + e * (place[i + 1] - place[i])
+    bulge = np.array([w.bulge for w in track.swings])[i] * (np.sin(np.pi * e) ** 2)
+    turn = np.array([w.turn for w in track.swings])
+    share = np.where(np.array([w.kind == "jump" for w in track.swings]), 0.5, 0.0)
+    m0 = np.array([w.middle0 for w in track.swings])
+    m1 = np.array([w.middle1 for w in track.swings])
+    a, b = place[:-1] - m0, place[1:] - m1
+    e1 = e[:, 0]
+    radius = (1 - e1) * np.linalg.norm(a, axis=1)[i] + e1 * np.linalg.norm(b, axis=1)[i]
+    # yaw turns +Z towards +X, so an angle in the ground plane is atan2(x, z)
+    first = np.arctan2(a[:, 0], a[:, 1])
+    gap = np.arctan2(b[:, 0], b[:, 1]) - first
+    gap = turn + (gap - turn + np.pi) % (2 * np.pi) - np.pi  # end exactly where the foot lands, turning as the feet do
+    angle = first[i] + e1 * gap[i]
+    round_ = m0[i] + e * (m1[i] - m0[i]) + radius[:, None] * np.column_stack((np.sin(angle), np.cos(angle)))
+    w = share[i][:, None]
+    return np.asarray((1 - w) * straight + w * round_ + bulge)
+
+
+def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+    """Height of the sole. It leaves the ground softly and meets it at a definite speed, so that the contact has a time."""
+    height = np.array([w.height for w in track.swings])[i]
+    evade = np.array([w.kind == "evade" for w in track.swings])[i]
+    return np.asarray(height * np.where(evade, 1.0 - (2.0 * s - 1.0) ** 4, np.sin(np.pi * s**1.25)))
+
+
+def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+    lift, most, land, _ = np.array([w.pitches for w in track.swings])[i].T
+    up = lift + smooth(s / 0.4) * (most - lift)
+    return np.asarray(up + smooth((s - 0.4) / 0.6) * (land - most))
+
+
+def _stand_pitch(
+    track: FootTrack, times: Array, done: NDArray[np.int64], lift: Array, land: Array, heel_drop: float
+) -> Array:
+    """Heel of a standing foot: comes down after landing, rises before the next swing."""
+    pitches = np.array([w.pitches for w in track.swings])
+    landed = np.concatenate(([-1e9], land))[done]
+    rest = np.concatenate(([0.0], pitches[:, 3]))[done]
+    touch = np.concatenate(([0.0], pitches[:, 2]))[done]
+    leaves = np.concatenate((lift, [1e9]))[done]
+    leave = np.concatenate((pitches[:, 0], [0.0]))[done]
+    stood = leaves - landed
+    drop = np.minimum(heel_drop, 0.6 * stood)
+    rise = np.minimum(HEEL_RISE, 0.4 * stood)
+    falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
+    return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

@@ -1,0 +1,262 @@
+"""From a play to moves: when each foot leaves and lands, where, and how far it turns (thesis 5.5 and 5.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.ease import reduction
+from dancetutor_cli.motion.feet import GRAVITY
+from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import FootTrack, Plan, Press, Swing, Turn
+from dancetutor_cli.play.model import Limb, Part, Play, StepKind
+
+Array = NDArray[np.float64]
+LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
+SHORTEST = 0.02  # and at least this part of a second in any case
+HOME_WIDTH = 0.25  # a waiting foot stands so many panels beside the middle
+FREE_WINDOW = 0.001
+
+
+@dataclass
+class _Foot:
+    """Where a foot is while the plan is made."""
+
+    side: int
+    ball: Array
+    yaw: float  # without toe-out
+    free: float  # the foot may not leave before
+    swings: list[Swing] = field(default_factory=list)
+
+    @property
+    def outward(self) -> float:
+        return 1.0 if self.side == 0 else -1.0
+
+
+class Planner:
+    """Walks through the rows of a play once. `second(tick)` gives the time of a tick in seconds of the music."""
+
+    def __init__(self, play: Play, panels: Array, second: Callable[[int], float], settings: MotionSettings) -> None:
+        self.play, self.panels, self.second, self.settings = play, panels, second, settings
+        toe_out = np.radians(settings.step.toe_out)
+        self.feet = []
+        for side, x in ((0, 1.0), (1, -1.0)):
+            middle = np.array([x * HOME_WIDTH * stage.PANEL * 1.4, 0.0])
+            self.feet.append(_Foot(side, stage.ball_of(middle, x * toe_out), 0.0, -np.inf))
+        self.start = tuple((tuple(f.ball), f.outward * toe_out) for f in self.feet)
+        self.normal = 0.0  # unwrapped feet normal, degrees
+        self.previous: float | None = None
+        self.turns: list[Turn] = []
+        self.presses: list[Press] = []
+        self.contacts: list[Contact] = []
+
+    def run(self) -> Plan:
+        rows = self.play.rows
+        for i in range(len(rows)):
+            self._row(i)
+        if not self.contacts:
+            raise DancetutorError("the chart has no steps: there is nothing to dance")
+        feet = tuple(
+            FootTrack(place, yaw, tuple(f.swings)) for (place, yaw), f in zip(self.start, self.feet, strict=True)
+        )
+        self.contacts.sort(key=lambda c: (c.start, c.limb, c.column))
+        contacts = tuple(self._ended(c) for c in self.contacts)
+        return Plan(
+            (feet[0], feet[1]), tuple(self.turns), tuple(self.presses), contacts, (0.0, 0.0),
+            contacts[0].start, max(max(c.end for c in contacts if c.end < np.inf), contacts[-1].start),
+        )  # fmt: skip
+
+    def _row(self, i: int) -> None:
+        time = float(self.play.rows.second[i])
+        pressed: dict[int, list[int]] = {}
+        for column in np.flatnonzero(self.play.limb[i] >= 0):
+            pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
+        self._mines(i, time, pressed)
+        if not pressed:
+            return
+        turn = (self.play.facing[i] - self.normal + 180.0) % 360.0 - 180.0
+        feet = [limb for limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT) if limb in pressed]
+        before = self.normal
+        if feet:
+            self.normal += turn
+        longest = self.settings.step.longest
+        duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
+        if len(feet) == 2:
+            self._jump(i, time, duration, pressed, self.normal - before)
+        elif feet:
+            self._step(i, time, duration, int(feet[0]), pressed[feet[0]])
+        if feet:
+            self._turn(time, duration)
+            self.previous = time
+        for limb, columns in pressed.items():
+            for column in columns:
+                self._contact(i, time, limb, column)
+
+    # steps and jumps
+
+    def _step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> None:
+        step, foot, other = self.settings.step, self.feet[side], self.feet[1 - side]
+        cut = float(reduction(duration, step.fast, step.longest))
+        body = self._body_yaw()
+        yaw = self._limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
+        target, yaw = self._target(i, columns, foot, yaw, stage.middle_of(other.ball, other.yaw), cut)
+        lift = min(time - duration * (1.0 - step.double_support), time - LEAST_SWING)
+        lift = min(max(lift, foot.free), time - SHORTEST)
+        height = step.height_slow + cut * (step.height_fast - step.height_slow)
+        if np.linalg.norm(target - foot.ball) < 0.05:
+            height = max(height * step.jack_height, step.height_fast)
+        pitches = self._pitches(cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
+        bulge = self._bulge(foot, target, yaw, stage.middle_of(other.ball, other.yaw))
+        self._move(foot, Swing(lift, time, _pair(target), self._toes(foot, yaw), height, pitches, bulge), target, yaw)
+
+    def _jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
+        jump, step = self.settings.jump, self.settings.step
+        cut = float(reduction(duration, step.fast, step.longest))
+        body = self._body_yaw()
+        old = [f.ball for f in self.feet]
+        ends = [self.panels[pressed[s]].mean(axis=0) for s in (0, 1)]
+        goals = []
+        for foot in self.feet:
+            yaw = self._limited(foot.yaw + jump.yaw_to_normal * (body - foot.yaw), body)
+            goals.append(self._target(i, pressed[foot.side], foot, yaw, ends[1 - foot.side], cut))
+        far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
+        apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
+        flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
+        take_off = min(max(time - flight, *(f.free for f in self.feet)), time - SHORTEST)
+        height = GRAVITY * (time - take_off) ** 2 / 8 + jump.tuck
+        middles = _pair((old[0] + old[1]) / 2), _pair((goals[0][0] + goals[1][0]) / 2)
+        for foot, (target, yaw) in zip(self.feet, goals, strict=True):
+            pitches = self._pitches(cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, pressed[foot.side])
+            toes = self._toes(foot, yaw)
+            swing = Swing(
+                take_off, time, _pair(target), toes, height, pitches, (0.0, 0.0), "jump", np.radians(turned), *middles
+            )
+            self._move(foot, swing, target, yaw)
+
+    def _move(self, foot: _Foot, swing: Swing, target: Array, yaw: float) -> None:
+        foot.swings.append(swing)
+        foot.ball, foot.yaw, foot.free = target, yaw, swing.land + FREE_WINDOW
+
+    def _target(
+        self, i: int, columns: list[int], foot: _Foot, yaw: float, other: Array, cut: float
+    ) -> tuple[Array, float]:
+        """Where the ball lands and how the foot is turned (without toe-out)."""
+        step = self.settings.step
+        if len(columns) > 1:  # a bracket: heel on one panel, toes on the other
+            parts = self.play.part[i]
+            heel = next((c for c in columns if parts[c] == Part.HEEL), columns[0])
+            toe = next(c for c in columns if c != heel)
+            along = self.panels[toe] - self.panels[heel]
+            toes = float(np.arctan2(along[0], along[1]))
+            toes += 2 * np.pi * round((yaw - toes) / (2 * np.pi))
+            middle = (self.panels[toe] + self.panels[heel]) / 2
+            return stage.ball_of(middle, toes), toes - foot.outward * np.radians(step.toe_out)
+        panel = self.panels[columns[0]]
+        return stage.landing_ball(panel, self._toes(foot, yaw), other, cut, step.edge_margin, step.clearance), yaw
+
+    def _pitches(
+        self, cut: float, lift: float, most: float, land: float, columns: list[int]
+    ) -> tuple[float, float, float, float]:
+        rest = self.settings.step.stream_pitch * cut
+        if len(columns) > 1:
+            land = rest = 0.0  # heel and toes of a bracket come down together
+        out = np.radians([lift, most * (1.0 - 0.5 * cut), land + 0.3 * rest, rest])
+        return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
+
+    def _bulge(self, foot: _Foot, target: Array, yaw: float, other: Array) -> tuple[float, float]:
+        """Sideways detour that keeps the swinging foot clear of the standing one."""
+        a, b = stage.middle_of(foot.ball, foot.yaw), stage.middle_of(target, yaw)
+        path = b - a
+        length = float(np.linalg.norm(path))
+        if length < 0.05:
+            return 0.0, 0.0
+        along = float(np.dot(other - a, path)) / length**2
+        if not 0.1 < along < 0.9:
+            return 0.0, 0.0
+        away = a + along * path - other
+        distance = float(np.linalg.norm(away))
+        clearance = self.settings.step.clearance
+        if distance >= clearance:
+            return 0.0, 0.0
+        aside = np.array([path[1], -path[0]]) / length
+        if float(np.dot(away, aside)) < 0:
+            aside = -aside
+        return _pair(aside * (clearance - distance) / max(np.sin(np.pi * along) ** 2, 0.35))
+
+    # turning
+
+    def _body_yaw(self) -> float:
+        """The yaw that the body aims at for the current feet normal, radians: crossed feet turn it less."""
+        whole = 360.0 * round(self.normal / 360.0)
+        rest = abs(self.normal - whole)
+        k = self.settings.step.crossover_turn
+        if rest > 135.0:
+            at_135 = 90.0 + 45.0 * k
+            rest = at_135 + (rest - 135.0) / 45.0 * (180.0 - at_135)
+        elif rest > 90.0:
+            rest = 90.0 + (rest - 90.0) * k
+        return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
+
+    def _limited(self, yaw: float, body: float) -> float:
+        limit = np.radians(self.settings.step.foot_turn)
+        return float(np.clip(yaw, body - limit, body + limit))
+
+    def _toes(self, foot: _Foot, yaw: float) -> float:
+        return float(yaw + foot.outward * np.radians(self.settings.step.toe_out))
+
+    def _turn(self, time: float, duration: float) -> None:
+        mean = (self.feet[0].yaw + self.feet[1].yaw) / 2
+        yaw = mean + self.settings.body.turn_to_feet * (self._body_yaw() - mean)
+        self.turns.append(Turn(time - duration, time, yaw))
+
+    # mines, hands, contacts
+
+    def _mines(self, i: int, time: float, pressed: dict[int, list[int]]) -> None:
+        """A foot that the solver sends home was threatened by a mine: it goes up, and down again behind the mine."""
+        if i == 0:
+            return
+        mines = self.settings.mines
+        for foot in self.feet:
+            if self.play.feet[i, foot.side] >= 0 or self.play.feet[i - 1, foot.side] < 0 or foot.side in pressed:
+                continue
+            up = max(time - mines.before - 0.1, foot.free)
+            inner = np.array([0.0, 0.0]) + 0.9 * foot.ball
+            foot.swings.append(
+                Swing(up, time + mines.after + 0.1, _pair(inner), self._toes(foot, foot.yaw), mines.height,
+                      (0.1, 0.2, 0.05, 0.0), kind="evade")
+            )  # fmt: skip
+            foot.ball, foot.free = inner, time + mines.after + 0.1
+
+    def _contact(self, i: int, time: float, limb: int, column: int) -> None:
+        kind = int(self.play.rows.steps[i, column])
+        end = np.inf
+        if kind == StepKind.HOLD:
+            end = self.second(int(self.play.rows.hold_end[i, column]))
+            if limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
+                self.feet[limb].free = max(self.feet[limb].free, end)
+        panel = _pair(self.panels[column])
+        if limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
+            end = max(time + self.settings.hands.press, end if end < np.inf else 0.0)
+            self.presses.append(Press(time, end, limb - Limb.LEFT_HAND, panel))
+        self.contacts.append(Contact(time, end, limb, column, kind, int(self.play.part[i, column]), i, panel))
+
+    def _ended(self, contact: Contact) -> Contact:
+        """A tap ends when its foot leaves the panel."""
+        if contact.end < np.inf:
+            return contact
+        lifts = [s.lift for s in self.feet[contact.limb].swings]
+        k = int(np.searchsorted(lifts, contact.start))
+        end = lifts[k] if k < len(lifts) else contact.start + self.settings.step.longest
+        return Contact(
+            contact.start, end, contact.limb, contact.column, contact.kind, contact.part, contact.row, contact.panel
+        )
+
+
+def _pair(v: Array) -> tuple[float, float]:
+    return float(v[0]), float(v[1])

@@ -1,0 +1,73 @@
+"""Targets of the full-body IK at the times of the output, from the paths of feet, body and hands."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.arms import arm_targets
+from dancetutor_cli.motion.body import BodyPath, ankle_of
+from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.ik import Targets
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+UP = np.array([0.0, 1.0, 0.0])
+ACROSS = np.array([1.0, 0.0, 0.0])
+PELVIS_SHARE = 0.3  # the pelvis tilts this part of the chest's tilt
+
+
+def sample_path(path: Array, times: Array, at: Array) -> Array:
+    """Linear interpolation of an evenly spaced path (n, ...) at other times (f,), ends held."""
+    x = np.clip((at - times[0]) * ((len(times) - 1) / (times[-1] - times[0])), 0.0, len(times) - 1.0)
+    i = np.minimum(x.astype(np.int64), len(times) - 2)
+    w = (x - i).reshape(-1, *([1] * (path.ndim - 1)))
+    return np.asarray((1.0 - w) * path[i] + w * path[i + 1])
+
+
+def leaning(tilt: Array, yaw: Array) -> Array:
+    """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
+    angle = np.linalg.norm(tilt, axis=1)
+    axis = np.column_stack((tilt[:, 1], np.zeros_like(angle), -tilt[:, 0]))
+    axis[angle < 1e-9] = ACROSS
+    return quat.multiply(quat.from_axis_angle(axis, angle), quat.from_axis_angle(UP, yaw))
+
+
+def ik_targets(
+    plan: Plan, body: BodyPath, feet: tuple[FootPath, FootPath], at: Array, skeleton: Skeleton, settings: MotionSettings
+) -> Targets:
+    """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+    ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
+    yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    pelvis_turn = leaning(PELVIS_SHARE * tilt, yaw)
+    chest_turn = leaning(tilt, chest_yaw)
+    rest = skeleton.rest
+    shoulders = np.stack(
+        [
+            pelvis + quat.rotate(chest_turn, rest[skeleton.index(f"{s}_shoulder")] - rest[0])
+            for s in "lr"
+        ], axis=1,
+    )  # fmt: skip
+    hands = arm_targets(plan, body, at, shoulders, chest_turn, skeleton, settings)
+    ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
+    toes = [quat.from_axis_angle(UP, f.yaw) for f in feet]
+    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(toes, feet, strict=True)]
+    return Targets(
+        pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
+        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet),
+    )  # fmt: skip
+
+
+def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath]) -> Array:
+    """Knees point between the body's front and the toes, a little outward."""
+    front = np.column_stack((np.sin(yaw), np.zeros_like(yaw), np.cos(yaw)))
+    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
+    out = []
+    for side, foot in enumerate(feet):
+        toes = np.column_stack((np.sin(foot.yaw), np.zeros_like(yaw), np.cos(foot.yaw)))
+        out.append(0.4 * front + 0.6 * toes + (0.08 if side == 0 else -0.08) * left)
+    return np.stack(out, axis=1)

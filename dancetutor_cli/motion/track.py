@@ -1,0 +1,93 @@
+"""What the dancer will do, before any joint is turned: where each foot stands and when it swings, hands, turns of the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.model import Contact
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """One foot leaves the ground at `lift` and comes down at `land` (seconds).
+
+    target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
+    height : peak of the sole in metres; pitches : heel up, radians, at lift, at most, at landing, then standing
+    bulge : (x, z) added at the middle of the path, to go around the other foot
+    kind : "step", "jump", "evade" or "pivot"
+    turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
+    """
+
+    lift: float
+    land: float
+    target: tuple[float, float]
+    yaw: float
+    height: float
+    pitches: tuple[float, float, float, float]
+    bulge: tuple[float, float] = (0.0, 0.0)
+    kind: str = "step"
+    turn: float = 0.0
+    middle0: tuple[float, float] = (0.0, 0.0)
+    middle1: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FootTrack:
+    """All swings of a foot in order of time, never overlapping, and where it stood before the first."""
+
+    start: tuple[float, float]
+    start_yaw: float
+    swings: tuple[Swing, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """The body turns from where it was to `yaw` (radians, unwrapped) between `start` and `end` (seconds)."""
+
+    start: float
+    end: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """A palm is on a panel from `start` to `end`; side 0 left, 1 right; target (x, z)."""
+
+    start: float
+    end: float
+    side: int
+    target: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact."""
+
+    feet: tuple[FootTrack, FootTrack]
+    turns: tuple[Turn, ...]
+    presses: tuple[Press, ...]
+    contacts: tuple[Contact, ...]
+    centre: tuple[float, float]
+    first: float
+    last: float
+
+
+def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
+    """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
+    out = []
+    left, right = (f.swings for f in feet)
+    i = j = 0
+    while i < len(left) and j < len(right):
+        start, end = max(left[i].lift, right[j].lift), min(left[i].land, right[j].land)
+        if start < end:
+            out.append((start, end))
+        if left[i].land <= right[j].land:
+            i += 1
+        else:
+            j += 1
+    return np.array(out, dtype=np.float64).reshape(-1, 2)

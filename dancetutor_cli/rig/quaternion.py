@@ -1,0 +1,126 @@
+"""Rotations as unit quaternions: stateless functions on arrays of shape (..., 4), components (w, x, y, z).
+
+Products are Hamilton products: ``multiply(a, b)`` rotates by b first, then by a. An additive layer in local space is
+therefore ``multiply(main, layer)``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def normalize(q: ArrayLike) -> Array:
+    """Unit quaternions of the same directions; zero becomes the identity."""
+    q = np.asarray(q, dtype=np.float64)
+    length = np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.where(length > 0, q / np.where(length > 0, length, 1.0), IDENTITY)
+
+
+def multiply(a: ArrayLike, b: ArrayLike) -> Array:
+    """The rotation b followed by the rotation a; shapes broadcast."""
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    aw, ax, ay, az = np.moveaxis(a, -1, 0)
+    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    return np.stack(
+        (
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ),
+        axis=-1,
+    )
+
+
+def conjugate(q: ArrayLike) -> Array:
+    """The inverse of unit quaternions."""
+    return np.asarray(q, dtype=np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def rotate(q: ArrayLike, v: ArrayLike) -> Array:
+    """Vectors v (..., 3) turned by q (..., 4); shapes broadcast."""
+    q, v = np.asarray(q, dtype=np.float64), np.asarray(v, dtype=np.float64)
+    axis = q[..., 1:]
+    t = 2.0 * np.cross(axis, v)
+    return v + q[..., :1] * t + np.cross(axis, t)
+
+
+def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """Turn by `angle` (radians, shape (...)) about `axis` (..., 3), which need not be of unit length."""
+    axis = np.asarray(axis, dtype=np.float64)
+    half = np.asarray(angle, dtype=np.float64)[..., None] / 2
+    unit = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+    return _join(np.cos(half), np.sin(half) * unit)
+
+
+def _join(w: Array, xyz: Array) -> Array:
+    shape = np.broadcast_shapes(w.shape[:-1], xyz.shape[:-1])
+    return np.concatenate((np.broadcast_to(w, (*shape, 1)), np.broadcast_to(xyz, (*shape, 3))), axis=-1)
+
+
+def between(a: ArrayLike, b: ArrayLike) -> Array:
+    """The shortest turn that takes direction a (..., 3) to direction b (..., 3).
+
+    Opposite directions turn half around about an axis perpendicular to a.
+    """
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    a = a / np.linalg.norm(a, axis=-1, keepdims=True)
+    b = b / np.linalg.norm(b, axis=-1, keepdims=True)
+    a, b = np.broadcast_arrays(a, b)
+    w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
+    opposite = w < 1e-9
+    aside = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+    axis = np.where(opposite, np.cross(a, aside), np.cross(a, b))
+    return normalize(_join(np.where(opposite, 0.0, w), axis))
+
+
+def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> Array:
+    """Great-circle interpolation on the short arc; t (...) from 0 (a) to 1 (b)."""
+    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    t = np.asarray(t, dtype=np.float64)[..., None]
+    dot = np.sum(a * b, axis=-1, keepdims=True)
+    b = np.where(dot < 0, -b, b)
+    angle = np.arccos(np.clip(np.abs(dot), 0.0, 1.0))
+    sine = np.sin(angle)
+    small = sine < 1e-6  # nearly equal: the chord is the arc
+    divisor = np.where(small, 1.0, sine)
+    left = np.where(small, 1.0 - t, np.sin((1.0 - t) * angle) / divisor)
+    right = np.where(small, t, np.sin(t * angle) / divisor)
+    return normalize(left * a + right * b)
+
+
+def to_matrix(q: ArrayLike) -> Array:
+    """Rotation matrices (..., 3, 3) that act on column vectors."""
+    w, x, y, z = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def angle_between(a: ArrayLike, b: ArrayLike) -> Array:
+    """Angle in radians, 0 to pi, of the turn that leads from a to b."""
+    d = multiply(conjugate(a), b)
+    return np.asarray(2.0 * np.arctan2(np.linalg.norm(d[..., 1:], axis=-1), np.abs(d[..., 0])))
+
+
+def swing_twist(q: ArrayLike, axis: ArrayLike) -> tuple[Array, Array]:
+    """Split q = swing * twist, the twist about the unit vector `axis` (3,); returns (swing, twist)."""
+    q, axis = np.asarray(q, dtype=np.float64), np.asarray(axis, dtype=np.float64)
+    along = np.sum(q[..., 1:] * axis, axis=-1, keepdims=True)
+    twist = normalize(_join(q[..., :1], along * axis))
+    return multiply(q, conjugate(twist)), twist
+
+
+def continuous(q: Array) -> Array:
+    """The same rotations (f, ..., 4) with signs chosen so that neighbours in time are on the short arc."""
+    dot = np.sum(q[1:] * q[:-1], axis=-1, keepdims=True)
+    sign = np.concatenate((np.ones_like(dot[:1]), np.cumprod(np.where(dot < 0, -1.0, 1.0), axis=0)))
+    return np.asarray(q * sign)

@@ -1,0 +1,69 @@
+"""Forward kinematics against a slow walk up the tree with matrices; soles and masses against the rest pose."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import joint_matrices, local_rotations, world_transforms
+from dancetutor_cli.rig.mass import centre_of_mass, mass_points
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
+
+SKELETON = dancer_skeleton()
+J = len(SKELETON.names)
+
+
+def random_pose(frames: int, seed: int = 3) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return quat.normalize(rng.normal(size=(frames, J, 4))), rng.normal(size=(frames, 3))
+
+
+def test_places_agree_with_matrices_multiplied_up_the_tree() -> None:
+    rotations, root = random_pose(4)
+    matrices = joint_matrices(SKELETON, rotations, root)
+    for f in range(4):
+        for joint in range(J):
+            expected, j = np.eye(4), joint
+            while j >= 0:
+                local = np.eye(4)
+                local[:3, :3] = quat.to_matrix(rotations[f, j])
+                local[:3, 3] = SKELETON.offsets[j] if SKELETON.parents[j] >= 0 else root[f]
+                expected, j = local @ expected, SKELETON.parents[j]
+            np.testing.assert_allclose(matrices[f, joint], expected, atol=1e-12)
+
+
+def test_local_rotations_undo_world_rotations() -> None:
+    rotations, root = random_pose(5)
+    _, world = world_transforms(SKELETON, rotations, root)
+    np.testing.assert_allclose(local_rotations(SKELETON, world), rotations, atol=1e-12)
+
+
+def rest_pose() -> tuple[np.ndarray, np.ndarray]:
+    return np.tile(quat.IDENTITY, (1, J, 1)), SKELETON.offsets[None, 0]
+
+
+def test_soles_stand_on_the_ground_and_are_mirror_images() -> None:
+    left, right = (points_in_world(SKELETON, p, *rest_pose())[0] for p in sole_points(SKELETON))
+    np.testing.assert_allclose(left[:, 1], 0, atol=1e-12)
+    np.testing.assert_allclose(left * [-1, 1, 1], right, atol=1e-12)
+    assert left[:, 0].mean() == pytest.approx(0.088, abs=0.01)
+
+
+def test_palms_face_the_thighs() -> None:
+    rest = SKELETON.rest
+    for side, palm, sign in zip("lr", palm_points(SKELETON), (1, -1), strict=True):
+        place = points_in_world(SKELETON, (palm,), *rest_pose())[0, 0]
+        wrist = rest[SKELETON.index(f"{side}_radiocarpal")]
+        elbow = rest[SKELETON.index(f"{side}_elbow")]
+        assert np.linalg.norm(place - elbow) > np.linalg.norm(wrist - elbow)
+        assert (place - wrist)[0] * sign < 0.085 * np.sqrt(0.5)  # inside the line of the arm
+
+
+def test_centre_of_mass_of_the_rest_pose_is_that_of_a_woman() -> None:
+    _, masses, _ = mass_points(SKELETON)
+    assert masses.sum() == pytest.approx(1)
+    com = centre_of_mass(SKELETON, *world_transforms(SKELETON, *rest_pose()))[0]
+    assert com[0] == pytest.approx(0, abs=1e-9)
+    assert 0.53 * 1.70 < com[1] < 0.59 * 1.70  # textbook: 54 to 57 % of the stature standing
