@@ -1,0 +1,215 @@
+"""The highway: notes scrolling to their receptors, with L/R markers, holds, mines, beat lines and flashes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.video import sprites
+from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle, strip
+from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
+from dancetutor_cli.video.scroll import Scroll
+from dancetutor_cli.video.text import Typeface
+
+BEATS_PER_MEASURE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayGeometry:
+    """Where the highway lies, in pixels: box (left, top, right, bottom); lane width; y of the receptors' middle.
+
+    directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
+    """
+
+    box: tuple[int, int, int, int]
+    lane: float
+    receptor: float
+    directions: tuple[float | None, ...]
+    down: bool = False
+
+    @property
+    def left(self) -> float:
+        """x of the first lane's left edge."""
+        return (self.box[0] + self.box[2] - self.lane * len(self.directions)) / 2
+
+
+class Highway:
+    """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
+
+    def __init__(
+        self,
+        notes: NoteTrack,
+        presses: Presses,
+        lines: BeatLines,
+        geometry: HighwayGeometry,
+        scroll: Scroll,
+        fastest_bpm: float,
+        face: Typeface,
+    ) -> None:
+        self.notes, self.presses, self.lines = notes, presses, lines
+        self.geometry, self.face = geometry, face
+        self.by_time = scroll.mode == "C"
+        self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
+        self.style = sprites.highway_style()
+        self.size = max(8, round(geometry.lane * self.style.arrow))
+        self.limb_colours = limb_colours().by_limb
+        self._columns = [np.flatnonzero(presses.column == c) for c in range(len(geometry.directions))]
+        self._number = lru_cache(maxsize=256)(self._draw_number)
+        self._make_sprites()
+
+    def _make_sprites(self) -> None:
+        style, size, directions = self.style, self.size, self.geometry.directions
+        colours = [style.quantisation[q] for q in sprites.QUANTISATIONS]
+        kinds = set(directions)
+        self.arrows = {(d, q): sprites.arrow(size, d, c) for d in kinds for q, c in enumerate(colours)}
+        lifts = bool((self.notes.kind == Kind.LIFT).any())
+        self.lifts = {(d, q): sprites.arrow(size, d, c, True) for d in kinds for q, c in enumerate(colours) if lifts}
+        self.fakes = {d: sprites.arrow(size, d, style.fake) for d in kinds}
+        self.receptors = {d: sprites.receptor(size, d, style.receptor) for d in kinds}
+        unknown = style.receptor
+        self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in enumerate((*self.limb_colours, unknown))}
+        self.mine = sprites.mine(size, style.mine)
+        body = max(4, round(0.62 * size))
+        self.bodies = {k: sprites.hold_body(body, c, k == Kind.ROLL) for k, c in self._hold_colours()}
+        self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
+        mark = max(6, round(style.mark * self.geometry.lane))
+        self.marks = [sprites.marker(mark, limb, self.face) for limb in range(4)]
+        self.mark_shade = sprites.shade(round(1.35 * mark))
+
+    def _hold_colours(self) -> list[tuple[Kind, tuple[int, int, int]]]:
+        return [(Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)]
+
+    def background(self, frame: Frame) -> None:
+        """The still part, drawn once: panel and lanes."""
+        left, top, right, bottom = self.geometry.box
+        rectangle(frame, left, top, right, bottom, self.style.background, 0.82)
+        lane, x0 = self.geometry.lane, self.geometry.left
+        edge = 0.14 * lane
+        x1 = x0 + lane * len(self.geometry.directions)
+        rectangle(frame, x0 - edge, top, x1 + edge, bottom, (0, 0, 0), 0.35)
+        for x in (x0 - edge, x1 + edge):
+            rectangle(frame, x - 1, top, x + 1, bottom, self.style.lane_line, 0.3)
+        for i in range(1, len(self.geometry.directions)):
+            rectangle(frame, x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom, self.style.lane_line, 0.08)
+
+    def draw(self, frame: Frame, second: float, beat: float) -> None:
+        """Draw everything that moves at `second` of the music; `beat` as drawn (scroll segments applied)."""
+        self._draw_lines(frame, second, beat)
+        self._draw_receptors(frame, second, beat)
+        self._draw_notes(frame, second, beat)
+
+    def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], second: float, beat: float) -> NDArray[np.float64]:
+        """Middle of things at `seconds`/`beats` on the screen, pixels."""
+        away = seconds - second if self.by_time else beats - beat
+        result: NDArray[np.float64] = self.geometry.receptor + away * self.spacing
+        return result
+
+    def _visible(self, y: NDArray[np.float64], margin: float) -> NDArray[np.bool_]:
+        _, top, _, bottom = self.geometry.box
+        return (y > top - margin) & (y < bottom + margin)
+
+    def _draw_lines(self, frame: Frame, second: float, beat: float) -> None:
+        y = self._y(self.lines.second, self.lines.beat, second, beat)
+        lane = self.geometry.lane
+        shown = np.flatnonzero(self._visible(y, 2))
+        if len(shown) > 400:  # so dense that lines would be a wall
+            shown = shown[shown % BEATS_PER_MEASURE == 0][:400]
+        x0 = self.geometry.left - 0.14 * lane
+        x1 = self.geometry.left + lane * (len(self.geometry.directions) + 0.14)
+        last_label = -1e9
+        for i in shown:
+            strong = i % BEATS_PER_MEASURE == 0
+            half = (1.25 if strong else 0.6) * lane / 84
+            rectangle(frame, x0, y[i] - half, x1, y[i] + half, self.style.lane_line, 0.42 if strong else 0.13)
+            if strong and abs(y[i] - last_label) > 0.3 * lane:
+                last_label = y[i]
+                number = self._number(int(i) // BEATS_PER_MEASURE)
+                x = x0 - number.shape[1] - 0.06 * lane
+                blit(frame, number, x, y[i] - number.shape[0] / 2, 0.75, self._rows)
+
+    @property
+    def _rows(self) -> tuple[int, int]:
+        return self.geometry.box[1], self.geometry.box[3]
+
+    def _draw_number(self, measure: int) -> Sprite:
+        return self.face.sprite(str(measure), 0.21 * self.geometry.lane, (190, 196, 220))
+
+    def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
+        pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
+        for column, direction in enumerate(self.geometry.directions):
+            x, y = self._corner(column, self.geometry.receptor, self.size)
+            blit(frame, self.receptors[direction], x, y, 0.95, self._rows, pulse)
+            light, limb = self.light(column, second)
+            if light > 0:
+                glow = self.glows[direction, limb if limb >= 0 else 4]
+                gx, gy = self._corner(column, self.geometry.receptor, glow.shape[0])
+                blit(frame, glow, gx, gy, light, self._rows)
+
+    def light(self, column: int, second: float) -> tuple[float, int]:
+        """How brightly a receptor is lit, 0..1, and by which limb: at once at the note, fading, steady in a hold."""
+        mine = self._columns[column]
+        last = int(np.searchsorted(self.presses.start[mine], second + 1e-6, side="right")) - 1
+        if last < 0:
+            return 0.0, -1
+        press = mine[last]
+        since = second - max(self.presses.start[press], min(second, self.presses.end[press]))
+        left = 1.0 - since / self.style.flash_seconds
+        steady = second < self.presses.end[press]
+        fresh = 1.0 - (second - self.presses.start[press]) / self.style.flash_seconds
+        level = max(0.62, fresh) if steady else 0.0 if left <= 0 else left**1.5
+        return level, int(self.presses.limb[press])
+
+    def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
+        return self.geometry.left + (column + 0.5) * self.geometry.lane - size / 2, y - size / 2
+
+    def _draw_notes(self, frame: Frame, second: float, beat: float) -> None:
+        notes = self.notes
+        y = self._y(notes.second, notes.beat, second, beat)
+        tail = self._y(notes.end_second, notes.end_beat, second, beat)
+        gone = (notes.end_second <= second + 1e-6) & notes.judged & (notes.kind != Kind.MINE)
+        low, high = np.minimum(y, tail), np.maximum(y, tail)
+        _, top, _, bottom = self.geometry.box
+        shown = np.flatnonzero(~gone & (high > top - self.size) & (low < bottom + self.size))
+        if len(shown) > 3000:
+            shown = shown[:3000]  # beyond any readable density; keeps hostile charts bounded
+        held = (notes.second <= second + 1e-6) & notes.judged
+        holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
+        for i in shown[holds]:
+            self._draw_hold(frame, int(i), self.geometry.receptor if held[i] else y[i], y[i], tail[i], bool(held[i]))
+        for i in shown[::-1]:  # the nearest note on top
+            self._draw_head(frame, int(i), self.geometry.receptor if held[i] and notes.kind[i] != Kind.MINE else y[i])
+
+    def _draw_hold(self, frame: Frame, i: int, head: float, phase: float, tail: float, active: bool) -> None:
+        kind = Kind(int(self.notes.kind[i]))
+        tile, end = self.bodies[kind], self.tails[kind]
+        x, _ = self._corner(int(self.notes.column[i]), 0, tile.shape[1])
+        opacity = 1.0 if active else 0.78
+        upper, lower = min(head, tail), max(head, tail)
+        strip(frame, tile, x, upper, lower, phase, opacity, self._rows)
+        if tail >= head:
+            blit(frame, end, x, tail, opacity, self._rows)
+        else:
+            blit(frame, np.ascontiguousarray(end[::-1]), x, tail - end.shape[0], opacity, self._rows)
+
+    def _draw_head(self, frame: Frame, i: int, y: float) -> None:
+        notes = self.notes
+        column, kind = int(notes.column[i]), Kind(int(notes.kind[i]))
+        direction, q = self.geometry.directions[column], int(notes.quantisation[i])
+        if kind == Kind.MINE:
+            sprite = self.mine
+        elif kind == Kind.FAKE or not notes.judged[i]:
+            sprite = self.fakes[direction]
+        else:
+            sprite = (self.lifts if kind == Kind.LIFT else self.arrows)[direction, q]
+        x, top = self._corner(column, y, self.size)
+        blit(frame, sprite, x, top, 1.0 if notes.judged[i] else 0.55, self._rows)
+        limb = int(notes.limb[i])
+        if limb >= 0 and notes.judged[i] and kind != Kind.MINE:
+            for mark in (self.mark_shade, self.marks[limb]):
+                mx, my = self._corner(column, y, mark.shape[0])
+                blit(frame, mark, mx, my, 1.0, self._rows)

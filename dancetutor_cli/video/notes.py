@@ -1,0 +1,53 @@
+"""What the highway shows, as plain arrays: notes, presses, beat lines; made from a chart and a play."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class NoteTrack:
+    """The notes of a chart, sorted by time; n notes.
+
+    second, end_second : float64 (n,), of the music; end_second = second where there is no hold
+    beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
+    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.model.Limb`
+    quantisation : int64 (n,), index into `sprites.QUANTISATIONS`; judged : bool (n,)
+    """
+
+    second: NDArray[np.float64]
+    end_second: NDArray[np.float64]
+    beat: NDArray[np.float64]
+    end_beat: NDArray[np.float64]
+    column: NDArray[np.int16]
+    kind: NDArray[np.uint8]
+    limb: NDArray[np.int8]
+    quantisation: NDArray[np.int64]
+    judged: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Presses:
+    """When which panel is pressed by whom; p presses sorted by start. Taps end where they start.
+
+    start, end : float64 (p,), seconds of the music; column : int16 (p,); limb : int8 (p,)
+    """
+
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    column: NDArray[np.int16]
+    limb: NDArray[np.int8]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+@dataclass(frozen=True, slots=True)
+class BeatLines:
+    """One entry per beat from 0 on. second, beat (as drawn) : float64 (b,); index = the beat's number."""
+
+    second: NDArray[np.float64]
+    beat: NDArray[np.float64]
