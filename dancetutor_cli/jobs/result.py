@@ -1,0 +1,59 @@
+"""What `analyze` knows about a file after the work is done: plain data that pickles and turns into JSON.
+
+Imports neither numpy nor numba, so that results can be read back quickly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from dancetutor_cli.lint.model import Finding
+
+
+@dataclass(frozen=True, slots=True)
+class ChartResult:
+    """One analysed chart. `rows` are the JSON rows of analysis-json.md, None where nobody asked for them.
+
+    counts : name of the move -> rows in which it happens
+    playable : False if the steps type has no pad; then there are no rows and no cost
+    """
+
+    index: int
+    steps_type: str
+    difficulty: str
+    meter: int
+    description: str
+    playable: bool
+    row_count: int
+    cost: int
+    counts: Mapping[str, int]
+    findings: tuple[Finding, ...]
+    rows: tuple[Mapping[str, Any], ...] | None
+
+    @property
+    def label(self) -> str:
+        """For people: "dance-single Hard 8"."""
+        return f"{self.steps_type} {self.difficulty} {self.meter}"
+
+
+@dataclass(frozen=True, slots=True)
+class FileResult:
+    """One file: either an error in one line, or its charts."""
+
+    path: str
+    title: str
+    artist: str
+    error: str | None
+    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]  # about the file, not about one chart
+    charts: tuple[ChartResult, ...]
+
+    def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
+        """Every finding with the chart it is about."""
+        for finding in self.findings:
+            yield finding, None
+        for chart in self.charts:
+            for finding in chart.findings:
+                yield finding, chart

@@ -1,0 +1,35 @@
+"""Run the rules over a file or a chart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.lint.rule import ChartRule, FileRule
+from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+
+def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
+    """Findings about the file as a whole, in order of line and rule."""
+    findings: list[Finding] = []
+    for code, options in settings.active().items():
+        rule = all_rules()[code]
+        if issubclass(rule, FileRule):
+            findings += rule(options["severity"], options).check(subject)
+    return _in_order(findings)
+
+
+def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
+    """Findings about one chart, in order of line and rule."""
+    findings: list[Finding] = []
+    for code, options in settings.active().items():
+        rule = all_rules()[code]
+        if issubclass(rule, ChartRule):
+            findings += rule(options["severity"], options).check(subject)
+    return _in_order(findings)
+
+
+def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    return tuple(sorted(findings, key=lambda f: (f.line or 0, f.beat or 0.0, f.rule, f.column or 0)))

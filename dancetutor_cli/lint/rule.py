@@ -1,0 +1,62 @@
+"""The abstract bases of rules: one small class per file under `rules/`, its docstring is its documentation."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack"}
+
+
+class Rule(ABC):
+    """A check with a code ("DT201") and a name ("doublestep").
+
+    The code's first digit is the family (`FAMILIES`). Severity and options come from configs/lint/default.yaml;
+    `options` is what holds for the chart in hand.
+    """
+
+    code: ClassVar[str]
+    name: ClassVar[str]
+
+    def __init__(self, severity: str, options: Mapping[str, Any]) -> None:
+        self.severity = severity
+        self.options = options
+
+    def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
+        """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
+        return Finding(self.code, self.name, self.severity, message, **{**place, **more})
+
+
+class FileRule(Rule):
+    """A rule about a file as a whole."""
+
+    @abstractmethod
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """Findings in one file."""
+
+
+class ChartRule(Rule):
+    """A rule about one chart."""
+
+    @abstractmethod
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """Findings in one chart."""
+
+
+class MoveRule(ChartRule):
+    """A chart rule that reports every row in which a named move happens."""
+
+    move: ClassVar[str]
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each row with the move."""
+        for row in subject.rows_with(self.move):
+            yield self.finding(self.message(subject, row), subject.at_row(row))
+
+    @abstractmethod
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """What to say about this row."""

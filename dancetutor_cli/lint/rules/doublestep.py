@@ -1,0 +1,36 @@
+"""DT201: one foot steps twice in a row on different panels."""
+
+from __future__ import annotations
+
+from dancetutor_cli.lint.rule import MoveRule
+from dancetutor_cli.lint.subject import ChartSubject
+
+
+class Doublestep(MoveRule):
+    """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
+
+    Players expect left and right in turn; a doublestep in a stream makes them stumble and is mostly an accident of
+    the pattern before it. Doublesteps that a hold forces are not reported.
+
+    Bad: the left foot has to play two different arrows:
+
+        <  .  .  .   L
+        .  .  .  >   R
+        <  .  .  .   L
+        .  v  .  .   L
+
+    Better: the right foot comes in between:
+
+        <  .  .  .   L
+        .  .  .  >   R
+        <  .  .  .   L
+        .  .  ^  .   R
+    """
+
+    code = "DT201"
+    name = "doublestep"
+    move = "doublestep"
+
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """Which foot."""
+        return f"the {subject.foot_name(row)} foot steps twice in a row though the other is free"

@@ -1,0 +1,33 @@
+"""DT202: the body turns all the way round."""
+
+from __future__ import annotations
+
+from dancetutor_cli.lint.rule import MoveRule
+from dancetutor_cli.lint.subject import ChartSubject
+
+
+class Spin(MoveRule):
+    """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins.
+
+    Bad: a crossover that is not unwound but continued:
+
+        .  v  .  .   L
+        .  .  .  >   R
+        .  .  ^  .   L
+        <  .  .  .   R
+
+    Better: back the way it came:
+
+        .  v  .  .   L
+        .  .  .  >   R
+        .  v  .  .   L
+        <  .  .  .   R
+    """
+
+    code = "DT202"
+    name = "spin"
+    move = "spin"
+
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """The same for every spin."""
+        return "the body turns beyond 180 degrees: a spin"

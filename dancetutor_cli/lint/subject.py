@@ -1,0 +1,132 @@
+"""What a rule looks at: a file, or one chart with its play, and where things stand in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.play.model import Limb, Play
+
+
+@dataclass(frozen=True)
+class FileSubject:
+    """One readable chart file."""
+
+    song: Song
+
+    def place(self, line: int | None = None) -> dict[str, Any]:
+        """Where a finding about the file stands, as keyword arguments of `Finding`."""
+        return {"line": line, "column": None if line is None else 1}
+
+
+@dataclass(frozen=True)
+class ChartSubject:
+    """One chart; `play` is None where the steps type has no pad."""
+
+    song: Song
+    chart: Chart
+    play: Play | None
+
+    @cached_property
+    def _rows_by_move(self) -> Mapping[str, list[int]]:
+        index: dict[str, list[int]] = {}
+        for row, names in enumerate(self.play.moves if self.play else ()):
+            for name in names:
+                index.setdefault(name, []).append(row)
+        return index
+
+    @property
+    def row_count(self) -> int:
+        """Rows of the play; 0 without one."""
+        return len(self.play.rows) if self.play else 0
+
+    def rows_with(self, move: str) -> list[int]:
+        """Rows of the play in which a move of this name happens, in order."""
+        return self._rows_by_move.get(move, [])
+
+    def pressed(self, row: int) -> list[int]:
+        """Note columns that have a step in a row of the play."""
+        assert self.play is not None
+        return [int(column) for column in np.flatnonzero(self.play.rows.steps[row])]
+
+    def foot_name(self, row: int) -> str:
+        """ "left" or "right": the foot that presses the first panel of a row which only one foot steps."""
+        assert self.play is not None
+        limbs = self.play.limb[row]
+        return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
+
+    def file_line(self, row: int) -> int:
+        """Line in the file of a row of the play; a row that only a roll made has that of the last row written before."""
+        assert self.play is not None
+        line = int(self.play.rows.line[row])
+        if line > 0 or not len(self.chart.rows.tick):
+            return max(line, self.chart.line)
+        written = int(np.searchsorted(self.chart.rows.tick, self.play.rows.tick[row], side="right")) - 1
+        return int(self.chart.rows.line[max(written, 0)])
+
+    def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
+        """Where a row of the play stands, as keyword arguments of `Finding`; `note_column` defaults to its first step."""
+        assert self.play is not None
+        if note_column is None:
+            note_column = next(iter(self.pressed(row)), None)
+        line = self.file_line(row)
+        margin = None if self.play.margin is None else int(self.play.margin[row])
+        return {
+            "line": line,
+            "column": self._text_column(line, note_column or 0),
+            "note_column": note_column,
+            "margin": None if margin is None or margin < 0 else margin,
+            **self._time(int(self.play.rows.tick[row]), float(self.play.rows.second[row])),
+        }
+
+    def at_line(self, line: int | None) -> dict[str, Any]:
+        """Where a line of the chart stands; with a beat if it is a row of the note data."""
+        line = self.chart.line if line is None else line
+        place: dict[str, Any] = {"line": line, "column": 1, "chart": self.chart.index}
+        rows = self.chart.rows
+        found = int(np.searchsorted(rows.line, line))
+        if found < len(rows.line) and rows.line[found] == line:
+            tick = int(rows.tick[found])
+            place |= {"beat": tick / TICKS_PER_BEAT, "measure": int(rows.measure[found])}
+        return place
+
+    def at_chart(self) -> dict[str, Any]:
+        """Where the chart itself starts."""
+        return {"line": self.chart.line, "column": 1, "chart": self.chart.index}
+
+    def _time(self, tick: int, second: float) -> dict[str, Any]:
+        return {
+            "beat": tick / TICKS_PER_BEAT,
+            "measure": tick // TICKS_PER_MEASURE,
+            "second": second,
+            "chart": self.chart.index,
+        }
+
+    def _text_column(self, line: int, note_column: int) -> int:
+        """1-based column of a note's character on its line; keysounds and blanks before it are counted."""
+        rows = self.chart.rows
+        found = int(np.searchsorted(rows.line, line))
+        if found >= len(rows.line) or rows.line[found] != line:
+            return 1
+        start, end = int(rows.start[found]), int(rows.end[found])
+        line_start = self.song.data.rfind(b"\n", 0, start) + 1
+        places = list(_note_offsets(self.song.data[start:end]))
+        inside = places[note_column] if note_column < len(places) else 0
+        return start - line_start + inside + 1
+
+
+def _note_offsets(row: bytes) -> Iterator[int]:
+    """Offsets of the note characters of a row; ``[...]`` keysounds stand between them."""
+    inside_keysound = False
+    for offset, byte in enumerate(row):
+        if inside_keysound:
+            inside_keysound = byte != ord("]")
+        elif byte == ord("["):
+            inside_keysound = True
+        else:
+            yield offset
