@@ -110,7 +110,7 @@ def _press(
     leaving = np.clip((t - press.end) / down, 0.0, 1.0)
     across = smooth(going) * (1.0 - smooth(leaving))
     # straight down at a definite speed, so that the touch has a time; up again softly
-    sink = np.sin(np.pi / 2 * going) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
+    sink = (1.0 - np.cos(np.pi / 2 * going)) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
     free = wrists[near, side]
     goal = free + across[:, None] * (wrist - free)
     goal[:, 1] = wrist[1] + (1.0 - sink) * (free[:, 1] - wrist[1])

@@ -1,6 +1,7 @@
-"""Least squares over long sequences in time: every term touches a few neighbouring nodes, so the normal matrix is a band.
+"""Least squares over long sequences: every term touches a few neighbouring nodes, so the normal matrix is a band.
 
-Paths of the body are made with it: "stay near these targets, with little jerk". The cost is linear in the length of the song.
+Paths of the body are made with it: "stay near these targets, with little jerk". The cost is linear in the length of
+the song.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ REACH = 4  # most nodes that one term may touch: third differences
 
 
 class BandedLeastSquares:
-    """Collects terms  weight * (sum_i coefficients_i x[start + i] - target)^2  and finds the x (n, d) with the least sum.
+    """Collects terms  weight * (sum_i coefficients_i x[start + i] - target)^2 , finds the x (n, d) of least sum.
 
     Parameters
     ----------

@@ -21,6 +21,7 @@ def cubic_out(s: ArrayLike) -> Array:
 
 
 def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
-    """How much a move is cut for lack of time: 0 at `longest`, 1 at `fast` or less, growing as a cube (thesis 5.6.1)."""
+    """How much a move is cut for lack of time: 0 at `longest`, 1 at `fast` or less, growing as a cube
+    (thesis 5.6.1)."""
     s = np.clip((longest - np.asarray(duration, dtype=np.float64)) / max(longest - fast, 1e-9), 0.0, 1.0)
     return np.asarray(s**3)

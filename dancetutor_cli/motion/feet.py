@@ -17,9 +17,9 @@ HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 @dataclass(frozen=True, slots=True)
 class FootPath:
-    """One foot at f times. ball : (f, 3), the ball of the foot over the ground (y = 0: standing); yaw, pitch : (f,) radians
+    """One foot at f times.
 
-    pitch is heel up, the toes stay level with the ground; down : (f,) bool, the ball stands on the ground;
+    ball : (f, 3), the ball of the foot over the ground (y = 0: standing); yaw, pitch : (f,) radians; pitch is heel up, the toes stay level with the ground; down : (f,) bool, the ball stands on the ground;
     progress : (f,) 0 to 1 of the swing, 0 while standing
     """
 
@@ -75,10 +75,10 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> A
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
-    """Height of the sole. It leaves the ground softly and meets it at a definite speed, so that the contact has a time."""
+    """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
     height = np.array([w.height for w in track.swings])[i]
     evade = np.array([w.kind == "evade" for w in track.swings])[i]
-    return np.asarray(height * np.where(evade, 1.0 - (2.0 * s - 1.0) ** 4, np.sin(np.pi * s**1.25)))
+    return np.asarray(height * np.where(evade, 1.0 - (2.0 * s - 1.0) ** 4, np.sin(np.pi * s**1.35)))
 
 
 def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations, all frames at once.
+"""Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames.
 
 Order of work in a frame (spec/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
 Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
@@ -14,7 +14,22 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.limbs import (
-    Quat, Vec, add, cross, dot, length, limb, qbetween, qconj, qframe, qlerp, qmul, qrot, scale, sub, unit,
+    Quat,
+    Vec,
+    add,
+    cross,
+    dot,
+    length,
+    limb,
+    qbetween,
+    qconj,
+    qframe,
+    qlerp,
+    qmul,
+    qrot,
+    scale,
+    sub,
+    unit,
 )  # fmt: skip
 from dancetutor_cli.rig.skeleton import Skeleton
 
@@ -203,23 +218,10 @@ def _solve(
         _put(out[joints[_VT10]], qmul(qconj(q1), q2))
         _put(out[joints[_VT4]], qmul(qconj(q2), q3))
         for side in range(2):
-            _arm(
-                f,
-                side,
-                sl if side == 0 else sr,
-                q3,
-                arm,
-                offsets,
-                joints,
-                hinges,
-                wrists,
-                hand_turn,
-                pinned,
-                elbows,
-                out,
-            )
-            _leg(f, side, add(place, qrot(turn, hips[side])), turn, offsets, joints, reach, ankles, feet_turn, toes_turn,
-                 knees, out)  # fmt: skip
+            hip = add(place, qrot(turn, hips[side]))
+            shoulder = sl if side == 0 else sr
+            _arm(f, side, shoulder, q3, arm, offsets, joints, hinges, wrists, hand_turn, pinned, elbows, out)
+            _leg(f, side, hip, turn, offsets, joints, reach, ankles, feet_turn, toes_turn, knees, out)
 
 
 @njit(cache=True)
@@ -250,8 +252,8 @@ def _arm(
 
 @njit(cache=True)
 def _leg(
-    f: int, side: int, hip: Vec, turn: Quat, offsets: Array, joints: Array, most: float, ankles: Array, feet_turn: Array,
-    toes_turn: Array, knees: Array, out: Array,
+    f: int, side: int, hip: Vec, turn: Quat, offsets: Array, joints: Array, most: float, ankles: Array,
+    feet_turn: Array, toes_turn: Array, knees: Array, out: Array,
 ) -> None:  # fmt: skip
     base = _LEG + 4 * side
     upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])

@@ -1,4 +1,4 @@
-"""What the dancer will do, before any joint is turned: where each foot stands and when it swings, hands, turns of the body."""
+"""What the dancer will do, before any joint is turned: where and when each foot stands and swings, hands, turns."""
 
 from __future__ import annotations
 

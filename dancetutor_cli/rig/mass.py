@@ -1,7 +1,8 @@
 """How heavy each part of the dancer is, and where her centre of mass lies.
 
 Masses are fractions of the body and centres lie on the line from a part's own joint to the next one, after the
-tables of de Leva (1996, adjustments to Zatsiorsky's parameters, female), rounded; the trunk is split over our spine joints.
+tables of de Leva (1996, adjustments to Zatsiorsky's parameters, female), rounded; the trunk is split over our
+spine joints.
 """
 
 from __future__ import annotations

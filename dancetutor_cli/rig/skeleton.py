@@ -1,8 +1,8 @@
 """The dancer's joints: H-Anim names, hierarchy and rest positions.
 
 World: metres, +Y up, the dancer looks to +Z, so her left is +X. The pad's surface is y = 0. Rest pose: standing
-upright, feet parallel, arms in an A pose 45 degrees down in the frontal plane, palms facing the thighs. In the rest pose
-every local rotation is the identity and every joint's axes are the world's.
+upright, feet parallel, arms in an A pose 45 degrees down in the frontal plane, palms facing the thighs. In the rest
+pose every local rotation is the identity and every joint's axes are the world's.
 """
 
 from __future__ import annotations
