@@ -41,6 +41,8 @@ class HighwayStyle:
     arrow: float
     mark: float
     flash_seconds: float
+    difficulty: dict[str, RGB]
+    accent: RGB
 
 
 def highway_style() -> HighwayStyle:
@@ -167,11 +169,11 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> S
         p.paint(shapes.cover(np.abs(d + 5.2 * unit) - 0.9 * unit), (10, 11, 20))
     out = p.sprite()
     letter = face.sprite("R" if right else "L", (0.66 if limb < 2 else 0.52) * size, (10, 11, 20), weight=0.035 * size)
-    _centre(out, letter)
+    centre(out, letter)
     return out
 
 
-def _centre(target: Sprite, ink: Sprite) -> None:
+def centre(target: Sprite, ink: Sprite) -> None:
     """Lay `ink` over the middle of `target`, by its visible pixels."""
     ys, xs = np.nonzero(ink[..., 3] > 8)
     ink = ink[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]

@@ -1,0 +1,60 @@
+"""The film's clock: which second of the music each frame shows. The music drives; frames only sample it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dancetutor_cli.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
+
+    sound_from : the music is silent before this second (a count-in runs ahead of it)
+    """
+
+    start: float
+    end: float
+    rate: float = 1.0
+    sound_from: float = -math.inf
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts in the film."""
+        return (self.end - self.start) / self.rate
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """Maps film seconds to music seconds over one or more passes. fps : frames per second of the film."""
+
+    passes: tuple[Pass, ...]
+    fps: int
+
+    def __post_init__(self) -> None:
+        if not self.passes or any(p.end <= p.start for p in self.passes):
+            raise UsageError("the section to render is empty")
+
+    @property
+    def seconds(self) -> float:
+        """Length of the film."""
+        return sum(p.seconds for p in self.passes)
+
+    @property
+    def frames(self) -> int:
+        """Number of frames: enough to cover the film."""
+        return max(1, math.ceil(self.seconds * self.fps - 1e-6))
+
+    def at(self, frame: int) -> tuple[float, Pass]:
+        """Second of the music that a frame shows, and the pass it lies in.
+
+        Frame k is on the screen from k / fps on. What happens at a second T shows in the first frame not before T.
+        """
+        film = frame / self.fps
+        for one in self.passes:
+            if film < one.seconds - 1e-9:
+                return one.start + film * one.rate, one
+            film -= one.seconds
+        return self.passes[-1].end, self.passes[-1]

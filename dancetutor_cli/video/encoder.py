@@ -1,0 +1,117 @@
+"""Frames to files: one encoder per segment, segments joined without loss, music added; MP4, GIF, WebP or PNG pictures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from PIL import Image
+
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.video import ffmpeg
+from dancetutor_cli.video.blit import Frame
+
+Target = Literal["mp4", "gif", "webp", "png"]
+Quality = Literal["draft", "good", "best"]
+
+_CRF = {"draft": "26", "good": "20", "best": "16"}
+_PRESET = {"draft": "ultrafast", "good": "veryfast", "best": "medium"}
+# Tagged as bt709 and converted as bt709: players guess by size otherwise, and reds come out wrong.
+_BT709 = ("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv")
+_TO_BT709 = "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p"
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """How a film is written. size : (width, height), even for "mp4"; fps : frames per second."""
+
+    target: Target
+    size: tuple[int, int]
+    fps: int
+    quality: Quality = "good"
+
+    @property
+    def suffix(self) -> str:
+        """Suffix of a segment's file. Segments of GIF and WebP are kept without loss until the palette is known."""
+        return {"mp4": ".mp4", "png": ""}.get(self.target, ".mkv")
+
+    def _codec(self) -> Sequence[str]:
+        if self.target == "mp4":
+            # No B-frames at a seam, a closed group of pictures and no scene cut guessing: segments join without a trace.
+            h264 = ("-c:v", "libx264", "-preset", _PRESET[self.quality], "-crf", _CRF[self.quality], "-bf", "2")
+            group = ("-g", str(4 * self.fps), "-x264-params", "open-gop=0", "-video_track_timescale", str(self.fps * 512))
+            return ("-vf", _TO_BT709, *h264, *group, *_BT709)
+        return ("-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0")
+
+
+def target_of(path: Path) -> Target:
+    """What the name of an output file asks for; UsageError lists what there is."""
+    found = re.fullmatch(r"\.(mp4|gif|webp)", path.suffix.lower())
+    if not found:
+        raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in .mp4, .gif or .webp")
+    return found[1]  # type: ignore[return-value]
+
+
+def even_size(size: tuple[int, int]) -> tuple[int, int]:
+    """Size rounded up to even numbers, which H.264 needs."""
+    return size[0] + size[0] % 2, size[1] + size[1] % 2
+
+
+def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, first: int = 0) -> None:
+    """Write frames, uint8 (h, w, 3), to one segment; for "png" into the folder `path`, numbered from `first`.
+
+    Raises EncoderError with ffmpeg's own words if it dies, FileError if a picture cannot be written.
+    """
+    if encoding.target == "png":
+        path.mkdir(exist_ok=True)
+        for number, frame in enumerate(frames, first):
+            save_picture(frame, path / f"frame_{number:06d}.png")
+        return
+    width, height = encoding.size
+    raw = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(encoding.fps), "-i", "pipe:0")
+    arguments = ("-y", *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
+    with ffmpeg.Process((*arguments, ffmpeg.local(path)), "encoding video", write=True) as process:
+        for frame in frames:
+            process.write(np.ascontiguousarray(frame).data)
+        process.finish()
+
+
+def save_picture(frame: Frame, path: Path) -> None:
+    """Write one frame as PNG."""
+    try:
+        Image.fromarray(frame).save(path, compress_level=2)
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror or error}") from error
+
+
+def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
+    """Make the film of its segments and the sound (a WAV file or None). `work` is a folder for what it needs meanwhile."""
+    listing = work / "segments.txt"
+    lines = (f"file '{_quoted(segment)}'" for segment in segments)
+    listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
+    source = (*ffmpeg.INPUT_GUARD, "-f", "concat", "-safe", "0", "-i", ffmpeg.local(listing))
+    if encoding.target == "mp4":
+        with_sound: tuple[str, ...] = ()
+        if sound is not None:
+            with_sound = (*ffmpeg.INPUT_GUARD, "-i", ffmpeg.local(sound))
+        codec = ("-c:v", "copy", "-c:a", "aac", "-b:a", "192k", "-threads", "1")
+        tidy = ("-map_metadata", "-1", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4")
+        ffmpeg.run(("-y", *source, *with_sound, *codec, *tidy, ffmpeg.local(output)), "writing the film")
+    elif encoding.target == "gif":
+        palette = work / "palette.png"
+        ffmpeg.run(("-y", *source, "-vf", "palettegen=stats_mode=diff", ffmpeg.local(palette)), "choosing colours")
+        mix = "[0:v][1:v]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
+        images = ("-i", ffmpeg.local(palette), "-lavfi", mix, "-loop", "0", "-f", "gif")
+        ffmpeg.run(("-y", *source, *images, ffmpeg.local(output)), "writing the GIF")
+    else:
+        webp = ("-c:v", "libwebp_anim", "-q:v", "72", "-compression_level", "4", "-loop", "0", "-f", "webp")
+        ffmpeg.run(("-y", *source, *webp, ffmpeg.local(output)), "writing the WebP")
+
+
+def _quoted(path: Path) -> str:
+    """A path inside single quotes as ffmpeg's lists want it."""
+    return path.resolve().as_posix().replace("'", "'\\''")

@@ -1,0 +1,126 @@
+"""Running ffmpeg: its messages go to a file, its failures become one line, nothing from a chart becomes an option."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import IO
+
+from dancetutor_cli.errors import UnavailableError
+
+# Only local files and pipes, whatever a file's content or name asks for.
+INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
+_START = ("-nostdin", "-hide_banner", "-loglevel", "error")
+
+
+class EncoderError(UnavailableError):
+    """ffmpeg ended before its work was done; carries its own last message."""
+
+
+def executable() -> str:
+    """Path of the ffmpeg that imageio-ffmpeg brings (or that IMAGEIO_FFMPEG_EXE names)."""
+    import imageio_ffmpeg
+
+    try:
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    except RuntimeError as error:
+        raise UnavailableError("no ffmpeg found; reinstall it: pip install --force-reinstall imageio-ffmpeg") from error
+
+
+def local(path: Path) -> str:
+    """A path as ffmpeg takes it without reading a protocol or an option out of the name."""
+    return f"file:{path.resolve()}"
+
+
+def _options() -> dict[str, object]:
+    """Keep Ctrl-C from reaching ffmpeg: the program decides when its children end."""
+    if os.name == "nt":
+        return {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | 0x08000000}  # no window
+    return {"start_new_session": True}
+
+
+def _last_words(log: IO[bytes]) -> str:
+    log.seek(0)
+    lines = [line.strip() for line in log.read().decode("utf-8", "replace").splitlines() if line.strip()]
+    telling = [line for line in lines if "No space left" in line or "Permission denied" in line]
+    return (telling or lines or ["it gave no message"])[-1]
+
+
+class Process:
+    """An ffmpeg that reads its input from us, or writes its output to us. Use as a context manager."""
+
+    def __init__(self, arguments: Sequence[str], what: str, write: bool = False, read: bool = False) -> None:
+        self.what = what
+        self.log = tempfile.TemporaryFile()  # noqa: SIM115  (closed in __exit__; a pipe could fill up and deadlock)
+        command = [executable(), *_START, *arguments]
+        try:
+            self.process = subprocess.Popen(  # type: ignore[call-overload]
+                command,
+                stdin=subprocess.PIPE if write else subprocess.DEVNULL,
+                stdout=subprocess.PIPE if read else subprocess.DEVNULL,
+                stderr=self.log,
+                **_options(),
+            )
+        except OSError as error:
+            self.log.close()
+            raise EncoderError(f"ffmpeg cannot be started ({error.strerror}): {command[0]}") from error
+
+    def write(self, data: object) -> None:
+        """Give ffmpeg bytes; EncoderError with its own message if it has died."""
+        try:
+            self.process.stdin.write(data)
+        except (BrokenPipeError, OSError) as error:
+            raise self._failure() from error
+
+    def read(self) -> bytes:
+        """Everything ffmpeg writes."""
+        data: bytes = self.process.stdout.read()
+        return data
+
+    def finish(self) -> None:
+        """Wait for the end; EncoderError if it was not a good one."""
+        try:
+            if self.process.stdin is not None:
+                self.process.stdin.close()
+        except OSError as error:
+            raise self._failure() from error
+        if self.process.wait() != 0:
+            raise self._failure()
+
+    def _failure(self) -> EncoderError:
+        self.process.kill()
+        status = self.process.wait()
+        words = _last_words(self.log)
+        return EncoderError(f"ffmpeg failed while {self.what} (status {status}): {words}")
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe is not None:
+                try:
+                    pipe.close()
+                except OSError:
+                    pass  # what it still wanted to flush has no reader any more
+        self.log.close()
+
+
+def run(arguments: Sequence[str], what: str) -> None:
+    """Run ffmpeg to its end; EncoderError with its own message if it fails."""
+    with Process(arguments, what) as process:
+        process.finish()
+
+
+def bare_start() -> None:
+    """Check that ffmpeg starts at all; raises otherwise."""
+    run(["-version"], "starting")
+
+

@@ -1,0 +1,111 @@
+"""Layouts: where dancer, notes and words stand in the picture; read from configs/layouts/*.yaml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.settings import Box, load
+
+PixelBox = tuple[int, int, int, int]
+WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
+
+
+@dataclass(frozen=True, slots=True)
+class DancerPart:
+    """box : share of the picture; camera : name of a camera."""
+
+    box: Box
+    camera: str = "back"
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayPart:
+    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : C, X or M."""
+
+    box: Box
+    lane: float
+    receptor: float = 0.135
+    scroll: str = "M480"
+    down: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A place for words. box : share of the picture."""
+
+    box: Box
+
+
+@dataclass(frozen=True, slots=True)
+class WideBoxes:
+    """Other boxes for pads of more than five panels."""
+
+    dancer: Box | None = None
+    highway: Box | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for."""
+
+    size: tuple[int, int]
+    dancer: DancerPart | None = None
+    highway: HighwayPart | None = None
+    header: Part | None = None
+    legend: Part | None = None
+    progress: Part | None = None
+    wide: WideBoxes | None = None
+
+    def scale(self, size: tuple[int, int]) -> float:
+        """How many pixels one pixel of the default size has become."""
+        return min(size[0] / self.size[0], size[1] / self.size[1])
+
+    def dancer_box(self, size: tuple[int, int], columns: int) -> PixelBox:
+        """The dancer's box in pixels."""
+        assert self.dancer is not None
+        other = self.wide.dancer if self.wide and columns > WIDE_PAD else None
+        return pixels(other or self.dancer.box, size)
+
+    def highway_box(self, size: tuple[int, int], columns: int) -> PixelBox:
+        """The highway's box in pixels."""
+        assert self.highway is not None
+        other = self.wide.highway if self.wide and columns > WIDE_PAD else None
+        return pixels(other or self.highway.box, size)
+
+
+def pixels(box: Box, size: tuple[int, int]) -> PixelBox:
+    """A box in shares of the picture as (left, top, right, bottom) in pixels."""
+    left, top, right, bottom = box
+    return round(left * size[0]), round(top * size[1]), round(right * size[0]), round(bottom * size[1])
+
+
+def layout_names() -> list[str]:
+    """The layouts there are."""
+    return sorted(p.stem for p in config_path("layouts").glob("*.yaml"))
+
+
+def load_layout(name: str) -> Layout:
+    """A layout by name, or from a YAML file of the user's. UsageError lists the names there are."""
+    if name in layout_names():
+        return _checked(config_path("layouts") / f"{name}.yaml")
+    if name.endswith((".yaml", ".yml")):
+        return _checked(Path(name))
+    raise UsageError(f"unknown layout '{name}'; there are: {', '.join(layout_names())}, or give a .yaml file")
+
+
+def _checked(path: Path) -> Layout:
+    layout = load(path, Layout)
+    if layout.dancer is None and layout.highway is None:
+        raise FileError(path, "a layout needs a dancer, a highway or both")
+    for name in ("dancer", "highway", "header", "legend", "progress"):
+        part = getattr(layout, name)
+        if part is not None and not _inside(part.box):
+            raise FileError(path, f"{name}.box: left, top, right, bottom must be shares 0 to 1 in rising order")
+    return layout
+
+
+def _inside(box: Box) -> bool:
+    return 0 <= box[0] < box[2] <= 1 and 0 <= box[1] < box[3] <= 1

@@ -1,0 +1,184 @@
+"""The words of the picture: title, artist, difficulty, legend, and the strip with density, position and time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.video import shapes, sprites
+from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle
+from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.sprites import HighwayStyle
+from dancetutor_cli.video.text import Typeface
+
+WHITE = (255, 255, 255)
+SOFT = (196, 202, 222)
+INK = (12, 13, 22)
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it."""
+
+    title: str
+    artist: str
+    badge: str
+    difficulty: str
+    detail: str
+
+
+class Header:
+    """Title, artist and badge at the top left of its box, drawn once."""
+
+    def __init__(self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
+        self.box = box
+        width = box[2] - box[0]
+        title_size, small = 33 * scale, 19 * scale
+        self.lines: list[tuple[Sprite, float, float]] = []
+        y = float(box[1])
+        title = face.fit(words.title, title_size, 0.97 * width)
+        y = self._add(face.sprite(title, title_size, WHITE, weight=1.1 * scale, shadow=2 * scale), box[0], y)
+        if words.artist:
+            artist = face.fit(words.artist, small, 0.97 * width)
+            y = self._add(face.sprite(artist, small, SOFT, weight=0.25 * scale, shadow=1.5 * scale), box[0], y + 1 * scale)
+        colour = style.difficulty.get(words.difficulty, style.difficulty["Edit"])
+        badge = pill(words.badge, small * 0.95, colour, face, scale)
+        self._add(badge, box[0] + 2 * scale, y + 6 * scale)
+        if words.detail:
+            x = box[0] + badge.shape[1] + 10 * scale
+            detail = face.fit(words.detail, small * 0.85, width - badge.shape[1] - 12 * scale)
+            text = face.sprite(detail, small * 0.85, SOFT, shadow=1.5 * scale)
+            self._add(text, x, y + 6 * scale + (badge.shape[0] - text.shape[0]) / 2)
+
+    def _add(self, sprite: Sprite, x: float, y: float) -> float:
+        self.lines.append((sprite, x, y))
+        return y + sprite.shape[0]
+
+    def draw(self, frame: Frame) -> None:
+        """Lay the words over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y))
+
+
+def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface, scale: float) -> Sprite:
+    """Dark words on a coloured lozenge."""
+    words = face.sprite(text, size, INK, weight=0.7 * scale)
+    height = max(8, round(1.55 * size))
+    width = max(words.shape[1] + height // 2 + 2, height)
+    painter = shapes.Painter(height, width)
+    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, height / 2 - 1)
+    painter.paint(shapes.cover(d), colour)
+    out = painter.sprite()
+    sprites.centre(out, words)
+    return out
+
+
+class Legend:
+    """What the markers mean; hands only where the chart needs them."""
+
+    def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface) -> None:
+        names = ("left foot", "right foot", "left hand", "right hand")
+        self.lines: list[tuple[Sprite, float, float]] = []
+        x, middle = float(box[0]), (box[1] + box[3]) / 2
+        for limb in sorted({0, 1} | limbs):
+            mark = sprites.marker(max(8, round(24 * scale)), limb, face)
+            text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale, shadow=1.5 * scale)
+            if x + mark.shape[1] + text.shape[1] > box[2]:
+                break
+            self.lines.append((mark, x, middle - mark.shape[0] / 2))
+            x += mark.shape[1] + 4 * scale
+            self.lines.append((text, x, middle - text.shape[0] / 2))
+            x += text.shape[1] + 14 * scale
+
+    def draw(self, frame: Frame) -> None:
+        """Lay the legend over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y))
+
+
+@dataclass(frozen=True, slots=True)
+class SongShape:
+    """The whole song for the strip. steps : float64 (n,), seconds of its steps, sorted; start, end : shown range;
+
+    section : the rendered part, (start, end) seconds
+    """
+
+    steps: NDArray[np.float64]
+    start: float
+    end: float
+    section: tuple[float, float]
+
+
+class Progress:
+    """The strip with the density of the whole song, the position, and the time."""
+
+    def __init__(self, song: SongShape, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
+        self.song, self.box, self.scale, self.face = song, box, scale, face
+        left, top, right, bottom = box
+        self.text = 17 * scale
+        total = clock_text(song.end)
+        room = face.width(f"{total} / {total}", self.text) + 34 * scale
+        self.graph = (round(left + room), right - round(20 * scale))
+        self.ahead = self._paint(style, bright=False)
+        self.played = self._paint(style, bright=True)
+        self._sprite = lru_cache(maxsize=16)(self._time_sprite)
+
+    def _paint(self, style: HighwayStyle, bright: bool) -> Frame:
+        left, top, right, bottom = self.box
+        picture = np.empty((bottom - top, right - left, 3), dtype=np.uint8)
+        picture[...] = (9, 10, 19)
+        picture[: max(1, round(1.2 * self.scale))] = (44, 48, 70)
+        a, b = self.graph[0] - left, self.graph[1] - left
+        if b <= a:
+            return picture
+        heights = density(self.song, b - a, max(2.0, 2.0 * self.scale))
+        floor = bottom - top - 7 * self.scale
+        room = floor - 7 * self.scale
+        colour = style.accent if bright else (92, 98, 128)
+        for x, height in enumerate(heights):
+            base = 1.5 * self.scale
+            rectangle(picture, a + x, floor - base - (room - base) * height, a + x + 1, floor, colour, 0.88)
+        for edge in self.song.section:
+            x = a + self._position(edge) * (b - a)
+            if a < x < b:
+                rectangle(picture, x - self.scale, 0, x + self.scale, bottom - top, style.difficulty["Medium"], 0.8)
+        return picture
+
+    def _position(self, second: float) -> float:
+        return min(1.0, max(0.0, (second - self.song.start) / max(1e-9, self.song.end - self.song.start)))
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw the strip at `second` of the music."""
+        left, top, right, bottom = self.box
+        a, b = self.graph
+        x = a + self._position(second) * (b - a)
+        split = max(0, min(right - left, int(x) - left))
+        frame[top:bottom, left:right] = self.ahead
+        frame[top:bottom, left : left + split] = self.played[:, :split]
+        rectangle(frame, x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale, WHITE)
+        words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
+        blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
+
+    def _time_sprite(self, text: str) -> Sprite:
+        return self.face.sprite(text, self.text, WHITE, weight=0.2 * self.scale)
+
+
+def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
+    """Steps per second along the song, `bins` values, the highest 1."""
+    counts, _ = np.histogram(song.steps, bins=bins, range=(song.start, max(song.end, song.start + 1e-6)))
+    width = max(1, round(max(smooth, bins * 1.2 / max(song.end - song.start, 1.0))))
+    kernel = np.hanning(width + 2)[1:-1]
+    values = np.convolve(counts, kernel / kernel.sum(), mode="same")
+    peak = values.max(initial=0.0)
+    result: NDArray[np.float64] = values / peak if peak > 0 else values.astype(np.float64)
+    return result
+
+
+def clock_text(second: float) -> str:
+    """ "1:05", with hours where there are any; before the music it stands at 0:00."""
+    whole = int(max(0.0, second))
+    hours, rest = divmod(whole, 3600)
+    return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
