@@ -1,0 +1,117 @@
+"""The numbers of the picture (configs/picture.yaml): cameras, light, toon shading, stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.settings import load
+
+RGB = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class CameraLook:
+    """One preset camera; degrees and metres, see configs/picture.yaml."""
+
+    azimuth: float
+    elevation: float
+    field: float
+    height: float
+    margin: float
+
+
+@dataclass(frozen=True, slots=True)
+class LightLook:
+    """The one light and its shadows."""
+
+    azimuth: float
+    elevation: float
+    shadow: float
+    shadow_soft: float
+    contact: float
+    contact_soft: float
+    contact_height: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToonLook:
+    """How the dancer is shaded."""
+
+    bands: tuple[float, float]
+    soft: float
+    levels: tuple[float, float, float]
+    shade: RGB
+    rim: float
+    rim_from: float
+    outline: RGB
+    outline_width: float
+
+
+@dataclass(frozen=True, slots=True)
+class StageLook:
+    """Floor, wall and pad."""
+
+    floor: RGB
+    floor_far: RGB
+    floor_line: RGB
+    tile: float
+    pool: float
+    wall: RGB
+    wall_top: RGB
+    strip: RGB
+    radius: float
+    pad: RGB
+    pad_side: RGB
+    panel: RGB
+    panel_blank: RGB
+    groove: RGB
+    arrow: RGB
+    pad_height: float
+    mark: float
+    glow: float
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """All of configs/picture.yaml."""
+
+    cameras: dict[str, CameraLook]
+    free_field: float
+    light: LightLook
+    toon: ToonLook
+    stage: StageLook
+
+
+def read_look(path: Path) -> Look:
+    """Read and check one file; FileError names the key that is wrong."""
+    look = load(path, Look)
+    for name, camera in look.cameras.items():
+        if not 1 <= camera.field <= 120 or not -89.99 <= camera.elevation <= 89.99:
+            raise FileError(path, f"cameras.{name}: field must be 1..120 degrees and elevation -89.99..89.99")
+    positive = {
+        "free_field": look.free_field,
+        "toon.soft": look.toon.soft,
+        "stage.tile": look.stage.tile,
+        "stage.pool": look.stage.pool,
+        "stage.radius": look.stage.radius,
+        "stage.pad_height": look.stage.pad_height,
+        "light.shadow_soft": look.light.shadow_soft,
+        "light.contact_soft": look.light.contact_soft,
+        "light.contact_height": look.light.contact_height,
+    }
+    for name, value in positive.items():
+        if not value > 0:
+            raise FileError(path, f"{name}: {value:g} must be more than 0")
+    if not 20 <= look.light.elevation <= 89:
+        raise FileError(path, f"light.elevation: {look.light.elevation:g} must be 20..89 degrees")
+    return look
+
+
+@cache
+def default_look() -> Look:
+    """The look of configs/picture.yaml."""
+    return read_look(config_path("picture.yaml"))

@@ -1,0 +1,72 @@
+"""The one interface of both renderers, and the choice between them."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import UnavailableError, UsageError
+from dancetutor_cli.video.scene import FrameState, Scene
+
+Quality = Literal["draft", "good", "best"]
+RendererKind = Literal["auto", "cpu", "gl"]
+QUALITIES: tuple[Quality, ...] = ("draft", "good", "best")
+KINDS: tuple[RendererKind, ...] = ("auto", "cpu", "gl")
+
+
+class Renderer(Protocol):
+    """Draws frames of one scene in one size. Not to be shared between threads; made after a process has started."""
+
+    @property
+    def name(self) -> str:
+        """``cpu`` or ``gl``."""
+
+    @property
+    def description(self) -> str:
+        """One line for people: what draws, and how."""
+
+    def frame(self, state: FrameState) -> NDArray[np.uint8]:
+        """Draw one frame: uint8 (h, w, 3), sRGB, top row first.
+
+        The array belongs to the renderer and is overwritten by the next call; the caller may draw on it until then.
+        """
+
+    def close(self) -> None:
+        """Give back what the renderer holds. It cannot draw after that."""
+
+
+def create(
+    scene: Scene, size: tuple[int, int] = (1280, 720), quality: Quality = "good", kind: RendererKind = "auto"
+) -> Renderer:
+    """Make a renderer.
+
+    Parameters
+    ----------
+    scene : what to draw; size : (width, height) in pixels
+    quality : ``draft`` one sample a pixel and no cast shadow, ``good`` 2x2 samples, ``best`` 4x4 samples
+    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` where it is a real GPU
+
+    Raises
+    ------
+    UsageError : unknown quality or kind, or a size that no picture can have
+    UnavailableError : ``gl`` was asked for and there is no OpenGL
+    """
+    if quality not in QUALITIES:
+        raise UsageError(f"no quality '{quality}'; there are: {', '.join(QUALITIES)}")
+    if kind not in KINDS:
+        raise UsageError(f"no renderer '{kind}'; there are: {', '.join(KINDS)}")
+    if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
+        raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
+    if kind == "auto":
+        kind = "gl" if _gpu() else "cpu"
+    if kind == "gl":
+        raise UnavailableError("the gl renderer is not there yet; use --renderer cpu")
+    from dancetutor_cli.video.cpu.renderer import CpuRenderer
+
+    return CpuRenderer(scene, size, quality)
+
+
+def _gpu() -> bool:
+    return False

@@ -1,0 +1,122 @@
+"""What is in the picture: the scene that stands still, and the state of one frame. Both renderers draw from these."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.model import Character
+from dancetutor_cli.colours import LimbColours, limb_colours
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.video.camera import WHOLE, Camera, Region, parse
+from dancetutor_cli.video.look import Look, default_look
+from dancetutor_cli.video.stage import PadLike, Stage, build_stage, pad_extent
+
+Array = NDArray[np.float64]
+SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
+_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # how far that line reaches beyond ankle and ball, (x, z) at rest
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Everything that does not change during a video.
+
+    character : the dancer; pad : where the panels are; stage : the surfaces around her
+    """
+
+    character: Character
+    pad: PadLike
+    look: Look = field(default_factory=default_look)
+    colours: LimbColours = field(default_factory=limb_colours)
+    stage: Stage = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stage", build_stage(self.pad, self.look.stage))
+
+    @property
+    def extent(self) -> tuple[Array, Array]:
+        """Least and greatest corner (3,) of the pad's surface in the world, metres."""
+        return pad_extent(self.stage.tiles)
+
+    @property
+    def panels(self) -> int:
+        """Number of panels that can light up."""
+        return len(self.pad.panels)
+
+    def camera(self, text: str, size: tuple[int, int], region: Region = WHOLE) -> Camera:
+        """A camera by name or ``x,y,z/x,y,z`` for a picture of that size; she fills `region` (0..1) of it."""
+        return parse(text, self.extent, size, self.look, region)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameState:
+    """One frame.
+
+    joints : float64 (j, 4, 4), world matrices of the character's joints, see `rig.kinematics.joint_matrices`
+    camera : where it is seen from; frames from one camera (but for its pan) are quick, a moved camera redraws the stage
+    lit : float (panels,), 0 dark to 1 fully lit; lit_by : int (panels,), `play.model.Limb` whose colour a panel has
+    """
+
+    joints: Array
+    camera: Camera
+    lit: NDArray[np.floating]
+    lit_by: NDArray[np.integer]
+
+
+@dataclass(frozen=True, slots=True)
+class FootMark:
+    """A foot as seen on the floor: the line from heel to toe, world (x, z), and how high its sole is, metres."""
+
+    heel: tuple[float, float]
+    toe: tuple[float, float]
+    height: float
+    ground: float  # height of what is below it: the pad, or the floor beside it
+
+
+def check_state(scene: Scene, state: FrameState) -> None:
+    """UsageError if the arrays do not fit the scene."""
+    joints = len(scene.character.skeleton.names)
+    if state.joints.shape != (joints, 4, 4):
+        raise UsageError(f"frame: joints have shape {state.joints.shape}, the character needs ({joints}, 4, 4)")
+    if len(state.lit) != scene.panels or len(state.lit_by) != scene.panels:
+        raise UsageError(f"frame: lit and lit_by need one entry for each of the pad's {scene.panels} panels")
+    if not np.isfinite(state.joints).all():
+        raise UsageError("frame: the joints have places that are not numbers; bake the motion again")
+
+
+def foot_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:
+    """Where the left and the right foot are, for marks and contact shadows; None for a character without feet."""
+    names = scene.character.skeleton.names
+    rest = scene.character.skeleton.rest
+    out: list[FootMark | None] = []
+    for side in "lr":
+        if f"{side}_talocrural" not in names or f"{side}_metatarsal" not in names:
+            out.append(None)
+            continue
+        ankle, ball = names.index(f"{side}_talocrural"), names.index(f"{side}_metatarsal")
+        heel, toe = (
+            joints[j, :3, :3] @ np.array([dx, -rest[j, 1], dz]) + joints[j, :3, 3]
+            for j, (dx, dz) in ((ankle, _HEEL), (ball, _TOE))
+        )
+        ground = 0.0 if _on_pad(scene, (heel + toe) / 2) else -scene.look.stage.pad_height
+        height = max(0.0, min(heel[1], toe[1]) - ground)
+        out.append(FootMark((heel[0], heel[2]), (toe[0], toe[2]), float(height), ground))
+    return out[0], out[1]
+
+
+def light_direction(look: Look, camera: Camera) -> Array:
+    """Unit vector (3,) to the light, which stands beside the camera: she is lit from where she is seen."""
+    forward, up = camera.axes()[2], camera.axes()[1]
+    heading = forward if math.hypot(forward[0], forward[2]) > 1e-3 else up
+    yaw = math.atan2(-heading[0], -heading[2]) + math.radians(look.light.azimuth)
+    elevation = math.radians(look.light.elevation)
+    flat = math.cos(elevation)
+    return np.array([flat * math.sin(yaw), math.sin(elevation), flat * math.cos(yaw)])
+
+
+def _on_pad(scene: Scene, point: Array) -> bool:
+    low, high = scene.extent
+    return bool(low[0] <= point[0] <= high[0] and low[2] <= point[2] <= high[2])
