@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import ChartError, FileError
+from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.settings import Settings

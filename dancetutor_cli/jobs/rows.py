@@ -24,7 +24,7 @@ def json_rows(subject: ChartSubject) -> Iterator[dict[str, Any]]:
     feet, facing, limbs, parts = play.feet.tolist(), play.facing.tolist(), play.limb.tolist(), play.part.tolist()
     ticks, seconds = play.rows.tick.tolist(), play.rows.second.tolist()
     steps, costs = play.rows.steps.tolist(), play.cost.tolist()
-    margins = [None] * len(ticks) if play.margin is None else play.margin.tolist()
+    margins: list[int] = [-1] * len(ticks) if play.margin is None else play.margin.tolist()
     for row in np.flatnonzero(play.rows.steps.any(axis=1)).tolist():
         left, right = (None if panel < 0 else panel for panel in feet[row])
         yield {
@@ -46,5 +46,5 @@ def json_rows(subject: ChartSubject) -> Iterator[dict[str, Any]]:
             "facing": round(facing[row], 6),
             "moves": list(play.moves[row]),
             "cost": {term: cost for term, cost in zip(play.terms, costs[row], strict=True) if cost},
-            "margin": None if margins[row] is None or margins[row] < 0 else margins[row],
+            "margin": None if margins[row] < 0 else margins[row],
         }

@@ -61,7 +61,7 @@ class ChartSubject:
         return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
 
     def file_line(self, row: int) -> int:
-        """Line in the file of a row of the play; a row that only a roll made has that of the last row written before."""
+        """Line in the file of a row of the play; where only a roll made it, of the row written before."""
         assert self.play is not None
         line = int(self.play.rows.line[row])
         if line > 0 or not len(self.chart.rows.tick):
@@ -70,7 +70,7 @@ class ChartSubject:
         return int(self.chart.rows.line[max(written, 0)])
 
     def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
-        """Where a row of the play stands, as keyword arguments of `Finding`; `note_column` defaults to its first step."""
+        """Where a row of the play stands, as keyword arguments of `Finding`; without `note_column`: its first step."""
         assert self.play is not None
         if note_column is None:
             note_column = next(iter(self.pressed(row)), None)

@@ -1,0 +1,81 @@
+"""`--format json`: the object of analysis-json.md, written file by file."""
+
+from __future__ import annotations
+
+import json
+from typing import IO, Any
+
+import dancetutor_cli
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.reports.tally import Tally
+
+SCHEMA = 1
+
+
+class JsonReport:
+    """Writes one JSON object, UTF-8; every file is a line of its own inside `files`."""
+
+    def __init__(self, stream: IO[bytes], preset: str) -> None:
+        self._stream = stream
+        self._preset = preset
+        self._separator = ""
+
+    def begin(self) -> None:
+        """Open the object."""
+        head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": self._preset}
+        self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
+
+    def add(self, result: FileResult) -> None:
+        """Write one file."""
+        self._write(f"{self._separator}\n {json.dumps(file_object(result), ensure_ascii=False)}")
+        self._separator = ","
+
+    def end(self, tally: Tally) -> None:
+        """Close the object."""
+        self._write("\n]}\n")
+        self._stream.flush()
+
+    def _write(self, text: str) -> None:
+        self._stream.write(text.encode("utf-8", "replace"))
+
+
+def file_object(result: FileResult) -> dict[str, Any]:
+    """One entry of `files`; findings about the file itself follow its charts."""
+    return {
+        "path": result.path,
+        "error": result.error,
+        "warnings": list(result.warnings),
+        "charts": [chart_object(chart) for chart in result.charts],
+        "findings": [finding_object(finding) for finding in result.findings],
+    }
+
+
+def chart_object(chart: ChartResult) -> dict[str, Any]:
+    """One entry of `charts`."""
+    return {
+        "index": chart.index,
+        "steps_type": chart.steps_type,
+        "difficulty": chart.difficulty,
+        "meter": chart.meter,
+        "description": chart.description,
+        "cost": chart.cost,
+        "rows": list(chart.rows or ()),
+        "findings": [finding_object(finding) for finding in chart.findings],
+    }
+
+
+def finding_object(finding: Finding) -> dict[str, Any]:
+    """One entry of `findings`."""
+    return {
+        "rule": finding.rule,
+        "name": finding.name,
+        "severity": finding.severity,
+        "beat": None if finding.beat is None else round(finding.beat, 6),
+        "measure": finding.measure,
+        "second": None if finding.second is None else round(finding.second, 6),
+        "line": finding.line,
+        "column": finding.note_column,
+        "message": finding.message,
+        "margin": finding.margin,
+    }

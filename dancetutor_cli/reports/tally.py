@@ -1,0 +1,52 @@
+"""One object that owns the counts of a run and its exit status."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from dancetutor_cli.jobs.result import FileResult
+
+_RANK = {"info": 0, "warning": 1, "error": 2}
+
+
+@dataclass
+class Tally:
+    """Counts files, charts and findings as results come in.
+
+    fail_on : "error", "warning" or "never"; the least severity that fails the run
+    exit_zero : findings do not fail the run whatever they are; unreadable files still do
+    """
+
+    fail_on: str = "warning"
+    exit_zero: bool = False
+    files: int = 0
+    charts: int = 0
+    unreadable: int = 0
+    severities: Counter[str] = field(default_factory=Counter)
+
+    def add(self, result: FileResult) -> None:
+        """Count one file."""
+        self.files += 1
+        self.charts += len(result.charts)
+        self.unreadable += result.error is not None
+        self.severities.update(finding.severity for finding, _ in result.all_findings())
+
+    @property
+    def exit_status(self) -> int:
+        """2 if a file could not be read, else 1 if findings fail the run, else 0."""
+        if self.unreadable:
+            return 2
+        if self.exit_zero or self.fail_on == "never":
+            return 0
+        return int(any(n and _RANK[name] >= _RANK[self.fail_on] for name, n in self.severities.items()))
+
+    def summary(self) -> str:
+        """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
+        found = [_plural(self.severities[name], name) for name in reversed(_RANK) if self.severities[name]]
+        text = f"{_plural(self.files, 'file')}, {_plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
+        return text + (f"; {_plural(self.unreadable, 'file')} could not be read" if self.unreadable else "")
+
+
+def _plural(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

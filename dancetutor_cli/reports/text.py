@@ -1,0 +1,101 @@
+"""`--format text`: per chart a table and its findings in lint form, one line each."""
+
+from __future__ import annotations
+
+import os
+from typing import IO
+
+from rich.color import ColorSystem
+from rich.console import Console
+from rich.style import Style
+
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.reports.safe import safe, safe_path
+from dancetutor_cli.reports.table import chart_table
+from dancetutor_cli.reports.tally import Tally
+
+_STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
+_WIDTH_WITHOUT_TERMINAL = 100
+
+
+class TextReport:
+    """Writes files as they come: tables and findings to `stream`, files that could not be read to `errors`."""
+
+    def __init__(self, stream: IO[str], errors: IO[str]) -> None:
+        self._stream = stream
+        self._errors = errors
+        self._console = make_console(stream)
+        self._coloured = self._console.color_system is not None and not self._console.legacy_windows
+
+    def begin(self) -> None:
+        """Nothing comes before the first file."""
+
+    def add(self, result: FileResult) -> None:
+        """Write one file."""
+        if result.error is not None:
+            self._stream.flush()
+            self._errors.write(f"dancetutor: {safe(result.error)}\n")
+            self._errors.flush()
+            return
+        name = " - ".join(safe(text) for text in (result.artist, result.title) if safe(text))
+        self._line(self._paint(safe_path(result.path), "bold"), f"  {name}" if name else "")
+        for finding in result.findings:
+            self._finding(result, None, finding)
+        for chart in result.charts:
+            self._chart(result, chart)
+
+    def end(self, tally: Tally) -> None:
+        """Write the last line: what was found in all."""
+        self._line(tally.summary())
+
+    def _chart(self, result: FileResult, chart: ChartResult) -> None:
+        name = f"  {safe(chart.description)}" if safe(chart.description) else ""
+        self._line("\n", self._paint(safe(chart.label), "bold"), name)
+        if chart.playable:
+            self._stream.write(chart_table(chart, self._console))
+        for finding in chart.findings:
+            self._finding(result, chart, finding)
+        if chart.findings:
+            self._line()
+
+    def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
+        rule = self._paint(f"{finding.rule}", _STYLES[finding.severity])
+        place = ":".join(str(n) for n in (finding.line, finding.column) if n is not None)
+        where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
+        label = f" [{safe(chart.label)}]" if chart else ""
+        self._line(f"{where} {rule} {safe(finding.message)}", self._paint(label + moment(finding), "dim"))
+
+    def _line(self, *parts: str) -> None:
+        self._stream.write("".join(parts) + "\n")
+
+    def _paint(self, text: str, style: str) -> str:
+        return Style.parse(style).render(text, color_system=ColorSystem.STANDARD) if self._coloured and text else text
+
+
+def moment(finding: Finding) -> str:
+    """ " measure 4 beat 16 0:07.512", or as much of it as is known."""
+    parts = []
+    if finding.measure is not None:
+        parts.append(f"measure {finding.measure}")
+    if finding.beat is not None:
+        parts.append(f"beat {round(finding.beat, 3):g}")
+    if finding.second is not None:
+        parts.append(clock(finding.second))
+    return "".join(f" {part}" for part in parts)
+
+
+def clock(second: float) -> str:
+    """Seconds as players read them: "1:02.500", negative before the music starts."""
+    milliseconds = round(abs(second) * 1000)
+    minutes, rest = divmod(milliseconds, 60_000)
+    return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
+
+
+def make_console(stream: IO[str]) -> Console:
+    """A console without colours when `stream` is no terminal or NO_COLOR is set, and then of a width of its own."""
+    console = Console(file=stream, markup=False, emoji=False, highlight=False)
+    if console.is_terminal and not os.environ.get("NO_COLOR"):
+        return console
+    width = None if console.is_terminal or os.environ.get("COLUMNS") else _WIDTH_WITHOUT_TERMINAL
+    return Console(file=stream, markup=False, emoji=False, highlight=False, color_system=None, width=width)

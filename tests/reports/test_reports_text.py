@@ -1,0 +1,117 @@
+"""The text form: finding lines, safe titles, colours, the table."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.reports import table
+from dancetutor_cli.reports.table import chart_table
+from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.text import TextReport, clock
+
+FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
+CHART = ChartResult(
+    0, "dance-single", "Hard", 8, "", True, 540, 86, {"doublestep": 3, "crossover-half": 14}, (FINDING,), None
+)
+FILE = FileResult("charts/x.ssc", "Title", "Artist", None, (), (), (CHART,))
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def printed(*results: FileResult, stream: io.StringIO | None = None) -> tuple[str, str]:
+    out, errors = stream or io.StringIO(), io.StringIO()
+    report, tally = TextReport(out, errors), Tally()
+    report.begin()
+    for result in results:
+        tally.add(result)
+        report.add(result)
+    report.end(tally)
+    return out.getvalue(), errors.getvalue()
+
+
+def test_a_finding_is_one_line_in_lint_form() -> None:
+    out, _ = printed(FILE)
+    assert "charts/x.ssc:133:2 DT201 twice [dance-single Hard 8] measure 4 beat 16 0:07.512" in out.splitlines()
+    assert out.splitlines()[-1] == "1 file, 1 chart: 1 warning"
+
+
+def test_a_finding_about_the_file_has_no_chart() -> None:
+    about_file = Finding("DT104", "odd-tag", "warning", "strange offset", 3, 1)
+    out, _ = printed(replace(FILE, findings=(about_file,), charts=()))
+    assert "charts/x.ssc:3:1 DT104 strange offset" in out.splitlines()
+
+
+def test_numbers_of_the_table_stand_under_their_names() -> None:
+    out, _ = printed(FILE)
+    lines = out.splitlines()
+    numbers = next(n for n, line in enumerate(lines) if " 540 " in line)
+    header, values = lines[numbers - 2], lines[numbers]
+    assert header.split()[:2] == ["rows", "cost"]
+    ends = {value: values.index(value) + len(value) for value in ("540", "86", "3", "14")}
+    assert ends["540"] == header.index("rows") + 4
+    assert ends["86"] == header.index("cost") + 4
+    assert ends["3"] == header.index("steps") + 5
+    assert ends["14"] >= header.index("135°") + 4 >= ends["14"] - 1
+    assert max(map(len, lines)) < 80 or "DT201" in max(lines, key=len)
+
+
+def test_filling_the_drawn_table_equals_drawing_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    console = Console(file=io.StringIO(), width=100, color_system=None)
+    filled = chart_table(CHART, console)
+    monkeypatch.setattr(table, "_template", lambda *_: pytest.fail("not drawn"))
+    monkeypatch.setattr(table, "_WIDTHS", (2, *table._WIDTHS[1:]))  # 540 does not fit: it is drawn
+    drawn = chart_table(CHART, console)
+    assert [line.split() for line in filled.splitlines() if "540" in line] == [
+        line.split() for line in drawn.splitlines() if "540" in line
+    ]
+
+
+def test_a_number_wider_than_its_column_is_not_cut() -> None:
+    out, _ = printed(replace(FILE, charts=(replace(CHART, cost=123456789),)))
+    assert "123456789" in out
+
+
+def test_no_colours_without_a_terminal() -> None:
+    assert "\x1b" not in printed(FILE)[0]
+
+
+def test_colours_on_a_terminal_unless_no_color(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    assert "\x1b[1;33mDT201" in printed(FILE, stream=Terminal())[0]
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b" not in printed(FILE, stream=Terminal())[0]
+
+
+def test_titles_cannot_steer_the_terminal_nor_rich() -> None:
+    out, _ = printed(replace(FILE, title="\x1b[2J[red]pwn[/red]", artist="a\x9bb"))
+    assert "\x1b" not in out and "\x9b" not in out
+    assert "[red]pwn[/red]" in out
+
+
+def test_an_unreadable_file_is_one_line_among_the_errors() -> None:
+    out, errors = printed(FileResult("bad.sm", "", "", "bad.sm:3: no\ncharts", (), (), ()), FILE)
+    assert errors == "dancetutor: bad.sm:3: no charts\n"
+    assert "1 file could not be read" in out
+
+
+def test_a_chart_without_a_pad_has_no_table() -> None:
+    out, _ = printed(replace(FILE, charts=(replace(CHART, playable=False, findings=()),)))
+    assert "rows" not in out
+
+
+@pytest.mark.parametrize(
+    ("second", "text"),
+    [(7.5124, "0:07.512"), (62.5, "1:02.500"), (59.9996, "1:00.000"), (-0.25, "-0:00.250"), (-0.0001, "0:00.000")],
+)
+def test_clock(second: float, text: str) -> None:
+    assert clock(second) == text
