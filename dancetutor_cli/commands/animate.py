@@ -70,7 +70,8 @@ def command(
 def default_name(song: Song, chart: Chart) -> str:
     """SONG-difficulty.glb, in characters that every file system takes."""
     name = f"{song.title or song.path.stem}-{chart.difficulty or 'chart'}".lower()
-    return f"{re.sub(r'[^\w.-]+', '_', name).strip('._') or 'dance'}.glb"
+    plain = re.sub(r"[^\w.-]+", "_", name).strip("._")
+    return f"{plain or 'dance'}.glb"
 
 
 def write_motion(path: Path, motion: Motion) -> None:

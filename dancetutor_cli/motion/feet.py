@@ -19,8 +19,9 @@ HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 class FootPath:
     """One foot at f times.
 
-    ball : (f, 3), the ball of the foot over the ground (y = 0: standing); yaw, pitch : (f,) radians; pitch is heel up, the toes stay level with the ground; down : (f,) bool, the ball stands on the ground;
-    progress : (f,) 0 to 1 of the swing, 0 while standing
+    ball : (f, 3), the ball of the foot over the ground (y = 0: standing)
+    yaw, pitch : (f,) radians; pitch is heel up, the toes stay level with the ground
+    down : (f,) bool, the ball stands on the ground; progress : (f,) 0 to 1 of the swing, 0 while standing
     """
 
     ball: Array

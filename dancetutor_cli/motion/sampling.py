@@ -1,4 +1,4 @@
-"""A motion at any times: rotations slerped, the root interpolated linearly between keys, as every viewer of a file does."""
+"""A motion at any times: rotations slerped and the root moved straight between keys, as every viewer of a file does."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 def sample(motion: Motion, times: Array) -> tuple[Array, Array]:
-    """Local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; before the first and after the last key held."""
+    """Local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; held before the first and after the last key."""
     at = np.clip(times, motion.times[0], motion.times[-1])
     after = np.clip(np.searchsorted(motion.times, at, side="right"), 1, len(motion.times) - 1)
     before = after - 1

@@ -1,0 +1,42 @@
+"""The quality report: what the program itself measures about a motion, by forward kinematics from its rotations.
+
+Every figure is of the motion as any viewer of its file shows it: rotations slerped and the root moved straight between
+keys. Definitions and goals are those of the project's page on the dancer's motion; one module per family of figures.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.bake.quality.balance import balance_figures
+from dancetutor_cli.bake.quality.body import body_of
+from dancetutor_cli.bake.quality.contact import contact_figures
+from dancetutor_cli.bake.quality.figures import Figure, Report
+from dancetutor_cli.bake.quality.flight import flight_figures
+from dancetutor_cli.bake.quality.ground import ground_figures
+from dancetutor_cli.bake.quality.smoothness import smoothness_figures
+from dancetutor_cli.motion.model import Motion
+
+__all__ = ["Figure", "Report", "report"]
+
+
+def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
+    """Measure a motion.
+
+    Parameters
+    ----------
+    motion : from `bake`, or read from a file
+    mines : (m, 3) of second, x, z of every mine, metres in the world; None leaves its figure out
+    """
+    contacts, errors = contact_figures(motion)
+    body = body_of(motion)
+    ground, notes = ground_figures(motion, body, mines)
+    figures = (
+        *contacts,
+        *ground,
+        *flight_figures(body),
+        *smoothness_figures(body, motion.skeleton),
+        *balance_figures(body),
+    )
+    return Report(figures, errors, notes)

@@ -1,0 +1,47 @@
+"""Balance: the zero-moment point lies under the feet that stand."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.bake.quality.body import GRAVITY, GROUND, Body, low_pass
+from dancetutor_cli.bake.quality.figures import Figure
+
+Array = NDArray[np.float64]
+GROWN = 0.02  # metres by which the hull of the soles is grown
+
+
+def balance_figures(body: Body) -> tuple[Figure, ...]:
+    """Share of the frames on the ground in which the zero-moment point is inside the hull, in percent."""
+    margin = zmp_margin(body)
+    share = float("nan") if not len(margin) else 100.0 * float((margin <= GROWN).mean())
+    return (Figure("balance", share, "%", 98.0, at_least=True),)
+
+
+def zero_moment_point(body: Body) -> Array:
+    """(f - 2, 2) on the ground, metres: x - y x'' / (y'' + g) of the centre of mass, low-passed at 10 Hz."""
+    mass = low_pass(body.mass, body.rate)
+    acceleration = np.diff(mass, n=2, axis=0) * body.rate**2
+    lever = mass[1:-1, 1] / np.maximum(acceleration[:, 1] + GRAVITY, 0.3 * GRAVITY)
+    return np.asarray(mass[1:-1][:, [0, 2]] - lever[:, None] * acceleration[:, [0, 2]])
+
+
+def zmp_margin(body: Body) -> Array:
+    """Distance (k,) of the zero-moment point outside the hull of all standing sole points, for frames on the ground."""
+    zmp = zero_moment_point(body)
+    soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
+    down = soles[..., 1] <= GROUND + 0.004
+    standing = body.standing.any(axis=1)
+    firm = standing[1:-1] & standing[2:] & standing[:-2]
+    out = []
+    for k in np.flatnonzero(firm):
+        out.append(_outside(soles[k][down[k]][:, [0, 2]], zmp[k]))
+    return np.array(out)
+
+
+def _outside(points: Array, p: Array) -> float:
+    """Distance of p outside the convex hull of points (k, 2); negative inside. Exact enough outside: nearest edge."""
+    angle = np.arange(0.0, 2 * np.pi, np.pi / 36)
+    directions = np.column_stack((np.cos(angle), np.sin(angle)))
+    return float((directions @ p - (points @ directions.T).max(axis=0)).max())

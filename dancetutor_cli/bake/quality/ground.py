@@ -1,0 +1,75 @@
+"""Feet on the ground: slides while planted, depth below the pad, feet that rest where a mine passes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.bake.quality.body import GROUND, Body, intervals
+from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.stage import HALF_PANEL
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.soles import place, sole_points
+
+Array = NDArray[np.float64]
+PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
+MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
+
+
+def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
+    """Figures and notes. mines : (m, 3) of second, x, z; None if not known."""
+    slide, pivots = plant_slides(body)
+    figures = (
+        Figure("plant slide", 1000 * slide, "mm", 1.0),
+        Figure("penetration", 1000 * deepest(motion), "mm", 1.0),
+        Figure("feet on mines", float("nan") if mines is None else float(feet_on_mines(motion, mines)), "", 0.0),
+    )
+    notes = (f"{pivots} pivots on a planted foot, on purpose, are not counted as slides",) if pivots else ()
+    return figures, notes
+
+
+def plant_slides(body: Body) -> tuple[float, int]:
+    """Longest path (metres) of a sole point during one plant, and the number of plants left out because they pivot."""
+    worst, pivots = 0.0, 0
+    for side in (0, 1):
+        soles = body.soles[:, side]
+        for first, end in intervals(body.standing[:, side]):
+            if end - first < 3:
+                continue
+            piece = soles[first:end]
+            across = piece[:, 2] - piece[:, 3]  # ball_in to ball_out
+            yaw = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
+            if np.ptp(yaw) > PIVOT:
+                pivots += 1
+                continue
+            down = piece[..., 1] <= GROUND
+            both = (down[1:] & down[:-1])[..., None]
+            path = np.linalg.norm(np.where(both, np.diff(piece[..., [0, 2]], axis=0), 0.0), axis=2).sum(axis=0)
+            worst = max(worst, float(path.max()))
+    return worst, pivots
+
+
+def deepest(motion: Motion) -> float:
+    """How far any sole point is below the pad, metres, at every key and half-way between keys."""
+    times = np.sort(np.concatenate((motion.times, (motion.times[1:] + motion.times[:-1]) / 2)))
+    low = 0.0
+    for start in range(0, len(times), 4000):
+        positions, world = world_transforms(motion.skeleton, *sample(motion, times[start : start + 4000]))
+        low = min(low, *(float(place(p, positions, world)[..., 1].min()) for p in sole_points(motion.skeleton)))
+    return -low
+
+
+def feet_on_mines(motion: Motion, mines: Array) -> int:
+    """Mines that pass while a sole point inside their panel is lower than 3 cm."""
+    mines = mines[(mines[:, 0] >= motion.times[0]) & (mines[:, 0] <= motion.times[-1])]
+    if not len(mines):
+        return 0
+    positions, world = world_transforms(motion.skeleton, *sample(motion, mines[:, 0]))
+    hit: NDArray[np.bool_] = np.zeros(len(mines), dtype=bool)
+    for points in sole_points(motion.skeleton):
+        places = place(points, positions, world)
+        inside = np.abs(places[..., [0, 2]] - mines[:, None, 1:]).max(axis=2) <= HALF_PANEL
+        hit |= (inside & (places[..., 1] < MINE_CLEARANCE)).any(axis=1)
+    return int(hit.sum())

@@ -1,0 +1,153 @@
+"""Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
+
+Solved by an interior-point method (Mehrotra 1992); every step solves one banded system, so the cost is linear in the
+length of the song.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.banded import REACH, BandedLeastSquares, _factor, _solve
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-7
+ROUNDS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """m limits  low <= sum_i coefficients_i x[start + i] <= high ; infinite sides are left out.
+
+    start : (m,); coefficients : (m, q), q at most 4; low, high : (m,)
+    """
+
+    start: NDArray[np.int64]
+    coefficients: Array
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """x : (n,); found : the limits hold and x is the minimum, to the tolerance; rounds : steps taken."""
+
+    x: Array
+    found: bool
+    rounds: int
+
+
+def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
+    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value."""
+    if problem.right.shape[1] != 1:
+        raise ValueError("limits are for one path at a time")
+    starts, rows, highs = [], [], []
+    for part in limits:
+        wide = np.zeros((len(part.start), REACH))
+        wide[:, : part.coefficients.shape[1]] = part.coefficients
+        # rows near the end are moved forward, so that none reaches beyond the last node
+        start = np.minimum(part.start, len(problem.bands) - REACH)
+        for k in np.flatnonzero(start < part.start):
+            wide[k] = np.roll(wide[k], part.start[k] - start[k])
+        for sign, bound in ((1.0, part.high), (-1.0, -part.low)):
+            use = np.isfinite(bound)
+            starts.append(start[use])
+            rows.append(sign * wide[use])
+            highs.append(bound[use])
+    x, found, rounds = _interior_point(
+        problem.bands, problem.right[:, 0], np.concatenate(starts), np.concatenate(rows), np.concatenate(highs),
+        TOLERANCE, ROUNDS,
+    )  # fmt: skip
+    return Solution(x, bool(found), int(rounds))
+
+
+@njit(cache=True)
+def _times_band(bands: Array, x: Array) -> Array:
+    n, reach = bands.shape
+    out = np.zeros(n)
+    for i in range(n):
+        out[i] += bands[i, 0] * x[i]
+        for k in range(1, min(reach, n - i)):
+            out[i] += bands[i, k] * x[i + k]
+            out[i + k] += bands[i, k] * x[i]
+    return out
+
+
+@njit(cache=True)
+def _times_rows(start: NDArray[np.int64], rows: Array, x: Array) -> Array:
+    out = np.zeros(len(start))
+    for r in range(len(start)):
+        for i in range(rows.shape[1]):
+            out[r] += rows[r, i] * x[start[r] + i]
+    return out
+
+
+@njit(cache=True)
+def _add_transposed(start: NDArray[np.int64], rows: Array, z: Array, out: Array) -> None:
+    for r in range(len(start)):
+        for i in range(rows.shape[1]):
+            out[start[r] + i] += rows[r, i] * z[r]
+
+
+@njit(cache=True)
+def _longest_step(value: Array, change: Array) -> float:
+    step = 1.0
+    for i in range(len(value)):
+        if change[i] < 0.0:
+            step = min(step, -value[i] / change[i])
+    return step
+
+
+@njit(cache=True)
+def _direction(
+    factor: Array, start: NDArray[np.int64], rows: Array, dual: Array, primal: Array, s: Array, z: Array, aim: Array
+) -> tuple[Array, Array, Array]:
+    """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
+    right = np.zeros((len(dual), 1))
+    right[:, 0] = -dual
+    _add_transposed(start, rows, -(aim - s * z + z * primal) / s, right[:, 0])
+    dx = _solve(factor, right)[:, 0]
+    ds = -primal - _times_rows(start, rows, dx)
+    dz = (aim - s * z - z * ds) / s
+    return dx, ds, dz
+
+
+@njit(cache=True)
+def _interior_point(
+    bands: Array, right: Array, start: NDArray[np.int64], rows: Array, high: Array, tolerance: float, most: int
+) -> tuple[Array, bool, int]:
+    x = _solve(_factor(bands), right.reshape(-1, 1))[:, 0]
+    m = len(high)
+    if m == 0:
+        return x, True, 0
+    s = np.maximum(high - _times_rows(start, rows, x), 0.1)
+    z = np.full(m, 0.1)
+    scale = 1.0 + np.abs(right).max()
+    for turn in range(most):
+        dual = _times_band(bands, x) - right
+        _add_transposed(start, rows, z, dual)
+        primal = _times_rows(start, rows, x) + s - high
+        mu = np.dot(s, z) / m
+        if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
+            return x, True, turn
+        system = bands.copy()
+        for r in range(m):
+            w = z[r] / s[r]
+            for i in range(rows.shape[1]):
+                for j in range(i, rows.shape[1]):
+                    system[start[r] + i, j - i] += w * rows[r, i] * rows[r, j]
+        factor = _factor(system)
+        dx, ds, dz = _direction(factor, start, rows, dual, primal, s, z, np.zeros(m))
+        ap, ad = _longest_step(s, ds), _longest_step(z, dz)
+        after = np.dot(s + ap * ds, z + ad * dz) / m
+        centre = (after / mu) ** 3
+        dx, ds, dz = _direction(factor, start, rows, dual, primal, s, z, centre * mu - ds * dz)
+        ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
+        x += ap * dx
+        s += ap * ds
+        z += ad * dz
+    return x, False, most

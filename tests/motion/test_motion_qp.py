@@ -1,0 +1,54 @@
+"""The banded quadratic programme against scipy's general solver, and against the conditions of a minimum."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from dancetutor_cli.motion.banded import BandedLeastSquares, differences
+from dancetutor_cli.motion.qp import Limits, solve
+
+
+def path_problem(target: np.ndarray, stiffness: float) -> BandedLeastSquares:
+    n = len(target)
+    problem = BandedLeastSquares(n, 1)
+    problem.add(np.arange(n), np.ones((n, 1)), np.ones(n), target[:, None])
+    rows = np.tile(differences(3) * stiffness, (n - 3, 1))
+    problem.add(np.arange(n - 3), rows, np.ones(n - 3), np.zeros((n - 3, 1)))
+    return problem
+
+
+def cost(x: np.ndarray, target: np.ndarray, stiffness: float) -> float:
+    return float(((x - target) ** 2).sum() + ((np.diff(x, n=3) * stiffness) ** 2).sum())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_agrees_with_a_general_solver(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    n = 25
+    target = np.cumsum(rng.normal(size=n))
+    box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, -1.0), np.full(n, 1.5))
+    bend = Limits(np.arange(n - 2), np.tile(differences(2), (n - 2, 1)), np.full(n - 2, -0.4), np.full(n - 2, 0.4))
+    found = solve(path_problem(target, 2.0), [box, bend])
+    assert found.found
+    second = np.array([np.convolve(np.eye(n)[i], differences(2)[::-1], "valid") for i in range(n)]).T
+    constraints = [{"type": "ineq", "fun": lambda x, s=s: 0.4 - s * (second @ x)} for s in (1, -1)]
+    best = minimize(
+        cost, np.zeros(n), args=(target, 2.0), bounds=[(-1, 1.5)] * n, constraints=constraints, method="SLSQP",
+        options={"maxiter": 1000, "ftol": 1e-12},
+    )  # fmt: skip
+    assert cost(found.x, target, 2.0) <= best.fun + 1e-4
+    np.testing.assert_allclose(found.x, best.x, atol=2e-3)
+
+
+def test_loose_limits_change_nothing() -> None:
+    target = np.sin(np.arange(40) / 4)
+    free = path_problem(target, 5.0).solve()[:, 0]
+    box = Limits(np.arange(40), np.ones((40, 1)), np.full(40, -9.0), np.full(40, np.inf))
+    np.testing.assert_allclose(solve(path_problem(target, 5.0), [box]).x, free, atol=1e-5)
+
+
+def test_limits_that_contradict_are_reported() -> None:
+    box = Limits(np.arange(9), np.ones((9, 1)), np.full(9, 1.0), np.full(9, 0.0))
+    assert not solve(path_problem(np.zeros(9), 1.0), [box]).found
