@@ -9,18 +9,20 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.body import body_path
+from dancetutor_cli.motion.body import BodyPath, body_path
 from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.ik import solve
 from dancetutor_cli.motion.look import look
-from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.plan import Planner
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
-from dancetutor_cli.motion.targets import ik_targets
+from dancetutor_cli.motion.targets import ik_targets, moved, sample_path
 from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.play.model import Play
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.mass import centre_of_mass
+from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -75,13 +77,37 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     drop = settings.step.heel_drop
     feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
     body = body_path(plan, grid, feet, skeleton, settings)
+    coarse = grid[::4]
+    for _ in range(2):
+        rotations, root = _posed(plan, body, coarse, skeleton, settings)
+        offset = _mass(skeleton, rotations, root) - root
+        above = np.column_stack([np.interp(grid, coarse, offset[:, k]) for k in range(3)])
+        body = body_path(plan, grid, feet, skeleton, settings, above)
     at = _key_times(plan, fps, start, end)
-    sampled = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
-    targets = ik_targets(plan, body, sampled, at, skeleton, settings)
-    rotations, root = solve(skeleton, targets, settings.body.reach)
+    rotations, root = _posed(plan, body, at, skeleton, settings, corrections=2)
     look(skeleton, rotations, root, body, at, settings)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
+
+
+def _posed(
+    plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings, corrections: int = 0
+) -> tuple[Array, Array]:
+    """Solve the body at times `at`; then move it `corrections` times so that its centre of mass is where it shall be."""
+    drop = settings.step.heel_drop
+    feet = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
+    targets = ik_targets(plan, body, feet, at, skeleton, settings)
+    rotations, root = solve(skeleton, targets, settings.body.reach)
+    ground = sample_path(body.mass, body.times, at)
+    goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
+    for _ in range(corrections):
+        targets = moved(targets, goal - _mass(skeleton, rotations, root))
+        rotations, root = solve(skeleton, targets, settings.body.reach)
+    return rotations, root
+
+
+def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
+    return centre_of_mass(skeleton, *world_transforms(skeleton, rotations, root))
 
 
 def _clock(chart: Chart):  # type: ignore[no-untyped-def]
@@ -109,8 +135,3 @@ def _key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
         else:
             last = t
     return np.asarray(times[keep])
-
-
-def contacts_of(motion: Motion, limb: int) -> tuple[Contact, ...]:
-    """The contacts of one limb, in order."""
-    return tuple(c for c in motion.contacts if c.limb == limb)

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.banded import BandedLeastSquares, differences
 from dancetutor_cli.motion.ease import smooth
-from dancetutor_cli.motion.feet import GRAVITY, FootPath
+from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.height import HeightPath, height_path
 from dancetutor_cli.motion.paths import balanced_path, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.track import Plan, Press, Turn
+from dancetutor_cli.motion.track import Plan, Press, Turn, airborne
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
@@ -23,12 +26,15 @@ COM_HEIGHT = 0.90  # metres, standing; only the lever arm of the balance
 class BodyPath:
     """The body at n times, `rate` per second.
 
+    mass : (n, 2), (x, z) of the centre of mass; mass_height : its height
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
     the body has bent for the left and right hand
     """
 
     times: Array
+    mass: Array
+    mass_height: HeightPath
     ground: Array
     height: Array
     yaw: Array
@@ -39,18 +45,29 @@ class BodyPath:
 
 
 def body_path(
-    plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings
-) -> BodyPath:
-    """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times."""
+    plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings,
+    above: Array | None = None,
+) -> BodyPath:  # fmt: skip
+    """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times.
+
+    above : (n, 3), centre of mass minus root as measured on a first bake; None for that of the rest pose
+    """
     rate = 1.0 / float(times[1] - times[0])
+    if above is None:
+        rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
+        mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
+        above = np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (len(times), 1))
     flight = ~feet[0].down & ~feet[1].down
     reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
-    ground = _ground(feet, flight, rate, settings)
+    mass_ground = _ground(feet, flight, rate, settings)
+    ground = mass_ground - above[:, [0, 2]]
     yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
-    height = _height(feet, flight, ground, yaw, reaching.max(axis=1), rate, skeleton, settings)
+    bent = reaching.max(axis=1)
+    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
+    height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
-    return BodyPath(times, ground, height, yaw, chest, head, tilt, reaching)
+    return BodyPath(times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching)
 
 
 def _ground(feet: tuple[FootPath, FootPath], flight: NDArray[np.bool_], rate: float, settings: MotionSettings) -> Array:
@@ -103,29 +120,22 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 
 def _height(
-    feet: tuple[FootPath, FootPath], flight: NDArray[np.bool_], ground: Array, yaw: Array, bent: Array, rate: float,
-    skeleton: Skeleton, settings: MotionSettings,
-) -> Array:  # fmt: skip
-    """Height of the root: soft knees on the ground, gravity in flight, little jerk in between."""
+    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
+    above: Array, skeleton: Skeleton, settings: MotionSettings,
+) -> HeightPath:  # fmt: skip
+    """Height of the centre of mass; `above` (n,): how far it is over the root."""
     body = settings.body
     wanted = np.full(len(yaw), np.inf)
+    highest = np.full(len(yaw), np.inf)
     for side in (0, 1):
-        reach = np.where(feet[side].down, body.stance, body.reach - 0.004)
-        wanted = np.minimum(wanted, leg_room(feet, ground, yaw, skeleton, reach, side))
+        most = leg_room(feet, ground, yaw, skeleton, body.reach - 0.002, side)
+        soft = leg_room(feet, ground, yaw, skeleton, body.stance, side)
+        highest = np.minimum(highest, most)
+        wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
+    lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
+    wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002)
     wanted = wanted + bent * (settings.hands.pelvis - wanted)
-    n = len(wanted)
-    problem = BandedLeastSquares(n, 1)
-    problem.add(np.arange(n), np.ones((n, 1)), np.where(flight, 1e-4, 1.0), wanted[:, None])
-    fly = np.flatnonzero(flight[1:-1])
-    second = np.tile(differences(2) * rate**2, (len(fly), 1))
-    problem.add(fly, second, np.full(len(fly), 1.0), np.full((len(fly), 1), -GRAVITY))
-    stand = np.flatnonzero(~(flight[:-3] | flight[1:-2] | flight[2:-1] | flight[3:]))
-    jerk = np.tile(differences(3) * (rate * body.smooth * 0.7) ** 3, (len(stand), 1))
-    problem.add(stand, jerk, np.ones(len(stand)), np.zeros((len(stand), 1)))
-    edge = np.flatnonzero(flight[:-3] | flight[1:-2] | flight[2:-1] | flight[3:])
-    jerk = np.tile(differences(3) * (rate * body.smooth * 0.3) ** 3, (len(edge), 1))
-    problem.add(edge, jerk, np.full(len(edge), 0.1), np.zeros((len(edge), 1)))
-    return problem.solve()[:, 0]
+    return height_path(times, wanted + above, highest + above, flights, body)
 
 
 def screen_yaw(ground: Array, settings: MotionSettings) -> Array:

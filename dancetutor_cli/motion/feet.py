@@ -77,9 +77,12 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> A
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
-    height = np.array([w.height for w in track.swings])[i]
-    evade = np.array([w.kind == "evade" for w in track.swings])[i]
-    return np.asarray(height * np.where(evade, 1.0 - (2.0 * s - 1.0) ** 4, np.sin(np.pi * s**1.35)))
+    height, tuck = np.array([(w.height, w.tuck) for w in track.swings])[i].T
+    kind = np.array([w.kind for w in track.swings])[i]
+    evade = 1.0 - (2.0 * s - 1.0) ** 4
+    jump = height * 4.0 * s * (1.0 - s) + tuck * np.sin(np.pi * s) ** 2
+    step = np.sin(np.pi * s**1.35)
+    return np.asarray(np.where(kind == "jump", jump, height * np.where(kind == "evade", evade, step)))
 
 
 def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:

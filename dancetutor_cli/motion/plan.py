@@ -129,13 +129,23 @@ class Planner:
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
         flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
         take_off = min(max(time - flight, *(f.free for f in self.feet)), time - SHORTEST)
-        height = GRAVITY * (time - take_off) ** 2 / 8 + jump.tuck
+        height = GRAVITY * (time - take_off) ** 2 / 8
         middles = _pair((old[0] + old[1]) / 2), _pair((goals[0][0] + goals[1][0]) / 2)
         for foot, (target, yaw) in zip(self.feet, goals, strict=True):
             pitches = self._pitches(cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, pressed[foot.side])
             toes = self._toes(foot, yaw)
             swing = Swing(
-                take_off, time, _pair(target), toes, height, pitches, (0.0, 0.0), "jump", np.radians(turned), *middles
+                take_off,
+                time,
+                _pair(target),
+                toes,
+                height,
+                pitches,
+                (0.0, 0.0),
+                "jump",
+                jump.tuck,
+                np.radians(turned),
+                *middles,
             )
             self._move(foot, swing, target, yaw)
 

@@ -60,10 +60,12 @@ class BodySettings:
     stance: float
     reach: float
     turn_to_feet: float
-    weight_shift: float
     step_rise: float
     lean: float
     smooth: float
+    height_smooth: float
+    least_force: float
+    most_force: float
 
 
 @dataclass(frozen=True, slots=True)

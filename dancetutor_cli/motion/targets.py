@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,6 +62,13 @@ def ik_targets(
         pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet),
     )  # fmt: skip
+
+
+def moved(targets: Targets, by: Array) -> Targets:
+    """The same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
+    shoulders = targets.shoulders + by[:, None]
+    wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])
+    return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
 
 
 def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath]) -> Array:

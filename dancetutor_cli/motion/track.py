@@ -17,7 +17,8 @@ class Swing:
     """One foot leaves the ground at `lift` and comes down at `land` (seconds).
 
     target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
-    height : peak of the sole in metres; pitches : heel up, radians, at lift, at most, at landing, then standing
+    height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
+    pitches : heel up, radians, at lift, at most, at landing, then standing
     bulge : (x, z) added at the middle of the path, to go around the other foot
     kind : "step", "jump", "evade" or "pivot"
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
@@ -31,6 +32,7 @@ class Swing:
     pitches: tuple[float, float, float, float]
     bulge: tuple[float, float] = (0.0, 0.0)
     kind: str = "step"
+    tuck: float = 0.0
     turn: float = 0.0
     middle0: tuple[float, float] = (0.0, 0.0)
     middle1: tuple[float, float] = (0.0, 0.0)
