@@ -52,11 +52,11 @@ def command(
     """
     from dancetutor_cli.jobs.analyze import Task, analyze_file, preset_name
     from dancetutor_cli.library import find_files
-    from dancetutor_cli.lint.settings import default_settings
+    from dancetutor_cli.lint.configuration import load_configuration
     from dancetutor_cli.reports.tally import Tally
 
     selection = Selection(steps_type, difficulty, index)
-    settings = default_settings()
+    settings = load_configuration(None).settings
     report = _report(format_name, preset_name(preset))
     tally = Tally(fail_on, exit_zero)
     report.begin()

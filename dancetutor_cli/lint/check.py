@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ChartRule, FileRule
 from dancetutor_cli.lint.settings import Settings
-from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 
 def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about the file as a whole, in order of line and rule."""
     findings: list[Finding] = []
-    for code, options in settings.active().items():
+    for code, options in settings.for_file(subject.song.path.absolute()).items():
         rule = all_rules()[code]
         if issubclass(rule, FileRule):
-            findings += rule(options["severity"], options).check(subject)
+            findings += rule(options).check(subject)
     return _in_order(findings)
 
 
 def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about one chart, in order of line and rule."""
     findings: list[Finding] = []
-    for code, options in settings.active().items():
+    chart = subject.chart
+    rules = settings.for_chart(subject.song.path.absolute(), chart.steps_type, chart.difficulty, chart.meter)
+    for code, options in rules.items():
         rule = all_rules()[code]
         if issubclass(rule, ChartRule):
-            findings += rule(options["severity"], options).check(subject)
+            findings += rule(options).check(subject)
     return _in_order(findings)
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack"}
 
@@ -22,13 +24,12 @@ class Rule(ABC):
     code: ClassVar[str]
     name: ClassVar[str]
 
-    def __init__(self, severity: str, options: Mapping[str, Any]) -> None:
-        self.severity = severity
+    def __init__(self, options: Mapping[str, Any]) -> None:
         self.options = options
 
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
         """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
-        return Finding(self.code, self.name, self.severity, message, **{**place, **more})
+        return Finding(self.code, self.name, self.options["severity"], message, **{**place, **more})
 
 
 class FileRule(Rule):

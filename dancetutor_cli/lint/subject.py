@@ -60,6 +60,11 @@ class ChartSubject:
         limbs = self.play.limb[row]
         return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
 
+    def unplayed(self, row: int) -> int:
+        """How many steps of a row no limb is left for."""
+        assert self.play is not None
+        return int((self.play.limb[row] == Limb.UNPLAYED).sum())
+
     def file_line(self, row: int) -> int:
         """Line in the file of a row of the play; where only a roll made it, of the row written before."""
         assert self.play is not None

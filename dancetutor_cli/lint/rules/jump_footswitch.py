@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from dancetutor_cli.lint.rule import MoveRule
-from dancetutor_cli.lint.subject import ChartSubject
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class JumpFootswitch(MoveRule):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.rule import ChartRule
-from dancetutor_cli.lint.subject import ChartSubject
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class NoPad(ChartRule):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from dancetutor_cli.lint.rule import MoveRule
-from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play.model import Limb
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Unplayable(MoveRule):
@@ -26,6 +29,5 @@ class Unplayable(MoveRule):
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
-        assert subject.play is not None
-        count = int((subject.play.limb[row] == Limb.UNPLAYED).sum())
+        count = subject.unplayed(row)
         return f"no limb is left for {count} step{'s' if count > 1 else ''} of this row"

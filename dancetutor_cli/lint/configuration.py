@@ -1,0 +1,267 @@
+"""Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`; what they say wrongly is named with its line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from dancetutor_cli.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.lint.registry import matching, rule_named
+from dancetutor_cli.lint.settings import SEVERITIES, Condition, Layer, Options, Settings
+from dancetutor_cli.resources import config_path
+
+FILE_NAME = "dancetutor.yaml"
+FAIL_ON = ("error", "warning", "never")
+_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_TOP_KEYS = ("extends", "preset", "fail-on", "baseline", "select", "ignore", "rules", "overrides", "feet")
+_OVERRIDE_KEYS = ("when", "select", "ignore", "rules")
+_WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """Everything a configuration file may say. `path` is the file, None when there is none."""
+
+    settings: Settings
+    path: Path | None = None
+    preset: str | None = None
+    fail_on: str | None = None
+    baseline: Path | None = None
+
+
+class _ConfigError(Exception):
+    """Something wrong at a key path inside a file."""
+
+    def __init__(self, keys: Sequence[str | int], message: str) -> None:
+        super().__init__(message)
+        self.keys = tuple(keys)
+        self.message = message
+
+
+def find_configuration(start: Path) -> Path | None:
+    """The nearest dancetutor.yaml in the folder of `start` or above it."""
+    folder = start.absolute()
+    for candidate in (folder, *folder.parents):
+        if (candidate / FILE_NAME).is_file():
+            return candidate / FILE_NAME
+    return None
+
+
+def load_configuration(source: str | Path | None) -> Configuration:
+    """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults)."""
+    base = Configuration(Settings((_default_layer(),)))
+    return base if source is None else _extend(base, _located(source), seen=())
+
+
+def with_assignments(configuration: Configuration, assignments: Iterable[str]) -> Configuration:
+    """Apply `--set key=value` of the command line, for example "doublestep.severity=error" or "fail-on=never"."""
+    for text in assignments:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise UsageError(f"--set {text}: write it as KEY=VALUE, for example DT201.severity=error")
+        parsed = yaml.load(value, Loader=_Loader)
+        rule, dot, option = key.partition(".")
+        data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
+        try:
+            configuration = _apply(configuration, data, Path.cwd())
+        except _ConfigError as fault:
+            raise UsageError(f"--set {text}: {fault.message}") from None
+    return configuration
+
+
+def with_selection(configuration: Configuration, select: Sequence[str], ignore: Sequence[str]) -> Configuration:
+    """Apply --select and --ignore of the command line; each entry may hold several, with commas."""
+    chosen = _codes(part for text in select for part in text.split(",")) if select else None
+    dropped = _codes(part for text in ignore for part in text.split(","))
+    layer = Layer(select=chosen, ignore=dropped)
+    return replace(configuration, settings=configuration.settings.with_layer(layer))
+
+
+def _codes(selectors: Iterable[str]) -> frozenset[str]:
+    found: frozenset[str] = frozenset()
+    for selector in selectors:
+        found |= matching(selector.strip())
+    return found
+
+
+@cache
+def default_rules() -> Mapping[str, Options]:
+    """Every rule with its default severity and options: configs/lint/default.yaml."""
+    rules: Mapping[str, Options] = _read_yaml(config_path("lint/default.yaml"))["rules"]
+    return rules
+
+
+def _default_layer() -> Layer:
+    return Layer(rules=default_rules())
+
+
+def _located(source: str | Path) -> Path:
+    path = Path(source)
+    if path.exists() or path.suffix:
+        return path
+    named = config_path(f"lint/{source}.yaml")
+    if not named.is_file():
+        names = ", ".join(sorted(entry.stem for entry in config_path("lint").glob("*.yaml")))
+        raise UsageError(f"there is no lint configuration '{source}'; there are: {names}, or give a file")
+    return named
+
+
+def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configuration:
+    if path.resolve() in seen:
+        raise FileError(path, "extends itself")
+    data = _read_yaml(path)
+    extended = data.pop("extends", [])
+    for name in [extended] if isinstance(extended, str) else extended:
+        beside = path.parent / str(name)
+        base = _extend(base, beside if beside.is_file() else _located(str(name)), (*seen, path.resolve()))
+    try:
+        return replace(_apply(base, data, path.parent), path=path)
+    except _ConfigError as fault:
+        raise FileError(path, fault.message, _line_of(path, fault.keys)) from None
+
+
+def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Configuration:
+    _check_keys(data, _TOP_KEYS, ())
+    settings = base.settings.with_layer(_layer(data, Condition(), ()))
+    for number, entry in enumerate(_list(data, "overrides")):
+        place = ("overrides", number)
+        if not isinstance(entry, Mapping):
+            raise _ConfigError(place, f"an override is a mapping of {', '.join(_OVERRIDE_KEYS)}")
+        _check_keys(entry, _OVERRIDE_KEYS, place)
+        settings = settings.with_layer(_layer(entry, _condition(entry.get("when"), folder, (*place, "when")), place))
+    fail_on = data.get("fail-on", base.fail_on)
+    if fail_on is not None and fail_on not in FAIL_ON:
+        raise _ConfigError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
+    baseline = folder / str(data["baseline"]) if data.get("baseline") else base.baseline
+    preset = data.get("preset", base.preset)
+    if preset is not None and (folder / str(preset)).is_file():
+        preset = str(folder / str(preset))
+    return Configuration(settings, base.path, preset, fail_on, baseline)
+
+
+def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...]) -> Layer:
+    rules: dict[str, Options] = {}
+    entries = data.get("rules") or {}
+    if not isinstance(entries, Mapping):
+        raise _ConfigError((*place, "rules"), "'rules' is a mapping of rules to their settings")
+    for name, options in entries.items():
+        at = (*place, "rules", str(name))
+        code = _known(rule_named, str(name), at).code
+        rules[code] = _options(code, {"severity": options} if isinstance(options, str) else options, at)
+    select = _selected(data, "select", place) if data.get("select") is not None else None
+    return Layer(when, select, _selected(data, "ignore", place), rules)
+
+
+def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
+    defaults = default_rules()[code]
+    if not isinstance(options, Mapping):
+        raise _ConfigError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
+    # YAML 1.1 reads a bare `off` as False.
+    options = {key: "off" if key == "severity" and value is False else value for key, value in options.items()}
+    for key, value in options.items():
+        if key not in defaults:
+            raise _ConfigError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
+        if key == "severity" and value not in SEVERITIES:
+            raise _ConfigError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
+        if not _same_kind(value, defaults[key]):
+            raise _ConfigError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
+    return options
+
+
+def _same_kind(value: Any, default: Any) -> bool:
+    if isinstance(default, bool) or isinstance(value, bool):
+        return isinstance(value, bool) and isinstance(default, bool)
+    if isinstance(default, int | float):
+        return isinstance(value, int | float)
+    return isinstance(value, type(default))
+
+
+def _condition(when: Any, folder: Path, place: tuple[str | int, ...]) -> Condition:
+    if not isinstance(when, Mapping) or not when:
+        raise _ConfigError(place, f"an override needs 'when' with one or more of {', '.join(_WHEN_KEYS)}")
+    _check_keys(when, _WHEN_KEYS, place)
+    return Condition(
+        root=str(folder.absolute()),
+        paths=tuple(_texts(when, "path")),
+        steps_types=tuple(text.lower() for text in _texts(when, "steps-type")),
+        difficulties=tuple(text.lower() for text in _texts(when, "difficulty")),
+        meters=_meters(when["meter"], (*place, "meter")) if "meter" in when else None,
+    )
+
+
+def _meters(value: Any, place: tuple[str | int, ...]) -> tuple[int, int]:
+    """A meter, or a range written "1-7", "8-" or "-7"."""
+    low, dash, high = str(value).partition("-")
+    try:
+        return int(low or 0), int(high or 1_000_000) if dash else int(low)
+    except ValueError:
+        raise _ConfigError(place, f'"{value}" is no range of meters; write 8, "1-7", "8-" or "-7"') from None
+
+
+def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:
+    found: frozenset[str] = frozenset()
+    for selector in _texts(data, key):
+        found |= _known(matching, selector, (*place, key))
+    return found
+
+
+def _known(look_up: Any, name: str, place: tuple[str | int, ...]) -> Any:
+    try:
+        return look_up(name)
+    except DancetutorError as error:
+        raise _ConfigError(place, str(error)) from None
+
+
+def _texts(data: Mapping[str, Any], key: str) -> list[str]:
+    value = data.get(key)
+    if value is None:
+        return []
+    return [str(entry) for entry in value] if isinstance(value, list) else [str(value)]
+
+
+def _list(data: Mapping[str, Any], key: str) -> list[Any]:
+    value = data.get(key) or []
+    if not isinstance(value, list):
+        raise _ConfigError((key,), f"'{key}' is a list")
+    return value
+
+
+def _check_keys(data: Mapping[str, Any], known: Sequence[str], place: tuple[str | int, ...]) -> None:
+    for key in data:
+        if key not in known:
+            raise _ConfigError((*place, str(key)), f"there is no '{key}' here; there are {', '.join(known)}")
+
+
+def _read_yaml(path: Path) -> dict[str, Any]:
+    try:
+        data = yaml.load(path.read_bytes(), Loader=_Loader)
+    except OSError as error:
+        raise FileError(path, error.strerror or str(error)) from error
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = None if mark is None else mark.line + 1
+        raise FileError(path, f"is not YAML: {getattr(error, 'problem', None) or error}", line) from error
+    if data is not None and not isinstance(data, dict):
+        raise FileError(path, "must be a mapping of names to values", 1)
+    return data or {}
+
+
+def _line_of(path: Path, keys: Sequence[str | int]) -> int | None:
+    """Line of the last key of the path that can be found; parses the file once more, so only for errors."""
+    node = yaml.compose(path.read_bytes(), Loader=_Loader)
+    line: int | None = None
+    for key in keys:
+        if isinstance(node, yaml.MappingNode):
+            pairs = [(k, v) for k, v in node.value if k.value == str(key)]
+            if not pairs:
+                break
+            line, node = pairs[0][0].start_mark.line + 1, pairs[0][1]
+        elif isinstance(node, yaml.SequenceNode) and isinstance(key, int):
+            node = node.value[key]
+            line = node.start_mark.line + 1
+    return line
