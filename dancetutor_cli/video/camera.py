@@ -89,9 +89,7 @@ class Camera:
         return out
 
 
-def preset(
-    name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE
-) -> Camera:
+def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE) -> Camera:
     """A camera by name that shows the whole dancer, jumping and with her arms up, inside a part of the picture.
 
     Parameters
@@ -140,9 +138,7 @@ def free(
     return camera
 
 
-def parse(
-    text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE
-) -> Camera:
+def parse(text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE) -> Camera:
     """A camera from the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
     if "/" not in text and "," not in text:
         return preset(text, extent, size, look, region)

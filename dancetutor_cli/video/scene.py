@@ -120,3 +120,12 @@ def light_direction(look: Look, camera: Camera) -> Array:
 def _on_pad(scene: Scene, point: Array) -> bool:
     low, high = scene.extent
     return bool(low[0] <= point[0] <= high[0] and low[2] <= point[2] <= high[2])
+
+
+def shadow_axes(light: Array) -> Array:
+    """Rows u, v and the direction to the light: the light's view of the world, v downwards, (3, 3)."""
+    u = np.array([light[2], 0.0, -light[0]]) / math.hypot(light[0], light[2])
+    v = np.array(
+        [u[1] * light[2] - u[2] * light[1], u[2] * light[0] - u[0] * light[2], u[0] * light[1] - u[1] * light[0]]
+    )
+    return np.array([u, v, light])

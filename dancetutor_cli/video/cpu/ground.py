@@ -1,0 +1,126 @@
+"""The live part of the floor: shadow, contact shadows, lit panels and the marks under the feet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from dancetutor_cli.video.cpu.background import quantise
+from dancetutor_cli.video.cpu.surfaces import smooth
+
+
+@njit(cache=True)
+def blur(mask: Any, radius: int, spare: Any) -> None:  # pragma: no cover
+    """Box blur of a square picture in place, both ways; `spare` has its shape. Borders count as 0."""
+    size = mask.shape[0]
+    share = 1.0 / (2 * radius + 1)
+    for row in range(size):
+        total = 0.0
+        for c in range(min(radius, size)):
+            total += mask[row, c]
+        for c in range(size):
+            if c + radius < size:
+                total += mask[row, c + radius]
+            if c - radius - 1 >= 0:
+                total -= mask[row, c - radius - 1]
+            spare[row, c] = total * share
+    column = np.zeros(size)
+    for row in range(min(radius, size)):
+        for c in range(size):
+            column[c] += spare[row, c]
+    for row in range(size):
+        ahead, behind = row + radius, row - radius - 1
+        for c in range(size):
+            if ahead < size:
+                column[c] += spare[ahead, c]
+            if behind >= 0:
+                column[c] -= spare[behind, c]
+            mask[row, c] = column[c] * share
+
+
+@njit(cache=True)
+def occupied(depth: Any, mask: Any) -> None:  # pragma: no cover
+    """1 where a shadow map has something, else 0."""
+    for row in range(depth.shape[0]):
+        for c in range(depth.shape[1]):
+            mask[row, c] = 1.0 if depth[row, c] > 0.0 else 0.0
+
+
+@njit(cache=True, inline="always")
+def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
+    x -= 0.5
+    y -= 0.5
+    i, j = int(np.floor(x)), int(np.floor(y))
+    if i < 0 or j < 0 or i >= picture.shape[1] - 1 or j >= picture.shape[0] - 1:
+        return 0.0
+    fx, fy = x - i, y - j
+    top = picture[j, i] + (picture[j, i + 1] - picture[j, i]) * fx
+    bottom = picture[j + 1, i] + (picture[j + 1, i + 1] - picture[j + 1, i]) * fx
+    return top + (bottom - top) * fy
+
+
+@njit(cache=True, inline="always")
+def _from_foot(x: float, z: float, foot: Any) -> float:  # pragma: no cover
+    """Distance from the line between heel (0, 1) and toe (2, 3)."""
+    dx, dz = foot[2] - foot[0], foot[3] - foot[1]
+    length = dx * dx + dz * dz
+    t = 0.0
+    if length > 0.0:
+        t = min(1.0, max(0.0, ((x - foot[0]) * dx + (z - foot[1]) * dz) / length))
+    ax, az = x - foot[0] - t * dx, z - foot[1] - t * dz
+    return np.sqrt(ax * ax + az * az)
+
+
+@njit(cache=True)
+def draw_ground(
+    out: Any, box: Any, shift: int, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any, foot: Any,
+    shadow: Any, axes: Any, origin: Any, scale: float, dark: float, lit: Any, lit_colour: Any, feet: Any, numbers: Any,
+) -> None:  # fmt: skip  # pragma: no cover
+    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on.
+
+    shift : columns that the standing picture is ahead; feet (n, 9): heel x z, toe x z, ground, nearness to the ground
+    0..1, colour; numbers : contact darkness, its softness, strength of the marks, strength of lit panels, sole radius
+    """
+    radius = numbers[4]
+    for row in range(box[1], box[3]):
+        for column in range(box[0], box[2]):
+            c = column + shift
+            take = takes[row, c]
+            p = panel[row, c]
+            shine = glow[row, c] * lit[p] * numbers[3] if p >= 0 else 0.0
+            if take <= 0.0:
+                continue
+            x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
+            keep = 1.0
+            if dark > 0.0:
+                u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+                v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+                keep = 1.0 - dark * _bilinear(shadow, u, v)
+            ring, owner = 0.0, 0
+            for f in range(feet.shape[0]):
+                if abs(y - feet[f, 4]) > 0.03:
+                    continue
+                d = _from_foot(x, z, feet[f]) - radius
+                near = feet[f, 5]
+                reach = numbers[1] * (1.6 - 0.6 * near)
+                if d < reach:
+                    keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                soft = 0.5 * foot[row, c]
+                band = min(1.0, max(0.0, (0.0085 - abs(d - 0.020)) / (2.0 * soft) + 0.5))
+                band *= numbers[2] * (0.25 + 0.75 * near)
+                if band > ring:
+                    ring, owner = band, f
+            if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
+                continue
+            keep = 1.0 - (1.0 - keep) * take
+            hot = white[row, c] * lit[p] * numbers[3] if p >= 0 else 0.0
+            for k in range(3):
+                value = colour[row, c, k] * keep
+                if shine > 0.0:
+                    bright = lit_colour[p, k] * (0.35 + 0.65 * keep)
+                    value += (bright - value) * shine
+                    value += (255.0 - value) * hot
+                value += (feet[owner, 6 + k] - value) * ring * take
+                out[row, column, k] = quantise(value, row, c)

@@ -1,0 +1,85 @@
+"""A character's meshes as flat arrays, as both renderers draw them in one go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.model import Character, Mesh
+from dancetutor_cli.errors import UsageError
+
+F32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """All meshes of a character in one. v vertices, t triangles, m materials.
+
+    positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
+    outline, drawn by moving vertices along it, has no gaps where a texture is cut
+    uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
+    triangles : int32 (t, 3), counter-clockwise seen from outside; material : int32 (v,)
+    texels : float32 (n, 3), sRGB 0..1 of all textures, row by row; textures : int32 (m, 3), first texel, width, height
+    """
+
+    positions: F32
+    normals: F32
+    hull: F32
+    uv: F32
+    joints: NDArray[np.int32]
+    weights: F32
+    triangles: NDArray[np.int32]
+    material: NDArray[np.int32]
+    texels: F32
+    textures: NDArray[np.int32]
+
+
+def pack(character: Character) -> Packed:
+    """Put the meshes of a character together; UsageError if there is nothing to draw."""
+    meshes = [m for m in character.meshes if len(m.triangles)]
+    if not meshes:
+        raise UsageError(f"character '{character.name}' has no triangles to draw")
+    first = np.cumsum([0, *(len(m.positions) for m in meshes)])
+    texels, textures = _textures(meshes)
+    positions = np.concatenate([m.positions for m in meshes]).astype(np.float32)
+    normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
+    material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
+    return Packed(
+        positions=positions,
+        normals=normals,
+        hull=_welded(positions, normals, material),
+        uv=np.concatenate([m.uv for m in meshes]).astype(np.float32),
+        joints=np.concatenate([m.joints for m in meshes]).astype(np.int32),
+        weights=np.concatenate([m.weights for m in meshes]).astype(np.float32),
+        triangles=np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32),
+        material=material,
+        texels=texels,
+        textures=textures,
+    )
+
+
+def _textures(meshes: list[Mesh]) -> tuple[F32, NDArray[np.int32]]:
+    """Texels of all materials, multiplied by the base colour; a material without texture has one texel."""
+    texels, table, used = [], [], 0
+    for mesh in meshes:
+        colour = np.asarray(mesh.material.base_color[:3], dtype=np.float32)
+        texture = mesh.material.texture
+        image = np.ones((1, 1, 3), np.float32) if texture is None else texture[..., :3].astype(np.float32) / 255
+        texels.append((image * colour).reshape(-1, 3))
+        table.append((used, image.shape[1], image.shape[0]))
+        used += image.shape[0] * image.shape[1]
+    return np.ascontiguousarray(np.concatenate(texels), dtype=np.float32), np.array(table, dtype=np.int32)
+
+
+def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:
+    """Normals averaged over the vertices of a mesh that lie in one place."""
+    keys = np.column_stack([np.round(positions * 1e5).astype(np.int64), material])
+    _, place = np.unique(keys, axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    total = np.zeros((int(place.max()) + 1, 3))
+    np.add.at(total, place, normals.astype(np.float64))
+    out = total[place]
+    length = np.sqrt((out * out).sum(axis=1, keepdims=True))
+    return np.where(length > 1e-6, out / np.maximum(length, 1e-6), normals).astype(np.float32)
