@@ -1,0 +1,176 @@
+"""The dancer's body and clothes as signed distance functions, on the rest positions of `rig.skeleton`.
+
+Sections are drawn as an artist draws a front and a side view: (station, half width, depth to the front, depth to the
+back, shift to the front, shift aside), all in metres. She is 1.70 m tall, athletic, with slightly larger head, hands and feet
+than life, because that reads better at 720p.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from build_character_sdf import (
+    Shape,
+    blend,
+    both,
+    carve,
+    common,
+    cone,
+    ellipsoid,
+    grow,
+    half_space,
+    stack,
+    tube,
+)
+
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+SKELETON = dancer_skeleton()
+REST = dict(zip(SKELETON.names, SKELETON.rest, strict=True))
+UP, FRONT = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
+HIP, SHOULDER, WRIST = REST["l_hip"], REST["l_shoulder"], REST["l_radiocarpal"]
+ARM = (REST["l_elbow"] - SHOULDER) / np.linalg.norm(REST["l_elbow"] - SHOULDER)
+PALM = np.cross(ARM, FRONT)  # the way the palm looks: to the thigh
+
+TORSO = [
+    (0.840, 0.146, 0.084, 0.088, -0.002), (0.880, 0.160, 0.088, 0.096, -0.006), (0.920, 0.160, 0.087, 0.097, -0.010),
+    (0.960, 0.147, 0.083, 0.088, -0.012), (1.000, 0.129, 0.078, 0.079, -0.014), (1.060, 0.112, 0.072, 0.073, -0.014),
+    (1.100, 0.109, 0.071, 0.073, -0.014), (1.160, 0.114, 0.075, 0.077, -0.016), (1.220, 0.123, 0.079, 0.082, -0.018),
+    (1.280, 0.131, 0.080, 0.086, -0.022), (1.330, 0.133, 0.075, 0.085, -0.026), (1.370, 0.122, 0.064, 0.076, -0.027),
+    (1.400, 0.096, 0.053, 0.062, -0.025), (1.430, 0.060, 0.044, 0.050, -0.021), (1.465, 0.044, 0.041, 0.044, -0.014),
+]  # fmt: skip
+LEG = [
+    (-0.030, 0.079, 0.080, 0.082, 0.000), (0.030, 0.082, 0.083, 0.088, -0.003), (0.100, 0.079, 0.081, 0.084, -0.001),
+    (0.200, 0.069, 0.074, 0.072, 0.002), (0.300, 0.058, 0.063, 0.060, 0.006), (0.370, 0.0515, 0.055, 0.051, 0.009),
+    (0.410, 0.0490, 0.053, 0.047, 0.010), (0.450, 0.0455, 0.047, 0.047, 0.006), (0.500, 0.0475, 0.045, 0.055, 0.000),
+    (0.560, 0.0485, 0.042, 0.060, -0.004), (0.620, 0.0445, 0.038, 0.054, -0.007), (0.700, 0.0355, 0.032, 0.040, -0.012),
+    (0.770, 0.0300, 0.030, 0.034, -0.017), (0.800, 0.0300, 0.031, 0.035, -0.018), (0.840, 0.0300, 0.031, 0.035, -0.018),
+]  # fmt: skip
+ARM_ROWS = [
+    (-0.020, 0.040, 0.042, 0.042, 0.000), (0.040, 0.041, 0.041, 0.041, 0.000), (0.100, 0.038, 0.037, 0.038, 0.000),
+    (0.180, 0.034, 0.034, 0.035, 0.000), (0.262, 0.0295, 0.031, 0.032, -0.001), (0.300, 0.031, 0.034, 0.032, 0.000),
+    (0.340, 0.0305, 0.035, 0.031, 0.002), (0.400, 0.027, 0.030, 0.027, 0.005), (0.460, 0.0215, 0.025, 0.0225, 0.007),
+    (0.492, 0.0190, 0.0240, 0.0215, 0.008), (0.520, 0.0170, 0.0270, 0.0240, 0.008),
+]  # fmt: skip
+SHIRT = [
+    (0.972, 0.1545, 0.097, 0.102, -0.012), (1.000, 0.1450, 0.094, 0.096, -0.013), (1.060, 0.1270, 0.086, 0.087, -0.014),
+    (1.100, 0.1220, 0.084, 0.085, -0.014), (1.160, 0.1230, 0.085, 0.086, -0.016), (1.220, 0.1300, 0.087, 0.090, -0.018),
+    (1.280, 0.1370, 0.087, 0.093, -0.022), (1.330, 0.1390, 0.082, 0.092, -0.026), (1.370, 0.1280, 0.070, 0.083, -0.027),
+    (1.400, 0.1020, 0.060, 0.069, -0.025), (1.430, 0.0660, 0.050, 0.057, -0.021), (1.465, 0.0500, 0.048, 0.050, -0.014),
+]  # fmt: skip
+SLEEVE = [
+    (-0.030, 0.045, 0.047, 0.047, 0.0), (0.020, 0.0465, 0.0485, 0.0485, 0.0), (0.070, 0.0465, 0.0475, 0.0480, 0.0),
+    (0.128, 0.0490, 0.0490, 0.0495, 0.0),
+]  # fmt: skip
+SLEEVE_END, HEM, ANKLE = 0.122, 0.976, 0.120
+
+
+def on_arm(along: float, aside: float = 0.0, front: float = 0.0, palm: float = 0.0) -> np.ndarray:
+    """A point given along the arm from the shoulder, towards the thumb and towards the palm."""
+    return SHOULDER + along * ARM + (front + aside) * FRONT + palm * PALM
+
+
+def bust() -> Shape:
+    return both(ellipsoid((0.056, 1.272, 0.046), (0.052, 0.050, 0.046)))
+
+
+def shoulders(by: float = 0.0) -> Shape:
+    return both(
+        blend(
+            0.03,
+            cone((0.10, 1.368, -0.022), (0.160, 1.374, -0.015), 0.050 + by, 0.0455 + by),
+            cone((0.030, 1.437, -0.024), (0.135, 1.392, -0.018), 0.030 + by, 0.038 + by),
+        )
+    )
+
+
+def torso() -> Shape:
+    """Pelvis to neck, without legs and arms."""
+    seat = both(ellipsoid((0.072, 0.872, -0.058), (0.074, 0.078, 0.052)))
+    return blend(0.03, blend(0.04, stack((0, 0, 0), UP, FRONT, TORSO), bust()), seat, shoulders())
+
+
+def leg() -> Shape:
+    """The left leg from hip to ankle."""
+    return stack(HIP, -UP, FRONT, LEG)
+
+
+def leggings() -> Shape:
+    """Pelvis and both legs; the top is inside the shirt, the bottom inside the shoes."""
+    pelvis = common(torso(), half_space((0, 1.035, 0), UP), 0.02)
+    return common(blend(0.035, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
+
+
+def hand() -> Shape:
+    """The left hand, slightly curled as a relaxed hand is; thumb to the front, palm to the thigh."""
+    wrist = 0.492
+    palm: list[Shape] = []
+    fingers: list[Shape] = []
+    # knuckle: along, towards the thumb; lengths of the three bones; spread in degrees; radius
+    table = (
+        (0.080, 0.0290, (0.037, 0.023, 0.018), 7, 0.0098),
+        (0.085, 0.0098, (0.042, 0.026, 0.019), 1.5, 0.0102),
+        (0.080, -0.0096, (0.038, 0.024, 0.018), -4, 0.0098),
+        (0.070, -0.0275, (0.029, 0.018, 0.016), -11, 0.0088),
+    )
+    for k, (along, aside, bones, spread, radius) in enumerate(table):
+        knuckle = on_arm(wrist + along, aside + 0.008, palm=-0.002)
+        palm.append(cone(on_arm(wrist - 0.005, aside * 0.45 + 0.008), knuckle, 0.0155, 0.0125))
+        points, bend = [knuckle], 14.0 + 4 * k
+        for bone in bones:
+            a, s = np.radians(bend), np.radians(spread)
+            points.append(points[-1] + bone * (np.cos(a) * (np.cos(s) * ARM + np.sin(s) * FRONT) + np.sin(a) * PALM))
+            bend += 17 + 2 * k
+        fingers.append(tube(points, [radius * f for f in (1.06, 1.0, 0.92, 0.74)], steps=3))
+    thumb_at = [(0.012, 0.016, 0.006), (0.040, 0.044, 0.015), (0.066, 0.056, 0.021), (0.090, 0.062, 0.023)]
+    thumb = tube(
+        [on_arm(wrist + a, f + 0.006, palm=n) for a, f, n in thumb_at], [0.0165, 0.0142, 0.0112, 0.0085], steps=3
+    )
+    inner = cone(on_arm(wrist + 0.03, -0.012, palm=0.008), on_arm(wrist + 0.062, 0.010, palm=0.006), 0.012, 0.012)
+    return blend(0.010, blend(0.014, *palm, inner), blend(0.0015, *fingers), thumb)
+
+
+def arm() -> Shape:
+    """The left arm and hand; its upper end is inside the sleeve."""
+    upper = common(stack(SHOULDER, ARM, FRONT, ARM_ROWS), half_space(on_arm(0.028), -ARM), 0.02)
+    return blend(0.016, upper, hand())
+
+
+def shirt(open_neck: bool = True) -> Shape:
+    """A T-shirt: loose at the waist, scoop neck."""
+    sleeve = common(stack(SHOULDER, ARM, FRONT, SLEEVE), half_space(on_arm(SLEEVE_END), ARM), 0.004)
+    body = blend(0.045, stack((0, 0, 0), UP, FRONT, SHIRT), grow(bust(), 0.006))
+    body = common(body, half_space((0, HEM, 0), -UP), 0.005)
+    sleeves = both(blend(0.03, sleeve, cone((0.10, 1.368, -0.022), SHOULDER, 0.053, 0.048)))
+    whole = blend(0.035, body, sleeves, shoulders(0.007))
+    return carve(whole, neckline(), 0.006) if open_neck else whole
+
+
+def neckline() -> Shape:
+    """What the shirt leaves free around the neck, lower in front."""
+    return blend(
+        0.03, ellipsoid((0, 1.470, -0.012), (0.070, 0.062, 0.068)), ellipsoid((0, 1.425, 0.045), (0.062, 0.052, 0.080))
+    )
+
+
+def chest_skin() -> Shape:
+    """Neck and the skin the scoop neck shows."""
+    chest = common(grow(torso(), -0.0005), half_space((0, 1.33, 0), -UP), 0.02)
+    chest = common(chest, ellipsoid((0, 1.42, 0.0), (0.098, 0.10, 0.12)), 0.02)
+    return blend(0.028, chest, cone((0, 1.42, -0.022), (0, 1.55, -0.006), 0.0445, 0.0395))
+
+
+def shoe_upper() -> Shape:
+    """A high-top sneaker in the foot's colour."""
+    x = HIP[0]
+    toe = ellipsoid((x + 0.001, 0.027, 0.110), (0.0405, 0.035, 0.064))
+    middle = cone((x, 0.042, 0.075), (x, 0.070, -0.005), 0.0325, 0.035)
+    heel = ellipsoid((x, 0.040, -0.030), (0.0335, 0.052, 0.042))
+    rows = [
+        (0.045, 0.036, 0.045, 0.046, -0.012),
+        (0.09, 0.0385, 0.044, 0.044, -0.017),
+        (0.142, 0.0425, 0.046, 0.048, -0.019),
+    ]
+    collar = common(stack((x, 0, 0), UP, FRONT, rows), half_space((0, 0.132, 0), (0, 1, -0.12)), 0.004)
+    whole = blend(0.03, blend(0.035, toe, middle), heel, collar)
+    hollow = ellipsoid((x, 0.148, -0.019), (0.0365, 0.026, 0.040))
+    return common(carve(whole, hollow, 0.004), half_space((0, 0.012, 0), -UP), 0.004)

@@ -1,0 +1,118 @@
+"""The parts the dancer is made of: surface, how it is skinned, painted and coloured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import build_character_body as body
+import build_character_head as head
+import build_character_paint as paint
+import build_character_trims as trims
+import numpy as np
+from build_character_bake import Paint
+from build_character_loft import Lofted, joined
+from build_character_mesh import Size, even, gradient, surface
+from build_character_sdf import Array, Shape
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+Skin = str  # "heat" over the body, "foot", "braid", or the one joint that holds the part
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part. make : its surface; skin : how it is held; texels a metre; mirror : modelled left, copied right
+
+    tint : name of the limb colour it wears instead of paint
+    """
+
+    name: str
+    make: Callable[[], Lofted]
+    skin: Skin
+    density: float
+    paint: Paint
+    mirror: bool = False
+    tint: str = ""
+
+
+def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lofted]:
+    """A maker of the shape's mesh."""
+    return lambda: surface(shape, *box, grid, size)
+
+
+def face_mesh() -> Lofted:
+    """The head, with calm normals in the face."""
+    shape = head.head()
+    points, _, triangles = surface(shape, (-0.11, 1.46, -0.13), (0.11, 1.74, 0.13), 0.003, _face_first)
+    return points, round_face(points, gradient(shape, points, 0.003)), triangles
+
+
+def ramp(keys: list[float], sizes: list[float], of: Callable[[Array], Array]) -> Size:
+    """Edge lengths that follow a measure along the part."""
+    return lambda p: np.interp(of(p), keys, sizes)
+
+
+def _along_arm(p: Array) -> Array:
+    return np.asarray((p - body.SHOULDER) @ body.ARM)
+
+
+def _face_first(p: Array) -> Array:
+    """Fine in the face, coarse under the hair."""
+    face = np.linalg.norm((p - [0, 1.555, 0.075]) / [0.065, 0.05, 0.05], axis=1)
+    return np.interp(face, [0.5, 1.3, 2.2], [0.0066, 0.0095, 0.0200])
+
+
+def round_face(points: Array, normals: Array) -> Array:
+    """Normals of the face turned towards those of a ball, so that drawn light falls on it in large calm areas."""
+    ball = points - [0, 1.550, -0.030]
+    ball /= np.linalg.norm(ball, axis=1, keepdims=True)
+    share = 0.7 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.088) / 0.006, 0, 1)
+    mixed = normals + share[:, None] * (ball - normals)
+    return np.asarray(mixed / np.linalg.norm(mixed, axis=1, keepdims=True))
+
+
+def parts() -> list[Part]:
+    """All parts, in the order in which they are written."""
+    leg = ramp(
+        [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
+        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0245, 0.0245, 0.0200, 0.028],
+        lambda p: p[:, 1],
+    )
+    arm = ramp(
+        [0.0, 0.20, 0.24, 0.29, 0.33, 0.44, 0.50, 0.57],
+        [0.022, 0.0195, 0.0150, 0.0150, 0.0195, 0.0160, 0.0112, 0.0079],
+        _along_arm,
+    )
+    return [
+        Part("leggings", of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg), "heat", 470, paint.leggings),
+        Part("shirt", of_shape(body.shirt(), ((-0.32, 0.96, -0.14), (0.32, 1.46, 0.14)), 0.005, even(0.0205)), "heat", 660, paint.shirt),
+        Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim),
+        Part("cuff", trims.cuff, "heat", 400, paint.trim, True),
+        Part("arm", of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm), "heat", 560, paint.arm, True),
+        Part("neck", of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)), "heat", 450, paint.skin),
+        Part("head", face_mesh, "skullbase", 1750, paint.face),
+        Part("hair", of_shape(head.hair(), ((-0.13, 1.46, -0.18), (0.13, 1.78, 0.16)), 0.004, even(0.0145)), "skullbase", 700, paint.hair),
+        Part("locks", lambda: joined(*head.locks()), "skullbase", 800, paint.hair),
+        Part("braid", of_shape(head.braid(), ((-0.05, 1.18, -0.20), (0.05, 1.67, -0.08)), 0.0025, even(0.0104)), "braid", 700, paint.braid),
+        Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
+        Part("shoe", of_shape(body.shoe_upper(), ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21)), 0.003, even(0.0130)), "foot", 0, paint.plain, True, "foot"),
+        Part("wristband", trims.wristband, "heat", 0, paint.plain, True, "hand"),
+        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, True),
+        Part("sole", trims.sole, "foot", 400, paint.rubber, True),
+        Part("laces", trims.laces, "foot", 300, paint.rubber, True),
+        Part("left eye", lambda: eye(1), "l_eyeball_joint", 2200, paint.eye(1)),
+        Part("right eye", lambda: eye(-1), "r_eyeball_joint", 2200, paint.eye(-1)),
+        Part("lid", lambda: placed(joined(*head.lid(True))), "eyelid_joint", 1300, paint.lid, True),
+        Part("lower lid", lambda: placed(joined(*head.lid(False))), "skullbase", 1300, paint.lid, True),
+    ]  # fmt: skip
+
+
+def placed(part: Lofted) -> Lofted:
+    """A part modelled about the left eye's centre, moved there."""
+    return part[0] + head.EYE, part[1], part[2]
+
+
+def eye(side: int) -> Lofted:
+    """The left (1) or right (-1) eyeball."""
+    points, normals, triangles = head.ball(head.EYE_RADIUS, 18, 12)
+    return points + head.EYE * [side, 1, 1], normals, triangles
