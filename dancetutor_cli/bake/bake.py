@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.body import BodyPath, body_path
-from dancetutor_cli.motion.feet import foot_path
-from dancetutor_cli.motion.ik import solve
+from dancetutor_cli.motion.feet import FootPath, foot_path
+from dancetutor_cli.motion.ik import Targets, solve
 from dancetutor_cli.motion.look import look
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.plan import Planner
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
+SETTLING = 3  # rounds of rough baking before the path of the body is final
+CORRECTIONS = 2  # rounds of moving the body until its centre of mass is on its path
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
 
@@ -77,36 +79,51 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     drop = settings.step.heel_drop
     feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
     body = body_path(plan, grid, feet, skeleton, settings)
-    coarse = grid[::4]
-    for _ in range(2):
-        rotations, root = _posed(plan, body, coarse, skeleton, settings)
-        offset = _mass(skeleton, rotations, root) - root
-        above = np.column_stack([np.interp(grid, coarse, offset[:, k]) for k in range(3)])
-        body = body_path(plan, grid, feet, skeleton, settings, above)
+    body = _settled(plan, grid, feet, body, skeleton, settings)
     at = _key_times(plan, fps, start, end)
-    rotations, root = _posed(plan, body, at, skeleton, settings, corrections=2)
+    rotations, root = _posed(plan, body, at, skeleton, settings)
     look(skeleton, rotations, root, body, at, settings)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
 
 
-def _posed(
-    plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings, corrections: int = 0
-) -> tuple[Array, Array]:
-    """Solve the body at times `at`; then move it `corrections` times so that its centre of mass is where it shall be."""
+def _settled(
+    plan: Plan, grid: Array, feet: tuple[FootPath, FootPath], body: BodyPath, skeleton: Skeleton,
+    settings: MotionSettings,
+) -> BodyPath:  # fmt: skip
+    """Bake roughly, see where the centre of mass and pinned palms draw the root, and plan the body's path again."""
+    coarse = grid[::4]
+    drawn = np.zeros(len(grid))
+    for _ in range(SETTLING):
+        targets = _targets(plan, body, coarse, skeleton, settings)
+        rotations, root = solve(skeleton, targets, settings.body.reach)
+        offset = _mass(skeleton, rotations, root) - root
+        above = np.column_stack([np.interp(grid, coarse, offset[:, k]) for k in range(3)])
+        drawn += np.interp(grid, coarse, np.minimum(root[:, 1] - targets.pelvis[:, 1], 0.0))
+        body = body_path(plan, grid, feet, skeleton, settings, body, above, drawn)
+    return body
+
+
+def _targets(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> Targets:
     drop = settings.step.heel_drop
     feet = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
-    targets = ik_targets(plan, body, feet, at, skeleton, settings)
+    return ik_targets(plan, body, feet, at, skeleton, settings)
+
+
+def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
+    """Solve the body at times `at` (f,), and move it so that its centre of mass is where it shall be."""
+    targets = _targets(plan, body, at, skeleton, settings)
     rotations, root = solve(skeleton, targets, settings.body.reach)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
-    for _ in range(corrections):
+    for _ in range(CORRECTIONS):
         targets = moved(targets, goal - _mass(skeleton, rotations, root))
         rotations, root = solve(skeleton, targets, settings.body.reach)
     return rotations, root
 
 
 def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
+    """Centre of mass (f, 3) of solved frames."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, rotations, root))
 
 

@@ -116,4 +116,4 @@ def _press(
     goal[:, 1] = wrist[1] + (1.0 - sink) * (free[:, 1] - wrist[1])
     wrists[near, side] = goal
     turn[near, side] = hand
-    pinned[near, side] = np.maximum(pinned[near, side], smooth(across * 1.25))
+    pinned[near, side] = np.maximum(pinned[near, side], smooth((across - 0.5) * 2.05))

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.ease import smooth
-from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.height import HeightPath, height_path
-from dancetutor_cli.motion.paths import balanced_path, smooth_path
+from dancetutor_cli.motion.paths import smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan, Press, Turn, airborne
 from dancetutor_cli.rig import quaternion as quat
@@ -19,7 +20,7 @@ from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-COM_HEIGHT = 0.90  # metres, standing; only the lever arm of the balance
+STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,37 +47,39 @@ class BodyPath:
 
 def body_path(
     plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings,
-    above: Array | None = None,
+    before: BodyPath | None = None, above: Array | None = None, drawn: Array | float = 0.0,
 ) -> BodyPath:  # fmt: skip
     """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times.
 
+    before : the path found in the round before; None in the first
     above : (n, 3), centre of mass minus root as measured on a first bake; None for that of the rest pose
+    drawn : (n,) how far palms on the floor drew the root below where it was wanted, metres, never positive
     """
     rate = 1.0 / float(times[1] - times[0])
     if above is None:
         rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
         mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
         above = np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (len(times), 1))
-    flight = ~feet[0].down & ~feet[1].down
     reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
-    mass_ground = _ground(feet, flight, rate, settings)
+    mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), rate, settings.body)
     ground = mass_ground - above[:, [0, 2]]
     yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
     bent = reaching.max(axis=1)
-    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
+    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, drawn, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
     return BodyPath(times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching)
 
 
-def _ground(feet: tuple[FootPath, FootPath], flight: NDArray[np.bool_], rate: float, settings: MotionSettings) -> Array:
-    """Over the ground: the weight on the standing foot, between the feet when both stand."""
-    middles = [f.ball[:, [0, 2]] - 0.03 * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
-    left, right = (f.down[:, None] for f in feet)
-    zmp = np.where(left & right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
-    weight = np.where(feet[0].down & feet[1].down, 0.03, 1.0)
-    return balanced_path(zmp, weight, flight, np.full(len(zmp), COM_HEIGHT), rate, settings.body.smooth)
+def _lever(height: HeightPath | None, times: Array) -> Array:
+    """y / (y'' + g) of the centre of mass, seconds squared; standing still as long as its height is not known."""
+    if height is None:
+        return np.full(len(times), STANDING_HEIGHT / GRAVITY)
+    step = 1.0 / 60.0
+    y = height.at(times)
+    acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
+    return np.asarray(y / np.maximum(acceleration + GRAVITY, 0.4 * GRAVITY))
 
 
 def _yaw_target(turns: tuple[Turn, ...], times: Array) -> Array:
@@ -121,7 +124,7 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 def _height(
     feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
-    above: Array, skeleton: Skeleton, settings: MotionSettings,
+    drawn: Array | float, above: Array, skeleton: Skeleton, settings: MotionSettings,
 ) -> HeightPath:  # fmt: skip
     """Height of the centre of mass; `above` (n,): how far it is over the root."""
     body = settings.body
@@ -134,7 +137,7 @@ def _height(
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
     wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002)
-    wanted = wanted + bent * (settings.hands.pelvis - wanted)
+    wanted = wanted + bent * (settings.hands.pelvis - wanted) + drawn
     return height_path(times, wanted + above, highest + above, flights, body)
 
 

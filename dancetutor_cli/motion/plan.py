@@ -127,6 +127,8 @@ class Planner:
             goals.append(self._target(i, pressed[foot.side], foot, yaw, ends[1 - foot.side], cut))
         far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
+        if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
+            apex = jump.apex_hands
         flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
         take_off = min(max(time - flight, *(f.free for f in self.feet)), time - SHORTEST)
         height = GRAVITY * (time - take_off) ** 2 / 8

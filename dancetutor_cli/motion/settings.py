@@ -42,6 +42,7 @@ class JumpSettings:
 
     apex_near: float
     apex_far: float
+    apex_hands: float
     far: float
     flight_share: float
     tuck: float
@@ -63,6 +64,8 @@ class BodySettings:
     step_rise: float
     lean: float
     smooth: float
+    foot_weight: float
+    middle_weight: float
     height_smooth: float
     least_force: float
     most_force: float
