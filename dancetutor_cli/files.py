@@ -1,0 +1,257 @@
+"""Write a file whole or not at all, in a way that another process, a crash or a full disk cannot spoil.
+
+The new bytes go to a temporary file beside the old one, reach the disk, and take its place by a rename. The temporary
+file has a name made from the file's own, and is locked while it is written: so it is the lock between two processes,
+and what a killed process left behind is found, seen to be nobody's, and removed by the next one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import stat
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from dancetutor_cli.errors import FileError
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+SUFFIX = ".dancetutor.tmp"
+_LONGEST_NAME = 255 - len(SUFFIX) - 1  # bytes; a longer file name is hashed
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+PATIENCE = 10.0  # seconds to wait for another process that writes the same file
+
+
+class BusyError(FileError):
+    """Another process is writing the same file."""
+
+
+def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expect: bytes | None = None) -> None:
+    """Replace `path` by `data` in one step; the file's mode, owner and a link that leads to it stay.
+
+    Parameters
+    ----------
+    path : the file; a symbolic link is written through to the file that it names
+    data : the new bytes, or a function that writes them to the open file it is given
+    expect : what the file must still hold; if it does not, somebody else has changed it and it is left alone
+
+    Raises
+    ------
+    FileError : in one line why nothing was written; the old file is as it was
+    """
+    target = _target(path)
+    old = _status(path, target)
+    with _explained(path), _locked_temporary(path, target) as (temporary, file):
+        if old is not None:
+            _keep_owner_and_mode(path, target, file.fileno(), old)
+        if callable(data):
+            data(file)
+        else:
+            file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+        if expect is not None and _content(target) != expect:
+            raise FileError(path, "was changed by somebody else in the meantime; nothing was written, run it again")
+        if fcntl is None:
+            file.close()  # Windows renames no open file
+        temporary.replace(target)
+    _sync_folder(target.parent)
+
+
+def remove_leftover(path: Path) -> bool:
+    """Remove the temporary file that a killed process may have left beside `path`; True if there was one.
+
+    One that a living process is writing stays.
+    """
+    with contextlib.suppress(OSError, FileError):
+        temporary = temporary_name(_target(path))
+        return _discard(temporary)
+    return False
+
+
+def remove_leftovers(folder: Path) -> int:
+    """Remove all such temporary files in a folder (not below it); how many there were."""
+    try:
+        found = [entry for entry in folder.iterdir() if entry.name.startswith(".") and entry.name.endswith(SUFFIX)]
+    except OSError:
+        return 0
+    count = 0
+    for entry in found:
+        with contextlib.suppress(OSError):
+            count += _discard(entry)
+    return count
+
+
+def temporary_name(target: Path) -> Path:
+    """Where the new content of `target` is written before it takes its place."""
+    name = target.name
+    if len(os.fsencode(name)) > _LONGEST_NAME:
+        name = hashlib.sha256(os.fsencode(name)).hexdigest()
+    return target.with_name(f".{name}{SUFFIX}")
+
+
+def _target(path: Path) -> Path:
+    """The file itself, links followed."""
+    try:
+        return path.resolve(strict=True) if path.is_symlink() else path
+    except FileNotFoundError:
+        raise FileError(path, "is a link to a file that is not there") from None
+    except (OSError, RuntimeError) as error:  # RuntimeError: how Python before 3.13 reports a circle of links
+        raise FileError(path, "is a link that leads nowhere") from error
+
+
+def _status(path: Path, target: Path) -> os.stat_result | None:
+    """What the file is now, None if it is not there; refuses what must not be replaced."""
+    try:
+        status = target.stat()
+    except FileNotFoundError:
+        if not target.parent.is_dir():
+            raise FileError(path, f"its folder '{target.parent}' does not exist") from None
+        return None
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror}") from error
+    if not stat.S_ISREG(status.st_mode):
+        raise FileError(path, "is a folder" if stat.S_ISDIR(status.st_mode) else "is no ordinary file")
+    # A rename asks only the folder; the mark "read-only" of the file is the author's word, for root too.
+    if not status.st_mode & 0o222 or not os.access(target, os.W_OK):
+        raise FileError(path, "is read-only; nothing was written")
+    return status
+
+
+@contextlib.contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    """Turn what the system says into one line about the file that was meant."""
+    try:
+        yield
+    except PermissionError as error:
+        raise FileError(path, f"cannot be written: {error.strerror} (is its folder read-only?)") from error
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror or error}; the old file is unchanged") from error
+
+
+@contextlib.contextmanager
+def _locked_temporary(path: Path, target: Path) -> Iterator[tuple[Path, BinaryIO]]:
+    """The temporary file of `target`, new, empty, open and ours alone; gone at the end if it was not renamed."""
+    temporary = temporary_name(target)
+    descriptor = _claim(path, temporary)
+    renamed = False
+    try:
+        with open(descriptor, "wb", closefd=True) as file:  # noqa: PTH123
+            yield temporary, file
+            renamed = True
+            # The lock ends with the file, after the rename: whoever waited for it sees the new content.
+    finally:
+        if not renamed:
+            with contextlib.suppress(OSError):
+                temporary.unlink()
+
+
+def _claim(path: Path, temporary: Path) -> int:
+    """Create the temporary file and lock it; wait for a process that has it, remove one that nobody has."""
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        try:
+            descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666)
+        except FileExistsError:
+            if not _discard(temporary):
+                if time.monotonic() > deadline:
+                    raise BusyError(path, "is being written by another process; nothing was written") from None
+                time.sleep(0.02)
+            continue
+        if _lock(descriptor) and _is_at(descriptor, temporary):
+            return descriptor
+        os.close(descriptor)  # between its creation and the lock another process took it for a leftover
+
+
+def _discard(temporary: Path) -> bool:
+    """Remove a temporary file that no living process holds; False if one does, True if the file is gone."""
+    if fcntl is None:  # Windows removes no file that is open
+        try:
+            temporary.unlink(missing_ok=True)
+        except PermissionError:
+            return False
+        return True
+    try:
+        descriptor = os.open(temporary, os.O_RDONLY | os.O_NONBLOCK | _NO_LINK)
+    except FileNotFoundError:
+        return False
+    try:
+        if not _lock(descriptor):
+            return False
+        if _is_at(descriptor, temporary):
+            temporary.unlink()
+        return True
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int) -> bool:
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True  # a file system without locks: then `expect` alone tells two writers apart
+    return True
+
+
+def _is_at(descriptor: int, path: Path) -> bool:
+    """Whether the open file is still the one of that name."""
+    if fcntl is None:
+        return True
+    try:
+        there = path.lstat()
+    except OSError:
+        return False
+    return os.path.samestat(there, os.fstat(descriptor))
+
+
+def _keep_owner_and_mode(path: Path, target: Path, descriptor: int, old: os.stat_result) -> None:
+    if os.name == "nt":
+        return
+    new = os.fstat(descriptor)
+    if (new.st_uid, new.st_gid) != (old.st_uid, old.st_gid):
+        try:
+            os.chown(descriptor, old.st_uid, old.st_gid)
+        except PermissionError:
+            raise FileError(path, "belongs to somebody else; writing it would change its owner") from None
+    os.chmod(descriptor, stat.S_IMODE(old.st_mode))
+    for name in _attributes(target):
+        with contextlib.suppress(OSError):
+            os.setxattr(descriptor, name, os.getxattr(target, name))  # type: ignore[attr-defined,unused-ignore]
+
+
+def _attributes(target: Path) -> list[str]:
+    """Extended attributes, access lists among them; only Linux has them in Python."""
+    try:
+        return list(os.listxattr(target))  # type: ignore[attr-defined,unused-ignore]
+    except (AttributeError, OSError):
+        return []
+
+
+def _content(target: Path) -> bytes | None:
+    try:
+        return target.read_bytes()
+    except FileNotFoundError:
+        return None
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the rename itself last; not every system can, and the file is whole either way."""
+    if os.name == "nt":
+        return
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
