@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml
 
@@ -17,6 +17,7 @@ from dancetutor_cli.resources import config_path
 
 FILE_NAME = "dancetutor.yaml"
 FAIL_ON = ("error", "warning", "never")
+_Found = TypeVar("_Found")
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TOP_KEYS = ("extends", "preset", "fail-on", "baseline", "select", "ignore", "rules", "overrides", "feet")
 _OVERRIDE_KEYS = ("when", "select", "ignore", "rules")
@@ -210,7 +211,7 @@ def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -
     return found
 
 
-def _known(look_up: Any, name: str, place: tuple[str | int, ...]) -> Any:
+def _known(look_up: Callable[[str], _Found], name: str, place: tuple[str | int, ...]) -> _Found:
     try:
         return look_up(name)
     except DancetutorError as error:

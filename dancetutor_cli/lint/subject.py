@@ -8,8 +8,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.lint.feet import Feet
+from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.play.model import Limb, Play
 
 
@@ -26,11 +29,22 @@ class FileSubject:
 
 @dataclass(frozen=True)
 class ChartSubject:
-    """One chart; `play` is None where the steps type has no pad."""
+    """One chart; `play` is None where the steps type has no pad. `panels` : (c, 2) places of the pad's panels."""
 
     song: Song
     chart: Chart
     play: Play | None
+    panels: NDArray[np.float64] | None = None
+
+    @cached_property
+    def feet(self) -> Feet | None:
+        """Questions about the play, where there is one."""
+        return None if self.play is None or self.panels is None else Feet(self.play, self.panels)
+
+    @cached_property
+    def notes(self) -> Notes:
+        """Questions about the notes."""
+        return Notes(self.chart)
 
     @cached_property
     def _rows_by_move(self) -> Mapping[str, list[int]]:
@@ -48,6 +62,31 @@ class ChartSubject:
     def rows_with(self, move: str) -> list[int]:
         """Rows of the play in which a move of this name happens, in order."""
         return self._rows_by_move.get(move, [])
+
+    def rows_with_any(self, move: str) -> list[int]:
+        """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
+        kinds = (name for name in self._rows_by_move if name == move or name.startswith(f"{move}-"))
+        return sorted({row for name in kinds for row in self._rows_by_move[name]})
+
+    def step_rows(self) -> list[int]:
+        """Rows of the play with at least one step."""
+        return [] if self.play is None else np.flatnonzero(self.play.rows.steps.any(axis=1)).tolist()
+
+    def is_jump(self, row: int) -> bool:
+        """Whether both feet press in this row."""
+        assert self.play is not None
+        limbs = self.play.limb[row]
+        return bool((limbs == Limb.LEFT_FOOT).any() and (limbs == Limb.RIGHT_FOOT).any())
+
+    def margin(self, row: int) -> int | None:
+        """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
+        margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
+        return None if margin < 0 else margin
+
+    def seconds_played(self) -> float:
+        """Time from the first to the last row with a step."""
+        rows = self.step_rows()
+        return 0.0 if self.play is None or not rows else float(np.ptp(self.play.rows.second[[rows[0], rows[-1]]]))
 
     def pressed(self, row: int) -> list[int]:
         """Note columns that have a step in a row of the play."""
@@ -80,12 +119,11 @@ class ChartSubject:
         if note_column is None:
             note_column = next(iter(self.pressed(row)), None)
         line = self.file_line(row)
-        margin = None if self.play.margin is None else int(self.play.margin[row])
         return {
             "line": line,
             "column": self._text_column(line, note_column or 0),
             "note_column": note_column,
-            "margin": None if margin is None or margin < 0 else margin,
+            "margin": self.margin(row),
             **self._time(int(self.play.rows.tick[row]), float(self.play.rows.second[row])),
         }
 
@@ -99,6 +137,11 @@ class ChartSubject:
             tick = int(rows.tick[found])
             place |= {"beat": tick / TICKS_PER_BEAT, "measure": int(rows.measure[found])}
         return place
+
+    def at_tick(self, tick: int, line: int) -> dict[str, Any]:
+        """Where a note of the chart stands that may be in no row of the play."""
+        second = float(self.chart.timing.second_at(tick))
+        return {"line": line, "column": self._text_column(line, 0), **self._time(tick, second)}
 
     def at_chart(self) -> dict[str, Any]:
         """Where the chart itself starts."""

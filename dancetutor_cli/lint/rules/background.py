@@ -1,0 +1,31 @@
+"""DT505: the background is missing or has an odd size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.pictures import picture_fault
+from dancetutor_cli.lint.rule import FileRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class BackgroundSize(FileRule):
+    """#BACKGROUND is empty, names a file that is not there, or a picture of an unusual size.
+
+    `sizes`: the sizes that are accepted, as "1920x1080"; an empty list accepts every size.
+
+    Bad: #BACKGROUND:nowhere.png; Better: a picture of 1920x1080 beside the song.
+    """
+
+    code = "DT505"
+    name = "background-size"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding."""
+        fault = picture_fault(subject.song, "BACKGROUND", self.options["sizes"])
+        if fault:
+            yield self.finding(fault, subject.place())

@@ -1,0 +1,31 @@
+"""DT504: the banner is missing or has an odd size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.pictures import picture_fault
+from dancetutor_cli.lint.rule import FileRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class BannerSize(FileRule):
+    """#BANNER is empty, names a file that is not there, or a picture of an unusual size.
+
+    `sizes`: the sizes that are accepted, as "418x164"; an empty list accepts every size.
+
+    Bad: #BANNER:nowhere.png; Better: a picture of 418x164 beside the song.
+    """
+
+    code = "DT504"
+    name = "banner-size"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding."""
+        fault = picture_fault(subject.song, "BANNER", self.options["sizes"])
+        if fault:
+            yield self.finding(fault, subject.place())

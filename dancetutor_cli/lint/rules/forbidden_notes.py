@@ -1,0 +1,46 @@
+"""DT508: a kind of note that is not allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import ChartRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+
+class ForbiddenNotes(ChartRule):
+    """The chart has notes of a kind that is not allowed. Off by default; contests switch it on.
+
+    `kinds`: any of mine, roll, hold, lift, fake, jump, hand (three or more steps at once), keysound.
+
+    Bad where mines are not allowed:
+
+        1000
+        00M0
+        0001
+        0000
+
+    Better:
+
+        1000
+        0000
+        0001
+        0000
+    """
+
+    code = "DT508"
+    name = "forbidden-notes"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each kind, at its first note, with their number."""
+        for kind in self.options["kinds"]:
+            ticks_lines = subject.notes.of_kind(kind)
+            if ticks_lines:
+                tick, line = ticks_lines[0]
+                count = len(ticks_lines)
+                what = kind if count == 1 else f"{kind}s ({count})"
+                yield self.finding(f"{what} not allowed", subject.at_tick(tick, line))

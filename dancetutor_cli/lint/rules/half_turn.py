@@ -1,0 +1,29 @@
+"""DT304: the body turns by 180 degrees at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import ChartRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+
+class HalfTurn(ChartRule):
+    """Between two rows the body turns by 180 degrees: from facing one side of the room to facing the other.
+
+    Bad:
+
+        TODO
+    """
+
+    code = "DT304"
+    name = "half-turn"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each half turn."""
+        for row in subject.feet.half_turns() if subject.feet else ():
+            yield self.finding("the body turns by 180 degrees at once", subject.at_row(row))

@@ -1,0 +1,33 @@
+"""DT307: a mine where a foot is about to arrive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import ChartRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+
+class MineInTheWay(ChartRule):
+    """A mine lies on the panel that a foot comes to, so close before the step that it may be hit.
+
+    `max_seconds`: mines at most this long before the step count; the games' mine window is about 0.07 s.
+
+    Bad:
+
+        TODO
+    """
+
+    code = "DT307"
+    name = "mine-in-the-way"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each such step."""
+        for row, column, seconds in subject.feet.mines_before_steps() if subject.feet else ():
+            if seconds <= self.options["max_seconds"] + 1e-6:
+                message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
+                yield self.finding(message, subject.at_row(row, column))

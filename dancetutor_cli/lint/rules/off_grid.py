@@ -1,0 +1,36 @@
+"""DT401: a row off the usual grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import ChartRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+
+class OffGrid(ChartRule):
+    """A note stands where none of the usual quantisations has one, mostly after a conversion or a slip of the mouse.
+
+    `grid`: the quantisations that are usual, as players name them (16 for 16ths). Rows in a run count once.
+
+    Bad: rows of 192 in a measure, the note in the second of them.
+
+    Better: on the first.
+    """
+
+    code = "DT401"
+    name = "off-grid"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each run of such rows, at its first."""
+        for tick, line, count in subject.notes.off_grid([int(name) for name in self.options["grid"]]):
+            more = f" and {count - 1} more after it" if count > 1 else ""
+            yield self.finding(f"this note{more} stands on no {self._names()}", subject.at_tick(tick, line))
+
+    def _names(self) -> str:
+        names = [f"{name}{'nd' if name % 10 == 2 and name != 12 else 'th'}" for name in self.options["grid"]]
+        return f"{', '.join(names[:-1])} or {names[-1]}"

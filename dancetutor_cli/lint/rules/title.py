@@ -1,0 +1,31 @@
+"""DT501: a song without title or artist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import FileRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class Title(FileRule):
+    """Title or artist is missing, or has blanks at its ends.
+
+    Bad: #TITLE:; Better: #TITLE:Two Left Feet;
+    """
+
+    code = "DT501"
+    name = "title"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """One finding for each tag that is wrong."""
+        for tag in ("TITLE", "ARTIST"):
+            value = subject.song.tags.get(tag, "")
+            if not value.strip():
+                yield self.finding(f"#{tag} is empty", subject.place())
+            elif value != value.strip():
+                yield self.finding(f"#{tag} has blanks at its ends", subject.place())
