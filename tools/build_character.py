@@ -82,7 +82,7 @@ def mirrored_weights(weights: Array) -> Array:
     return weights[:, swap]
 
 
-def occlusion(points: Array, normals: Array) -> Array:
+def occlusion(points: Array, normals: Array, strength: float) -> Array:
     """How open each place is, 1 to about 0.6, from the distance function along its normal."""
     arm_side = both(blend(0.0, body.arm()))
     shapes = [
@@ -99,7 +99,7 @@ def occlusion(points: Array, normals: Array) -> Array:
         p = points + step * normals
         d = np.min([s(p) for s in shapes], axis=0)
         dark += np.clip(1 - d / step, 0, 1.2) * 0.5**k
-    return np.round(np.clip(1.04 - 0.22 * dark, 0.62, 1.0), 5)
+    return np.round(np.clip(1.04 - strength * dark, 0.62, 1.0), 5)
 
 
 def dancer() -> Character:
@@ -114,7 +114,9 @@ def dancer() -> Character:
         slot = -1
         if not part.tint:
             open_ = "eye" in part.name or "lid" in part.name
-            shade = np.ones(len(points)) if open_ else occlusion(points, normals)
+            shade = (
+                np.ones(len(points)) if open_ else occlusion(points, normals, 0.10 if part.name == "leggings" else 0.22)
+            )
             source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
             points, normals, weights = points[source], normals[source], weights[source]
             slot = len(atlas.parts) - 1

@@ -135,14 +135,25 @@ def arm() -> Shape:
     return blend(0.016, upper, hand())
 
 
-def shirt(open_neck: bool = True) -> Shape:
-    """A T-shirt: loose at the waist, scoop neck."""
-    sleeve = common(stack(SHOULDER, ARM, FRONT, SLEEVE), half_space(on_arm(SLEEVE_END), ARM), 0.004)
-    body = blend(0.045, stack((0, 0, 0), UP, FRONT, SHIRT), grow(bust(), 0.006))
-    body = common(body, half_space((0, HEM, 0), -UP), 0.005)
+def shirt_cloth(ends: bool = False) -> Shape:
+    """The shirt's cloth without hem and neckline, and without sleeve ends if not wanted.
+
+    As endless cloth it gives the normals, which must not turn under at the edges.
+    """
+    first, last = SHIRT[0], SHIRT[-1]
+    longer = [(0.90, *first[1:]), *SHIRT, (1.52, *last[1:])]
+    sleeve = stack(SHOULDER, ARM, FRONT, [*SLEEVE, (0.20, *SLEEVE[-1][1:])])
+    if ends:
+        sleeve = common(sleeve, half_space(on_arm(SLEEVE_END), ARM), 0.004)
     sleeves = both(blend(0.03, sleeve, cone((0.10, 1.368, -0.022), SHOULDER, 0.053, 0.048)))
-    whole = blend(0.035, body, sleeves, shoulders(0.007))
-    return carve(whole, neckline(), 0.006) if open_neck else whole
+    body = blend(0.045, stack((0, 0, 0), UP, FRONT, longer), grow(bust(), 0.006))
+    return blend(0.035, body, sleeves, shoulders(0.007))
+
+
+def shirt() -> Shape:
+    """A T-shirt: loose at the waist, scoop neck."""
+    cloth = common(shirt_cloth(ends=True), half_space((0, HEM, 0), -UP), 0.004)
+    return carve(cloth, neckline(), 0.003)
 
 
 def neckline() -> Shape:
@@ -155,7 +166,7 @@ def neckline() -> Shape:
 def chest_skin() -> Shape:
     """Neck and the skin the scoop neck shows."""
     chest = common(grow(torso(), -0.0005), half_space((0, 1.33, 0), -UP), 0.02)
-    chest = common(chest, ellipsoid((0, 1.42, 0.0), (0.098, 0.10, 0.12)), 0.02)
+    chest = common(chest, ellipsoid((0, 1.425, 0.035), (0.090, 0.095, 0.085)), 0.02)
     return blend(0.028, chest, cone((0, 1.42, -0.022), (0, 1.55, -0.006), 0.0445, 0.0395))
 
 

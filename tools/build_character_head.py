@@ -161,7 +161,7 @@ def _chain(points: Array, radii: Array) -> Shape:
 def lid(upper: bool) -> list[Lofted]:
     """A lid of the left eye around the eye's centre: the skin, and its line of lashes."""
     if upper:
-        shell = slice_of_sphere(EYE_RADIUS + 0.0020, LID_EDGE, 135, 13, 6)
+        shell = slice_of_sphere(EYE_RADIUS + 0.0020, LID_EDGE, 125, 13, 5)
         line, thick, edge = (
             np.linspace(-62, 71, 9),
             [0.0008, 0.0013, 0.0018, 0.0022, 0.0025, 0.0027, 0.0028, 0.0026, 0.0010],
@@ -177,7 +177,7 @@ def lid(upper: bool) -> list[Lofted]:
     s, e = np.radians(line), np.radians(edge)
     radius = EYE_RADIUS + (0.0026 if upper else 0.0014) + (np.maximum(line - 50, 0) / 21 * 0.004 if upper else 0)
     way = np.stack([np.sin(s), np.cos(s) * np.sin(e), np.cos(s) * np.cos(e)], axis=1)
-    return [shell, rope(way * np.reshape(radius, (-1, 1)), thick, 5, 2)]
+    return [shell, rope(way * np.reshape(radius, (-1, 1)), thick, 4, 1)]
 
 
 def slice_of_sphere(radius: float, edge: float, back: float, columns: int, rows: int) -> tuple[Array, Array, Array]:

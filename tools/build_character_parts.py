@@ -40,6 +40,22 @@ def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lo
     return lambda: surface(shape, *box, grid, size)
 
 
+def shirt_mesh() -> Lofted:
+    """The shirt, with normals that do not turn under at its edges; finer at the neckline."""
+    neck = body.neckline()
+    points, _, triangles = surface(
+        body.shirt(),
+        (-0.32, 0.96, -0.14),
+        (0.32, 1.46, 0.14),
+        0.005,
+        ramp([0.008, 0.03], [0.012, 0.0215], lambda p: np.abs(neck(p))),
+    )
+    normals = gradient(body.shirt_cloth(), points)
+    bowl = np.abs(neck(points)) < 0.002
+    normals[bowl] = -gradient(neck, points[bowl])
+    return points, normals, triangles
+
+
 def face_mesh() -> Lofted:
     """The head, with calm normals in the face."""
     shape = head.head()
@@ -85,7 +101,7 @@ def parts() -> list[Part]:
     )
     return [
         Part("leggings", of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg), "heat", 470, paint.leggings),
-        Part("shirt", of_shape(body.shirt(), ((-0.32, 0.96, -0.14), (0.32, 1.46, 0.14)), 0.005, even(0.0205)), "heat", 660, paint.shirt),
+        Part("shirt", shirt_mesh, "heat", 660, paint.shirt),
         Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim),
         Part("cuff", trims.cuff, "heat", 400, paint.trim, True),
         Part("arm", of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm), "heat", 560, paint.arm, True),
@@ -95,7 +111,7 @@ def parts() -> list[Part]:
         Part("locks", lambda: joined(*head.locks()), "skullbase", 800, paint.hair),
         Part("braid", of_shape(head.braid(), ((-0.05, 1.18, -0.20), (0.05, 1.67, -0.08)), 0.0025, even(0.0104)), "braid", 700, paint.braid),
         Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
-        Part("shoe", of_shape(body.shoe_upper(), ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21)), 0.003, even(0.0130)), "foot", 0, paint.plain, True, "foot"),
+        Part("shoe", of_shape(body.shoe_upper(), ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21)), 0.003, even(0.0140)), "foot", 0, paint.plain, True, "foot"),
         Part("wristband", trims.wristband, "heat", 0, paint.plain, True, "hand"),
         Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, True),
         Part("sole", trims.sole, "foot", 400, paint.rubber, True),

@@ -14,18 +14,18 @@ RIGHT = np.array([1.0, 0.0, 0.0])
 
 
 def hem() -> Lofted:
-    curve, out, _ = section(body.shirt(), (0, body.HEM + 0.008, -0.012), RIGHT, FRONT, 40)
-    return band(curve, out, 0.020, 0.0055)
+    curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.007, -0.012), RIGHT, FRONT, 40)
+    return band(curve, out, 0.022, 0.0065)
 
 
 def cuff() -> Lofted:
-    curve, out, _ = section(body.shirt(), on_arm(body.SLEEVE_END - 0.006), PALM, FRONT, 22, 0.08)
-    return band(curve, out, 0.017, 0.0055)
+    curve, out, _ = section(body.shirt_cloth(), on_arm(body.SLEEVE_END - 0.006), PALM, FRONT, 22, 0.08)
+    return band(curve, out, 0.019, 0.0065)
 
 
 def collar() -> Lofted:
     curve = _neck_curve(36)
-    normal = gradient(body.shirt(False), curve)
+    normal = gradient(body.shirt_cloth(), curve)
     outside = gradient(body.neckline(), curve)  # away from the neck: the ribbing leans onto the shirt
     across = np.cross(np.roll(curve, -1, 0) - np.roll(curve, 1, 0), normal)
     lean = 0.22 * np.sign((across * outside).sum())
@@ -34,7 +34,7 @@ def collar() -> Lofted:
 
 def _neck_curve(count: int) -> Array:
     """Where the neckline leaves the surface of the shirt: Newton steps in the half plane of each angle."""
-    shirt, neck = body.shirt(False), body.neckline()
+    shirt, neck = body.shirt_cloth(), body.neckline()
     turn = np.linspace(0, 2 * np.pi, count, endpoint=False)
     ray = np.stack([np.sin(turn), np.zeros(count), np.cos(turn)], axis=1)
     r, y = np.full(count, 0.075), 1.432 - 0.035 * np.cos(turn)
@@ -89,7 +89,21 @@ def sole() -> Lofted:
         centre = np.array([0.0, 0.05])
         flat = centre + (ring - centre) * scale
         rings.append(np.stack([x + flat[:, 0], np.broadcast_to(y, len(z)), flat[:, 1]], axis=1))
-    return loft(rings)
+    return loft([*rings, _around_upper(ring + [x, 0.0], high + 0.002)])
+
+
+def _around_upper(ring: Array, y: Array) -> Array:
+    """The line where the rubber meets the upper: along each ray from the middle, 1 mm outside its surface."""
+    shape, middle = body.shoe_upper(), np.array([HIP[0], 0.05])
+    low, high = np.zeros(len(ring)), np.ones(len(ring))
+    length = np.linalg.norm(ring - middle, axis=1)
+    for _ in range(40):
+        mid = (low + high) / 2
+        p = middle + mid[:, None] * (ring - middle)
+        inside = shape(np.stack([p[:, 0], y, p[:, 1]], axis=1)) < 0
+        low, high = np.where(inside, mid, low), np.where(inside, high, mid)
+    flat = middle + np.round(np.minimum(low + 0.001 / length, 0.97), 7)[:, None] * (ring - middle)
+    return np.stack([flat[:, 0], y, flat[:, 1]], axis=1)
 
 
 def laces() -> Lofted:
