@@ -1,0 +1,53 @@
+"""A part of a song, as users write it: `START:END` in seconds, beats or measures."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.errors import UsageError
+
+_POINT = re.compile(
+    r"\s*(?:(?P<unit>[bm])\s*(?P<after>[\d.]+)|(?P<number>[\d.]+)\s*(?P<suffix>[bms]?))\s*", re.IGNORECASE
+)
+_HOW = "write START:END in seconds (10:25), beats (b16:b48) or measures (m4:m12); either end may be left out"
+
+
+def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, float]:
+    """First and last second of a section.
+
+    Parameters
+    ----------
+    text : `START:END`; a plain number (or with `s`) is seconds, `b16` or `16b` a beat, `m4` or `4m` a measure of four beats
+    end_second : where the song ends; an end left out means there, a start left out second 0
+
+    Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.
+    """
+    start_text, colon, end_text = text.partition(":")
+    if not colon or ":" in end_text or not (start_text.strip() or end_text.strip()):
+        raise UsageError(f"section '{text}' cannot be read; {_HOW}")
+    start = _second(start_text, timing, text) if start_text.strip() else 0.0
+    end = _second(end_text, timing, text) if end_text.strip() else end_second
+    if start >= end_second:
+        raise UsageError(f"section '{text}' starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
+    if end <= start:
+        raise UsageError(f"section '{text}' ends at {end:.1f} s, not after its start at {start:.1f} s")
+    return start, min(end, end_second)
+
+
+def _second(point: str, timing: Timing, whole: str) -> float:
+    match = _POINT.fullmatch(point)
+    try:
+        number = float(match["after"] or match["number"]) if match else math.nan
+    except ValueError:
+        number = math.nan
+    if match is None or not math.isfinite(number):
+        raise UsageError(f"section '{whole}': '{point.strip()}' cannot be read; {_HOW}")
+    unit = (match["unit"] or match["suffix"] or "s").lower()
+    if unit == "s":
+        return number
+    beat = number * 4 if unit == "m" else number
+    return float(timing.seconds_of_beats(np.array([beat]))[0])
