@@ -15,8 +15,8 @@ from dancetutor_cli.chart.timing import Segments, Timing
 from dancetutor_cli.errors import ChartError, FileError
 
 TIMING_TAGS = {
-    "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "TIMESIGNATURES", "TICKCOUNTS", "COMBOS", "SPEEDS", "SCROLLS", "LABELS",
-    "OFFSET",
+    "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "OFFSET", "TIMESIGNATURES", "TICKCOUNTS", "COMBOS", "SPEEDS",
+    "SCROLLS", "LABELS",
 }  # fmt: skip
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 
@@ -229,7 +229,7 @@ class _Ssc(_Reader):
         return self.finish(song_tags, timing)
 
     def _groups(self) -> tuple[list[Tag], list[tuple[list[Tag], Tag]]]:
-        """Song tags, and per chart its tags and its NOTES. Tags after NOTES, up to the next NOTEDATA, are the song's."""
+        """Song tags, and per chart its tags and its NOTES. Tags between NOTES and NOTEDATA are the song's."""
         song_tags: list[Tag] = []
         groups: list[tuple[list[Tag], Tag]] = []
         current: list[Tag] | None = None

@@ -21,7 +21,7 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
 
     Parameters
     ----------
-    text : `START:END`; a plain number (or with `s`) is seconds, `b16` or `16b` a beat, `m4` or `4m` a measure of four beats
+    text : `START:END`; a plain number is seconds, `b16` or `16b` a beat, `m4` or `4m` a measure of 4 beats
     end_second : where the song ends; an end left out means there, a start left out second 0
 
     Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.

@@ -1,4 +1,4 @@
-"""From the text of timing tags to segments: exact decimals, junk named in warnings, negative values turned into warps."""
+"""From the text of timing tags to segments: exact decimals, junk named in warnings, negative values as warps."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def last_of_each_beat(segments: Pairs) -> Pairs:
 def negative_to_warps(raw: Raw, warnings: list[ReadWarning], line: int) -> Raw:
     """.sm files: negative or infinite BPMs and negative stops become warps, as StepMania 5 reads them.
 
-    Time is followed through the changes; while it lies behind the point where it first ran backwards, the beats are a warp.
+    Time is followed through the changes; while it lies behind where it first ran backwards, the beats are a warp.
     """
     out = Raw(delays=raw.delays, warps=list(raw.warps), fakes=raw.fakes, offset=raw.offset)
     out.offset -= sum((value for beat, value in raw.stops if beat < 0), Fraction(0))

@@ -30,7 +30,7 @@ class _Knots:
 
 @dataclass(frozen=True)
 class Timing:
-    """The timing of a song or of a chart with split timing. Segments are (tick, value); values in BPM, seconds or ticks.
+    """The timing of a song or of a chart of its own. Segments are (tick, value); values in BPM, seconds or ticks.
 
     bpms : never empty, the first at tick 0, all positive; offset : seconds, as in the file (beat 0 is at -offset)
     """

@@ -14,8 +14,8 @@ SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 def music_file(song: Song) -> Path:
     """The music of a song, case-insensitive like the games on Windows; with an empty tag the only audio file there.
 
-    Raises `FileError` for a name that leaves the folder (absolute, `..`, a network name, a link), that looks like an option
-    or a protocol, for an unknown kind of file, and if there is no such file.
+    Raises `FileError` for a name that leaves the folder (absolute, `..`, a network name, a link), that looks like an
+    option or a protocol, for an unknown kind of file, and if there is no such file.
     """
     folder = song.path.resolve().parent
     name = song.music.strip()
