@@ -39,6 +39,8 @@ class Skeleton:
         return out
 
 
+EYELID_CLOSING = 66.0  # degrees about +x that close the dancer's upper lids; the rest pose has them open
+
 _DOWN = np.sqrt(0.5)
 _LEFT_SIDE: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("l_hip", "HumanoidRoot", (0.088, 0.895, 0.0)),
