@@ -23,6 +23,7 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.rig.soles import place, sole_points
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 SETTLING = 3  # rounds of rough baking before the path of the body is final
-CORRECTIONS = 2  # rounds of moving the body until its centre of mass is on its path
+CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
+KEY_TOLERANCE = 0.0004  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
 
@@ -82,6 +84,9 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     body = _settled(plan, grid, feet, body, skeleton, settings)
     at = _key_times(plan, fps, start, end)
     rotations, root = _posed(plan, body, at, skeleton, settings)
+    more = (at[1:] + at[:-1]) / 2
+    inserted = _posed(plan, body, more, skeleton, settings)
+    at, rotations, root = _refined(skeleton, (at, rotations, root), (more, *inserted))
     look(skeleton, rotations, root, body, at, settings)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
@@ -93,14 +98,17 @@ def _settled(
 ) -> BodyPath:  # fmt: skip
     """Bake roughly, see where the centre of mass and pinned palms draw the root, and plan the body's path again."""
     coarse = grid[::4]
-    drawn = np.zeros(len(grid))
+    deeper = np.zeros(len(plan.presses))
     for _ in range(SETTLING):
         targets = _targets(plan, body, coarse, skeleton, settings)
         rotations, root = solve(skeleton, targets, settings.body.reach)
         offset = _mass(skeleton, rotations, root) - root
         above = np.column_stack([np.interp(grid, coarse, offset[:, k]) for k in range(3)])
-        drawn += np.interp(grid, coarse, np.minimum(root[:, 1] - targets.pelvis[:, 1], 0.0))
-        body = body_path(plan, grid, feet, skeleton, settings, body, above, drawn)
+        drawn = root[:, 1] - targets.pelvis[:, 1]
+        for k, press in enumerate(plan.presses):
+            near = (coarse >= press.start - 0.05) & (coarse <= press.end + 0.05)
+            deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
+        body = body_path(plan, grid, feet, skeleton, settings, body, above, deeper)
     return body
 
 
@@ -113,13 +121,35 @@ def _targets(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings
 def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
     """Solve the body at times `at` (f,), and move it so that its centre of mass is where it shall be."""
     targets = _targets(plan, body, at, skeleton, settings)
-    rotations, root = solve(skeleton, targets, settings.body.reach)
+    rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
     for _ in range(CORRECTIONS):
         targets = moved(targets, goal - _mass(skeleton, rotations, root))
-        rotations, root = solve(skeleton, targets, settings.body.reach)
+        rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
     return rotations, root
+
+
+def _refined(
+    skeleton: Skeleton, keys: tuple[Array, Array, Array], between: tuple[Array, Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Keys (times, rotations, root) plus those of the frames half-way between them that interpolation would miss.
+
+    A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
+    it, a landing for example, the frame between becomes a key.
+    """
+    times, rotations, root = keys
+    guess = quat.slerp(rotations[:-1], rotations[1:], np.full((len(times) - 1, 1), 0.5))
+    seen = world_transforms(skeleton, guess, (root[:-1] + root[1:]) / 2)
+    true = world_transforms(skeleton, between[1], between[2])
+    wanted = np.zeros(len(times) - 1, dtype=bool)
+    for points in sole_points(skeleton):
+        right, drawn = place(points, *true), place(points, *seen)
+        low = right[..., 1].min(axis=1) < 0.004
+        wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
+    order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
+    merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]
+    return merged[0], merged[1], merged[2]
 
 
 def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
@@ -129,7 +159,7 @@ def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
 
 def _clock(chart: Chart):  # type: ignore[no-untyped-def]
     def second(tick: int) -> float:
-        return float(chart.timing.second_at_tick(tick))
+        return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0])
 
     return second
 

@@ -16,6 +16,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_points
 
 Array = NDArray[np.float64]
+PIN_IN, PIN_OUT = 0.30, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,4 +117,5 @@ def _press(
     goal[:, 1] = wrist[1] + (1.0 - sink) * (free[:, 1] - wrist[1])
     wrists[near, side] = goal
     turn[near, side] = hand
-    pinned[near, side] = np.maximum(pinned[near, side], smooth((across - 0.5) * 2.05))
+    pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
+    pinned[near, side] = np.maximum(pinned[near, side], pin)

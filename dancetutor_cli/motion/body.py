@@ -47,13 +47,13 @@ class BodyPath:
 
 def body_path(
     plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings,
-    before: BodyPath | None = None, above: Array | None = None, drawn: Array | float = 0.0,
+    before: BodyPath | None = None, above: Array | None = None, deeper: Array | None = None,
 ) -> BodyPath:  # fmt: skip
     """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times.
 
     before : the path found in the round before; None in the first
     above : (n, 3), centre of mass minus root as measured on a first bake; None for that of the rest pose
-    drawn : (n,) how far palms on the floor drew the root below where it was wanted, metres, never positive
+    deeper : (p,) how far each press of a palm drew the root below where it was wanted, metres
     """
     rate = 1.0 / float(times[1] - times[0])
     if above is None:
@@ -64,8 +64,8 @@ def body_path(
     mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), rate, settings.body)
     ground = mass_ground - above[:, [0, 2]]
     yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
-    bent = reaching.max(axis=1)
-    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, drawn, above[:, 1], skeleton, settings)
+    bent = _bent(plan.presses, deeper, times, settings)
+    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
@@ -123,8 +123,7 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 
 def _height(
-    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
-    drawn: Array | float, above: Array, skeleton: Skeleton, settings: MotionSettings,
+    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array, above: Array, skeleton: Skeleton, settings: MotionSettings,
 ) -> HeightPath:  # fmt: skip
     """Height of the centre of mass; `above` (n,): how far it is over the root."""
     body = settings.body
@@ -137,7 +136,8 @@ def _height(
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
     wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002)
-    wanted = wanted + bent * (settings.hands.pelvis - wanted) + drawn
+    share, depth = bent[:, 0], bent[:, 1]
+    wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
     return height_path(times, wanted + above, highest + above, flights, body)
 
 
@@ -162,13 +162,28 @@ def _looking(yaw: Array, ground: Array, rate: float, settings: MotionSettings) -
     return chest, chest + smooth_path(head[:, None], ones, rate, 0.04)[:, 0]
 
 
+def _bent(presses: tuple[Press, ...], deeper: Array | None, times: Array, settings: MotionSettings) -> Array:
+    """(n, 2): how far the body has gone down to the floor, 0 to 1, and how much deeper than usual, metres."""
+    out = np.zeros((len(times), 2))
+    for k, press in enumerate(presses):
+        share = press_share(press, times, settings.hands.reach_down)
+        more = share > out[:, 0]
+        out[more, 0] = share[more]
+        out[:, 1] = np.maximum(out[:, 1], share * (0.0 if deeper is None else float(deeper[k])))
+    return out
+
+
+def press_share(press: Press, times: Array, down: float) -> Array:
+    """How much of a press there is at each time, 0 to 1: all of it from its start to its end."""
+    return smooth((times - press.start + down) / down) * smooth((press.end + down - times) / down)
+
+
 def _reaching(presses: tuple[Press, ...], times: Array, side: int, settings: MotionSettings) -> Array:
     out = np.zeros_like(times)
     for press in presses:
         if press.side == side:
             down = settings.hands.reach_down
-            s = smooth((times - press.start + down) / down) * smooth((press.end + down - times) / down)
-            out = np.maximum(out, s)
+            out = np.maximum(out, press_share(press, times, down))
     return out
 
 

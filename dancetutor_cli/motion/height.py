@@ -2,7 +2,7 @@
 
 Unknown is the height at nodes in time; take-offs and landings are nodes. In flight it falls with g, exactly. On the
 ground the jerk is least, while the height stays near a wanted one, below what the legs reach, and the ground
-pushes with a force that legs can give. A landing and the next move share one ground phase, so they overlap by themselves.
+pushes with a force that legs can give. A landing and the next move share one ground phase: they overlap by themselves.
 """
 
 from __future__ import annotations

@@ -73,12 +73,13 @@ _NAMES = (
 _VL5, _VT10, _VT4, _LEG, _ARM = 1, 2, 3, 4, 12
 
 
-def solve(skeleton: Skeleton, targets: Targets, reach: float) -> tuple[Array, Array]:
+def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> tuple[Array, Array]:
     """Solve all frames.
 
     Parameters
     ----------
     skeleton : one with the dancer's joints; targets : f frames; reach : longest distance hip to ankle, metres
+    follow : part of a missing distance to a pinned palm that the root moves in each round; the torso bends for the rest
 
     Returns
     -------
@@ -95,8 +96,8 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float) -> tuple[Array, Ar
     rotations[..., 0] = 1.0
     root = np.array(targets.pelvis, dtype=np.float64)
     _solve(
-        skeleton.offsets, joints, hinges, reach, root, targets.pelvis_turn, targets.chest_turn, targets.shoulders,
-        targets.wrists, targets.hand_turn, targets.pinned, targets.elbows, targets.ankles, targets.feet_turn,
+        skeleton.offsets, joints, hinges, reach, follow, root, targets.pelvis_turn, targets.chest_turn,
+        targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned, targets.elbows, targets.ankles, targets.feet_turn,
         targets.toes_turn, targets.knees, rotations,
     )  # fmt: skip
     return rotations, root
@@ -188,8 +189,8 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 
 @njit(cache=True)
 def _solve(
-    offsets: Array, joints: Array, hinges: Array, reach: float, root: Array, pelvis_turn: Array, chest_turn: Array,
-    shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, ankles: Array, feet_turn: Array,
+    offsets: Array, joints: Array, hinges: Array, reach: float, follow: float, root: Array, pelvis_turn: Array,
+    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, ankles: Array, feet_turn: Array,
     toes_turn: Array, knees: Array, rotations: Array,
 ) -> None:  # fmt: skip
     hips = (_vec(offsets[joints[_LEG]]), _vec(offsets[joints[_LEG + 4]]))
@@ -208,7 +209,7 @@ def _solve(
                 if length(gl) + length(gr) < 1e-5:
                     break
                 both = add(gl, gr)
-                place = _pull_root(add(place, scale(both, 0.4)), turn, hips, goals, reach)
+                place = _pull_root(add(place, scale(both, follow)), turn, hips, goals, reach)
                 left = add(sl, add(scale(gl, 1.2), scale(gr, 0.4)))
                 right = add(sr, add(scale(gr, 1.2), scale(gl, 0.4)))
                 q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 def sample(motion: Motion, times: Array) -> tuple[Array, Array]:
-    """Local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; held before the first and after the last key."""
+    """Local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; held beyond the first and last key."""
     at = np.clip(times, motion.times[0], motion.times[-1])
     after = np.clip(np.searchsorted(motion.times, at, side="right"), 1, len(motion.times) - 1)
     before = after - 1

@@ -18,13 +18,13 @@ Event = tuple[float, dict[int, Limb]]
 
 def pad(double: bool = False) -> Any:
     """Panels of dance-single or dance-double, as the spec gives them."""
-    panels = np.vstack((PANELS, PANELS + [3, 0])) if double else PANELS
+    panels = np.vstack((PANELS, PANELS + np.array([3, 0]))) if double else PANELS
     return SimpleNamespace(panels=panels, centre=(1.5, 0.0) if double else (0.0, 0.0))
 
 
 def chart() -> Any:
     """A chart of which only the clock is asked."""
-    return SimpleNamespace(timing=SimpleNamespace(second_at_tick=lambda tick: tick / TICKS_PER_SECOND))
+    return SimpleNamespace(timing=SimpleNamespace(seconds=lambda ticks: ticks / TICKS_PER_SECOND))
 
 
 def play(

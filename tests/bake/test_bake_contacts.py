@@ -53,7 +53,12 @@ def test_report_finds_a_late_foot_and_a_wrong_panel(medley: Motion) -> None:
     errors = report(late).contact_errors
     assert np.nanmedian(errors) == pytest.approx(20.0, abs=1.5)
     aside = Motion(
-        medley.skeleton, medley.fps, medley.times, medley.rotations, medley.root + [0.5, 0, 0], medley.contacts
+        medley.skeleton,
+        medley.fps,
+        medley.times,
+        medley.rotations,
+        medley.root + np.array([0.5, 0, 0]),
+        medley.contacts,
     )
     assert np.isnan(report(aside).contact_errors).mean() > 0.9
 
