@@ -37,6 +37,10 @@ class FileError(DancetutorError):
         return f"{self.path}{place}: {self.message}"
 
 
+class MissingFileError(FileError):
+    """A file that another one names is not there; whoever can do without it may go on."""
+
+
 class ChartError(FileError):
     """A chart file that cannot be understood."""
 
