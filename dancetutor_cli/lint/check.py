@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.rule import ChartRule, FileRule
+from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule
 from dancetutor_cli.lint.settings import Settings
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     findings: list[Finding] = []
     for code, options in settings.for_file(subject.song.path.absolute()).items():
         rule = all_rules()[code]
-        if issubclass(rule, FileRule):
+        if issubclass(rule, FileRule | ReaderRule):
             findings += rule(options).check(subject)
     return _in_order(findings)
 
@@ -31,7 +31,7 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     rules = settings.for_chart(subject.song.path.absolute(), chart.steps_type, chart.difficulty, chart.meter)
     for code, options in rules.items():
         rule = all_rules()[code]
-        if issubclass(rule, ChartRule):
+        if issubclass(rule, ChartRule | ReaderRule):
             findings += rule(options).check(subject)
     return _in_order(findings)
 

@@ -55,7 +55,8 @@ def find_configuration(start: Path) -> Path | None:
 
 def load_configuration(source: str | Path | None) -> Configuration:
     """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults)."""
-    base = Configuration(Settings((_default_layer(),)))
+    base = _extend(Configuration(Settings()), config_path("lint/default.yaml"), seen=())
+    base = replace(base, path=None)
     return base if source is None else _extend(base, _located(source), seen=())
 
 
@@ -95,10 +96,6 @@ def default_rules() -> Mapping[str, Options]:
     """Every rule with its default severity and options: configs/lint/default.yaml."""
     rules: Mapping[str, Options] = _read_yaml(config_path("lint/default.yaml"))["rules"]
     return rules
-
-
-def _default_layer() -> Layer:
-    return Layer(rules=default_rules())
 
 
 def _located(source: str | Path) -> Path:
@@ -153,7 +150,9 @@ def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...
     for name, options in entries.items():
         at = (*place, "rules", str(name))
         code = _known(rule_named, str(name), at).code
-        rules[code] = _options(code, {"severity": options} if isinstance(options, str) else options, at)
+        # YAML 1.1 reads a bare `off` as False.
+        short = "off" if options is False else options
+        rules[code] = _options(code, {"severity": short} if isinstance(short, str) else short, at)
     select = _selected(data, "select", place) if data.get("select") is not None else None
     return Layer(when, select, _selected(data, "ignore", place), rules)
 
@@ -162,7 +161,6 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
     defaults = default_rules()[code]
     if not isinstance(options, Mapping):
         raise _ConfigError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
-    # YAML 1.1 reads a bare `off` as False.
     options = {key: "off" if key == "severity" and value is False else value for key, value in options.items()}
     for key, value in options.items():
         if key not in defaults:
@@ -249,7 +247,7 @@ def _read_yaml(path: Path) -> dict[str, Any]:
         raise FileError(path, f"is not YAML: {getattr(error, 'problem', None) or error}", line) from error
     if data is not None and not isinstance(data, dict):
         raise FileError(path, "must be a mapping of names to values", 1)
-    return data or {}
+    return dict(data or {})
 
 
 def _line_of(path: Path, keys: Sequence[str | int]) -> int | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import inspect
 import pkgutil
 from collections.abc import Iterable, Mapping
 from functools import cache
@@ -19,7 +18,7 @@ def all_rules() -> Mapping[str, type[Rule]]:
     found: dict[str, type[Rule]] = {}
     for module in pkgutil.iter_modules(rules.__path__):
         for value in vars(importlib.import_module(f"{rules.__name__}.{module.name}")).values():
-            if isinstance(value, type) and issubclass(value, Rule) and not inspect.isabstract(value):
+            if isinstance(value, type) and issubclass(value, Rule) and "code" in vars(value):
                 found[value.code] = value
     return dict(sorted(found.items()))
 

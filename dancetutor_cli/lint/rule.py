@@ -48,6 +48,18 @@ class ChartRule(Rule):
         """Findings in one chart."""
 
 
+class ReaderRule(Rule):
+    """A rule that hands on warnings of the reader, about the song or about a chart. `codes` : those it claims."""
+
+    codes: ClassVar[frozenset[str]]
+
+    def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
+        """One finding for each warning that is claimed."""
+        for code, message, place in subject.warnings():
+            if code in self.codes:
+                yield self.finding(message, place)
+
+
 class MoveRule(ChartRule):
     """A chart rule that reports every row in which a named move happens."""
 

@@ -22,6 +22,11 @@ class FileSubject:
 
     song: Song
 
+    def warnings(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """Code, message and place of what the reader warned of about the song."""
+        for warning in self.song.warnings:
+            yield warning.code, warning.message, self.place(warning.line)
+
     def place(self, line: int | None = None) -> dict[str, Any]:
         """Where a finding about the file stands, as keyword arguments of `Finding`."""
         return {"line": line, "column": None if line is None else 1}
@@ -59,6 +64,11 @@ class ChartSubject:
         """Rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
 
+    def warnings(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """Code, message and place of what the reader warned of about the chart."""
+        for warning in self.chart.warnings:
+            yield warning.code, warning.message, self.at_line(warning.line)
+
     def rows_with(self, move: str) -> list[int]:
         """Rows of the play in which a move of this name happens, in order."""
         return self._rows_by_move.get(move, [])
@@ -77,6 +87,15 @@ class ChartSubject:
         assert self.play is not None
         limbs = self.play.limb[row]
         return bool((limbs == Limb.LEFT_FOOT).any() and (limbs == Limb.RIGHT_FOOT).any())
+
+    def tempos(self) -> list[float]:
+        """Every BPM of the chart's timing between its first and its last note."""
+        ticks = self.chart.notes.tick
+        if not len(ticks):
+            return []
+        first, last = int(ticks[0]), int(ticks[-1])
+        within = [float(bpm) for tick, bpm in self.chart.timing.bpms if first < tick <= last]
+        return [self.chart.timing.bpm_at(first), *within]
 
     def margin(self, row: int) -> int | None:
         """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
@@ -140,7 +159,7 @@ class ChartSubject:
 
     def at_tick(self, tick: int, line: int) -> dict[str, Any]:
         """Where a note of the chart stands that may be in no row of the play."""
-        second = float(self.chart.timing.second_at(tick))
+        second = float(self.chart.timing.seconds(np.array([tick]))[0])
         return {"line": line, "column": self._text_column(line, 0), **self._time(tick, second)}
 
     def at_chart(self) -> dict[str, Any]:

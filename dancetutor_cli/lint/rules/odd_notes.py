@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.rule import ReaderRule
 
 
-class OddNotes(ChartRule):
-    """Rows are too short or too long, characters are unknown, or something else in the note data had to be read around.
+class OddNotes(ReaderRule):
+    """Rows are too short or too long, characters are unknown, or rows are so close that one overwrites the other.
 
-    Bad: a row of three characters in a chart of four panels.
+    The games read around it, each in its own way, and so does the program, as ITGmania does.
 
-    Better: four characters in every row.
+    Bad:
+
+        100
+        00010
+        0x00
+        0001
+
+    Better:
+
+        1000
+        0001
+        0100
+        0001
     """
 
     code = "DT102"
     name = "odd-notes"
-
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each warning of the reader about the chart."""
-        for warning in subject.chart.warnings:
-            yield self.finding(warning.message, subject.at_line(warning.line))
+    codes = frozenset(
+        {
+            "odd-row",
+            "compound-note",
+            "odd-keysound",
+            "long-row",
+            "short-row",
+            "unknown-note",
+            "row-collision",
+            "several-players",
+        }
+    )

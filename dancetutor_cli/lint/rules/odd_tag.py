@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import FileRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import FileSubject
+from dancetutor_cli.lint.rule import ReaderRule
 
 
-class OddTag(FileRule):
-    """A tag of the song is not what it should be and was read around, as the games do.
+class OddTag(ReaderRule):
+    """A tag is not what it should be: a decimal comma, a meter that is no number, a title that starts with #.
 
-    Bad: #OFFSET:1,5; Better: #OFFSET:1.5;
+    Bad: #OFFSET:1,5;
+
+    Better: #OFFSET:1.5;
     """
 
     code = "DT104"
     name = "odd-tag"
-
-    def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding for each warning of the reader about the song."""
-        for warning in subject.song.warnings:
-            yield self.finding(warning.message, subject.place(warning.line))
+    codes = frozenset({"odd-offset", "odd-meter", "odd-time-signature", "hash-in-value", "nul-byte", "cr-only"})

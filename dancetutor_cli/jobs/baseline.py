@@ -1,0 +1,95 @@
+"""The baseline: findings that were there before and are not reported again, known by chart, beat and rule."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.lint.model import Finding
+
+SCHEMA = 1
+# path of the chart file relative to the baseline's folder, chart, rule, beat in 1/48 (or the line, for a file's finding)
+Key = tuple[str, str, str, int]
+
+
+@dataclass
+class Baseline:
+    """Known findings with how often each may occur; counts down as findings are matched."""
+
+    path: Path
+    known: Counter[Key] = field(default_factory=Counter)
+    _left: Counter[Key] = field(default_factory=Counter)
+    _seen_files: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self._left = Counter(self.known)
+
+    def key(self, file: str, chart: str, finding: Finding) -> Key:
+        """What identifies a finding: file, chart, rule and beat."""
+        place = (finding.line or 0) if finding.beat is None else round(finding.beat * 48)
+        return self._relative(file), chart, finding.rule, place
+
+    def absorbs(self, key: Key) -> bool:
+        """Whether a finding is known; each entry absorbs one finding."""
+        if self._left[key] <= 0:
+            return False
+        self._left[key] -= 1
+        return True
+
+    def saw(self, file: str) -> None:
+        """Remember that a file was analysed whole, so that entries of it that matched nothing are unused."""
+        self._seen_files.add(self._relative(file))
+
+    def unused(self) -> list[Key]:
+        """Entries of analysed files that no finding matched: the finding is gone, the entry can go too."""
+        return sorted(key for key, count in self._left.items() if count > 0 and key[0] in self._seen_files)
+
+    def replaced(self, keys: Iterable[Key]) -> Baseline:
+        """A baseline with these findings for the analysed files, and the old entries of all others."""
+        kept = Counter({key: count for key, count in self.known.items() if key[0] not in self._seen_files})
+        return Baseline(self.path, kept + Counter(keys))
+
+    def write(self) -> None:
+        """Write the file, sorted, one entry a line."""
+        entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.known.items())]
+        body = ",\n  ".join(entries)
+        text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
+        write_bytes(self.path, text.encode("utf-8", "replace"))
+
+    def _relative(self, file: str) -> str:
+        return Path(os.path.relpath(Path(file).absolute(), self.path.absolute().parent)).as_posix()
+
+
+def _entry(key: Key, count: int) -> dict[str, Any]:
+    file, chart, rule, place = key
+    where = {"beat": round(place / 48, 6)} if chart else {"line": place}
+    return {"file": file, "chart": chart, "rule": rule, **where, **({"count": count} if count > 1 else {})}
+
+
+def load_baseline(path: Path) -> Baseline:
+    """Read a baseline; FileError says what is wrong with it."""
+    try:
+        data = json.loads(path.read_text("utf-8"))
+    except FileNotFoundError:
+        raise FileError(path, "there is no such baseline; make it with --update-baseline") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, getattr(error, "strerror", None) or "is not UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise FileError(path, f"is not JSON: {error.msg}", error.lineno, error.colno) from error
+    if not isinstance(data, Mapping) or data.get("schema") != SCHEMA or not isinstance(data.get("entries"), list):
+        raise FileError(path, f'is not a baseline: it needs "schema": {SCHEMA} and "entries"')
+    known: Counter[Key] = Counter()
+    for number, entry in enumerate(data["entries"]):
+        try:
+            place = round(float(entry["beat"]) * 48) if entry["chart"] else int(entry["line"])
+            known[str(entry["file"]), str(entry["chart"]), str(entry["rule"]), place] += int(entry.get("count", 1))
+        except (KeyError, TypeError, ValueError):
+            raise FileError(path, f"entry {number} is no finding with file, chart, rule and beat") from None
+    return Baseline(path, known)

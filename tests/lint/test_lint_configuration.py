@@ -1,0 +1,170 @@
+"""dancetutor.yaml: layers, conditions, and errors that name the line and what exists."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.lint.configuration import (
+    Configuration,
+    default_rules,
+    find_configuration,
+    load_configuration,
+    with_assignments,
+    with_selection,
+)
+from dancetutor_cli.lint.registry import all_rules
+
+
+def configured(text: str, folder: Path) -> Configuration:
+    path = folder / "dancetutor.yaml"
+    path.write_text(text, encoding="utf-8")
+    return load_configuration(path)
+
+
+def severity(configuration: Configuration, code: str, path: Path, *, difficulty: str = "Hard", meter: int = 9) -> str:
+    rules = configuration.settings.for_chart(path, "dance-single", difficulty, meter)
+    return str(rules[code]["severity"]) if code in rules else "off"
+
+
+def test_every_rule_has_defaults_and_every_default_a_rule() -> None:
+    assert sorted(default_rules()) == sorted(all_rules())
+
+
+def test_codes_and_names_are_unique_and_well_formed() -> None:
+    names = [rule.name for rule in all_rules().values()]
+    assert len(set(names)) == len(names)
+    assert all(code == f"DT{int(code[2:])}" and "1" <= code[2] <= "5" for code in all_rules())
+
+
+def test_the_defaults_depend_on_the_difficulty(tmp_path: Path) -> None:
+    plain = load_configuration(None)
+    assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Easy") == "warning"
+    assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Hard") == "off"
+
+
+def test_a_file_changes_single_entries(tmp_path: Path) -> None:
+    given = configured("rules:\n  doublestep: error\n  DT205: {max_rows: 3}\n", tmp_path)
+    assert severity(given, "DT201", tmp_path / "x.sm") == "error"
+    rules = given.settings.for_chart(tmp_path / "x.sm", "dance-single", "Hard", 9)
+    assert rules["DT205"] == {"severity": "warning", "max_rows": 3}
+
+
+def test_yaml_off_needs_no_quotes(tmp_path: Path) -> None:
+    assert severity(configured("rules: {spin: off}", tmp_path), "DT202", tmp_path / "x.sm") == "off"
+
+
+def test_select_and_ignore_take_families_and_names(tmp_path: Path) -> None:
+    given = configured("select: [DT2, DT301]\nignore: spin\n", tmp_path)
+    rules = given.settings.for_chart(tmp_path / "x.sm", "dance-single", "Hard", 9)
+    assert "DT201" in rules and "DT301" in rules
+    assert "DT202" not in rules and "DT401" not in rules
+
+
+def test_the_command_line_selects_over_the_file(tmp_path: Path) -> None:
+    given = with_selection(configured("ignore: spin\n", tmp_path), ["spin,DT201"], [])
+    assert sorted(given.settings.for_chart(tmp_path / "x.sm", "dance-single", "Hard", 9)) == ["DT201", "DT202"]
+
+
+@pytest.mark.parametrize(
+    ("when", "path", "difficulty", "meter", "holds"),
+    [
+        ("{path: tech}", "tech/x.sm", "Hard", 9, True),
+        ("{path: tech}", "other/x.sm", "Hard", 9, False),
+        ("{path: 'tech/*.ssc'}", "tech/x.sm", "Hard", 9, False),
+        ("{path: 'tech/*.sm'}", "tech/x.sm", "Hard", 9, True),
+        ("{difficulty: [easy, HARD]}", "x.sm", "Hard", 9, True),
+        ("{difficulty: easy}", "x.sm", "Hard", 9, False),
+        ("{meter: 9}", "x.sm", "Hard", 9, True),
+        ("{meter: 1-8}", "x.sm", "Hard", 9, False),
+        ("{meter: 9-}", "x.sm", "Hard", 14, True),
+        ('{meter: "-8"}', "x.sm", "Hard", 14, False),
+        ("{meter: 9-, difficulty: easy}", "x.sm", "Hard", 14, False),
+        ("{steps-type: dance-double}", "x.sm", "Hard", 9, False),
+    ],
+)
+def test_overrides(when: str, path: str, difficulty: str, meter: int, holds: bool, tmp_path: Path) -> None:
+    given = configured(f"overrides:\n  - when: {when}\n    rules: {{DT201: error}}\n", tmp_path)
+    found = severity(given, "DT201", tmp_path / path, difficulty=difficulty, meter=meter)
+    assert found == ("error" if holds else "warning")
+
+
+def test_extends_a_file_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "base.yaml").write_text("rules: {spin: error, doublestep: error}\n")
+    given = configured("extends: base.yaml\nrules: {doublestep: info}\n", tmp_path)
+    assert severity(given, "DT202", tmp_path / "x.sm") == "error"
+    assert severity(given, "DT201", tmp_path / "x.sm") == "info"
+
+
+def test_a_circle_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="extends itself"):
+        configured("extends: dancetutor.yaml\n", tmp_path)
+
+
+def test_paths_in_the_file_are_relative_to_it(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("extends: thesis\n")
+    given = configured("baseline: known.json\npreset: mine.yaml\n", tmp_path)
+    assert given.baseline == tmp_path / "known.json"
+    assert given.preset == str(tmp_path / "mine.yaml")
+    assert configured("preset: stamina\n", tmp_path).preset == "stamina"
+
+
+def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
+    (tmp_path / "dancetutor.yaml").write_text("{}")
+    deep = tmp_path / "a" / "b"
+    deep.mkdir(parents=True)
+    assert find_configuration(deep) == tmp_path / "dancetutor.yaml"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("rules:\n  DT2O1: error\n", 2, ["DT2O1", "DT201 doublestep"]),
+        ("rules:\n  DT201:\n    colour: red\n", 3, ["colour", "severity"]),
+        ("rules:\n  DT205: {max_rows: many}\n", 2, ["max_rows", "8"]),
+        ("rules:\n  DT201: fatal\n", 2, ["fatal", "error, warning, info, off"]),
+        ("rule: {}\n", 1, ["rule", "rules"]),
+        ("\nfail-on: never\nselect: DT9\n", 3, ["DT9", "DT201"]),
+        ("fail-on: sometimes\n", 1, ["error, warning, never"]),
+        ("overrides:\n  - rules: {}\n", 2, ["when"]),
+        ("overrides:\n  - when: {metre: 3}\n", 2, ["metre", "meter"]),
+        ("overrides:\n  - when:\n      meter: hard\n", 3, ["hard", "1-7"]),
+        ("rules: [\n", 2, ["not YAML"]),
+        ("- a\n", 1, ["mapping"]),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_line(text: str, line: int, words: list[str], tmp_path: Path) -> None:
+    with pytest.raises(FileError) as raised:
+        configured(text, tmp_path)
+    assert raised.value.line == line, str(raised.value)
+    for word in words:
+        assert word in raised.value.message
+
+
+@pytest.mark.parametrize(
+    ("assignment", "code", "expected"),
+    [("DT201.severity=error", "DT201", "error"), ("spin.severity=off", "DT202", "off")],
+)
+def test_set_on_the_command_line(assignment: str, code: str, expected: str, tmp_path: Path) -> None:
+    given = with_assignments(load_configuration(None), [assignment])
+    assert severity(given, code, tmp_path / "x.sm") == expected
+
+
+def test_set_takes_top_keys_too() -> None:
+    given = with_assignments(load_configuration(None), ["fail-on=error", "preset=stamina"])
+    assert (given.fail_on, given.preset) == ("error", "stamina")
+
+
+@pytest.mark.parametrize(
+    "assignment", ["nonsense", "DT999.severity=error", "DT201.colour=1", "what=1", "DT201.severity=x"]
+)
+def test_a_wrong_set_is_refused(assignment: str) -> None:
+    with pytest.raises(UsageError, match="--set"):
+        with_assignments(load_configuration(None), [assignment])
+
+
+def test_an_unknown_named_configuration_lists_what_exists() -> None:
+    with pytest.raises(UsageError, match="default"):
+        load_configuration("nonsense")
