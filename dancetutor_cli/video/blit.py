@@ -72,7 +72,9 @@ def _strip(
             keep = 255 * 65536 - alpha * weight
             for k in range(3):
                 colour = tile[r0, c, k] * (256 - fraction) + tile[r1, c, k] * fraction
-                frame[fy, x + c, k] = (frame[fy, x + c, k] * keep + colour * weight * 255 + 255 * 32768) // (255 * 65536)
+                frame[fy, x + c, k] = (frame[fy, x + c, k] * keep + colour * weight * 255 + 255 * 32768) // (
+                    255 * 65536
+                )
 
 
 @njit(cache=True)

@@ -1,4 +1,4 @@
-"""Frames to files: one encoder per segment, segments joined without loss, music added; MP4, GIF, WebP or PNG pictures."""
+"""Frames to files: one encoder per segment, joined without loss, music added; MP4, GIF, WebP or PNG pictures."""
 
 from __future__ import annotations
 
@@ -6,23 +6,25 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
-
-import numpy as np
-from PIL import Image
+from typing import TYPE_CHECKING, Literal
 
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.video import ffmpeg
-from dancetutor_cli.video.blit import Frame
+from dancetutor_cli.video.film_look import Quality
+
+if TYPE_CHECKING:
+    from dancetutor_cli.video.blit import Frame
 
 Target = Literal["mp4", "gif", "webp", "png"]
-Quality = Literal["draft", "good", "best"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}
 _PRESET = {"draft": "ultrafast", "good": "veryfast", "best": "medium"}
 # Tagged as bt709 and converted as bt709: players guess by size otherwise, and reds come out wrong.
 _BT709 = ("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv")
-_TO_BT709 = "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p"
+_TO_BT709 = (
+    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p,"
+    "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +43,16 @@ class Encoding:
 
     def _codec(self) -> Sequence[str]:
         if self.target == "mp4":
-            # No B-frames at a seam, a closed group of pictures and no scene cut guessing: segments join without a trace.
+            # Each segment is a closed group of pictures, so that segments join without a trace.
             h264 = ("-c:v", "libx264", "-preset", _PRESET[self.quality], "-crf", _CRF[self.quality], "-bf", "2")
-            group = ("-g", str(4 * self.fps), "-x264-params", "open-gop=0", "-video_track_timescale", str(self.fps * 512))
+            group = (
+                "-g",
+                str(4 * self.fps),
+                "-x264-params",
+                "open-gop=0",
+                "-video_track_timescale",
+                str(self.fps * 512),
+            )
             return ("-vf", _TO_BT709, *h264, *group, *_BT709)
         return ("-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0")
 
@@ -52,7 +61,9 @@ def target_of(path: Path) -> Target:
     """What the name of an output file asks for; UsageError lists what there is."""
     found = re.fullmatch(r"\.(mp4|gif|webp)", path.suffix.lower())
     if not found:
-        raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in .mp4, .gif or .webp")
+        raise UsageError(
+            f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in .mp4, .gif or .webp"
+        )
     return found[1]  # type: ignore[return-value]
 
 
@@ -76,12 +87,14 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
     arguments = ("-y", *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
     with ffmpeg.Process((*arguments, ffmpeg.local(path)), "encoding video", write=True) as process:
         for frame in frames:
-            process.write(np.ascontiguousarray(frame).data)
+            process.write(memoryview(frame).cast("B"))
         process.finish()
 
 
 def save_picture(frame: Frame, path: Path) -> None:
     """Write one frame as PNG."""
+    from PIL import Image
+
     try:
         Image.fromarray(frame).save(path, compress_level=2)
     except OSError as error:
@@ -89,7 +102,7 @@ def save_picture(frame: Frame, path: Path) -> None:
 
 
 def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
-    """Make the film of its segments and the sound (a WAV file or None). `work` is a folder for what it needs meanwhile."""
+    """Make the film of its segments and the sound (a WAV file or None). `work`: a folder for what it needs meanwhile."""
     listing = work / "segments.txt"
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import tempfile
@@ -100,16 +101,16 @@ class Process:
     def __enter__(self) -> Process:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
-                try:
+                with contextlib.suppress(OSError):  # what it still wanted to flush has no reader any more
                     pipe.close()
-                except OSError:
-                    pass  # what it still wanted to flush has no reader any more
         self.log.close()
 
 
@@ -122,5 +123,3 @@ def run(arguments: Sequence[str], what: str) -> None:
 def bare_start() -> None:
     """Check that ffmpeg starts at all; raises otherwise."""
     run(["-version"], "starting")
-
-

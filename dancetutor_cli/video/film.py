@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,31 +13,19 @@ from numpy.typing import NDArray
 from dancetutor_cli.video import overlay
 from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.clock import Clock
-from dancetutor_cli.video.encoder import Quality
+from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.highway import Highway, HighwayGeometry
-from dancetutor_cli.video.layout import Layout
+from dancetutor_cli.video.layout import pixels
+from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
-from dancetutor_cli.video.scroll import Scroll
+from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.sprites import highway_style
 from dancetutor_cli.video.text import Typeface
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
-    from dancetutor_cli.pads import Pad
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """How a film looks, as asked for. size : (width, height), even; renderer : "auto", "cpu" or "gl"."""
-
-    layout: Layout
-    size: tuple[int, int]
-    quality: Quality = "good"
-    renderer: str = "auto"
-    camera: str | None = None
-    scroll: Scroll | None = None
-    down: bool = False
-    font: Path | None = None
+    from dancetutor_cli.video.dancer import Dancer
+    from dancetutor_cli.video.stage import PadLike
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +37,7 @@ class FilmPlan:
     motion : the dancer's, or None where the layout has none
     """
 
-    look: Look
+    look: FilmLook
     clock: Clock
     words: overlay.Words
     song: overlay.SongShape
@@ -61,7 +48,7 @@ class FilmPlan:
     fastest_bpm: float
     directions: tuple[float | None, ...]
     motion: Motion | None
-    pad: Pad | None
+    pad: PadLike | None
 
 
 class Film:
@@ -84,8 +71,6 @@ class Film:
     def _highway(self) -> Highway:
         plan, part = self.plan, self.plan.look.layout.highway
         assert part is not None
-        from dancetutor_cli.video.scroll import parse_scroll
-
         box = plan.look.layout.highway_box(plan.look.size, len(plan.directions))
         lane = min(part.lane * self._scale, 0.86 * (box[2] - box[0]) / max(1, len(plan.directions)))
         down = part.down or plan.look.down
@@ -97,8 +82,6 @@ class Film:
 
     @cached_property
     def _overlays(self) -> tuple[overlay.Header | None, overlay.Legend | None, overlay.Progress | None]:
-        from dancetutor_cli.video.layout import pixels
-
         plan, layout, style = self.plan, self.plan.look.layout, highway_style()
         size, scale, face = plan.look.size, self._scale, self.face
         header, legend, progress = layout.header, layout.legend, layout.progress
@@ -110,13 +93,18 @@ class Film:
         )
 
     @cached_property
-    def _dancer(self) -> Any:
+    def _dancer(self) -> Dancer:
         """The renderer of the dancer's box; made in the process that draws."""
         from dancetutor_cli.video import dancer
 
-        layout, size = self.plan.look.layout, self.plan.look.size
-        left, top, right, bottom = layout.dancer_box(size, len(self.plan.directions))
-        return dancer.Dancer(self.plan, (right - left, bottom - top))
+        plan, look = self.plan, self.plan.look
+        columns = len(plan.directions)
+        left, top, right, bottom = look.layout.dancer_box(look.size, columns)
+        assert look.layout.dancer is not None and plan.motion is not None and plan.pad is not None
+        lights = PanelLights(plan.presses, columns, highway_style().panel_seconds)
+        camera = look.camera or look.layout.dancer.camera
+        size = (right - left, bottom - top)
+        return dancer.Dancer(plan.motion, plan.pad, lights, size, camera, look.quality, look.renderer)
 
     def frame(self, number: int) -> Frame:
         """Frame `number` of the film, uint8 (h, w, 3)."""

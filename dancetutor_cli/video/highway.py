@@ -12,6 +12,7 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video import sprites
 from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle, strip
+from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.video.scroll import Scroll
 from dancetutor_cli.video.text import Typeface
@@ -58,21 +59,20 @@ class Highway:
         self.style = sprites.highway_style()
         self.size = max(8, round(geometry.lane * self.style.arrow))
         self.limb_colours = limb_colours().by_limb
-        self._columns = [np.flatnonzero(presses.column == c) for c in range(len(geometry.directions))]
+        self.lights = PanelLights(presses, len(geometry.directions), self.style.flash_seconds)
         self._number = lru_cache(maxsize=256)(self._draw_number)
         self._make_sprites()
 
     def _make_sprites(self) -> None:
         style, size, directions = self.style, self.size, self.geometry.directions
-        colours = [style.quantisation[q] for q in sprites.QUANTISATIONS]
         kinds = set(directions)
-        self.arrows = {(d, q): sprites.arrow(size, d, c) for d in kinds for q, c in enumerate(colours)}
-        lifts = bool((self.notes.kind == Kind.LIFT).any())
-        self.lifts = {(d, q): sprites.arrow(size, d, c, True) for d in kinds for q, c in enumerate(colours) if lifts}
+        is_lift = self.notes.kind == Kind.LIFT
+        self.arrows, self.lifts = self._arrows(~is_lift, hollow=False), self._arrows(is_lift, hollow=True)
         self.fakes = {d: sprites.arrow(size, d, style.fake) for d in kinds}
         self.receptors = {d: sprites.receptor(size, d, style.receptor) for d in kinds}
-        unknown = style.receptor
-        self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in enumerate((*self.limb_colours, unknown))}
+        glows = dict(enumerate((*self.limb_colours, style.receptor)))
+        used = {int(limb) for limb in np.unique(self.presses.limb)}
+        self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in glows.items() if i in used or i == 4}
         self.mine = sprites.mine(size, style.mine)
         body = max(4, round(0.62 * size))
         self.bodies = {k: sprites.hold_body(body, c, k == Kind.ROLL) for k, c in self._hold_colours()}
@@ -80,6 +80,15 @@ class Highway:
         mark = max(6, round(style.mark * self.geometry.lane))
         self.marks = [sprites.marker(mark, limb, self.face) for limb in range(4)]
         self.mark_shade = sprites.shade(round(1.35 * mark))
+
+    def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
+        """Sprites of the notes `which`, by direction and quantisation; only what the chart has."""
+        pairs = {
+            (int(c), int(q)) for c, q in zip(self.notes.column[which], self.notes.quantisation[which], strict=True)
+        }
+        wanted = {(self.geometry.directions[c], q) for c, q in pairs}
+        colour = self.style.quantisation
+        return {(d, q): sprites.arrow(self.size, d, colour[sprites.QUANTISATIONS[q]], hollow) for d, q in wanted}
 
     def _hold_colours(self) -> list[tuple[Kind, tuple[int, int, int]]]:
         return [(Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)]
@@ -103,7 +112,9 @@ class Highway:
         self._draw_receptors(frame, second, beat)
         self._draw_notes(frame, second, beat)
 
-    def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], second: float, beat: float) -> NDArray[np.float64]:
+    def _y(
+        self, seconds: NDArray[np.float64], beats: NDArray[np.float64], second: float, beat: float
+    ) -> NDArray[np.float64]:
         """Middle of things at `seconds`/`beats` on the screen, pixels."""
         away = seconds - second if self.by_time else beats - beat
         result: NDArray[np.float64] = self.geometry.receptor + away * self.spacing
@@ -144,25 +155,11 @@ class Highway:
         for column, direction in enumerate(self.geometry.directions):
             x, y = self._corner(column, self.geometry.receptor, self.size)
             blit(frame, self.receptors[direction], x, y, 0.95, self._rows, pulse)
-            light, limb = self.light(column, second)
+            light, limb = self.lights.at(column, second)
             if light > 0:
                 glow = self.glows[direction, limb if limb >= 0 else 4]
                 gx, gy = self._corner(column, self.geometry.receptor, glow.shape[0])
                 blit(frame, glow, gx, gy, light, self._rows)
-
-    def light(self, column: int, second: float) -> tuple[float, int]:
-        """How brightly a receptor is lit, 0..1, and by which limb: at once at the note, fading, steady in a hold."""
-        mine = self._columns[column]
-        last = int(np.searchsorted(self.presses.start[mine], second + 1e-6, side="right")) - 1
-        if last < 0:
-            return 0.0, -1
-        press = mine[last]
-        since = second - max(self.presses.start[press], min(second, self.presses.end[press]))
-        left = 1.0 - since / self.style.flash_seconds
-        steady = second < self.presses.end[press]
-        fresh = 1.0 - (second - self.presses.start[press]) / self.style.flash_seconds
-        level = max(0.62, fresh) if steady else 0.0 if left <= 0 else left**1.5
-        return level, int(self.presses.limb[press])
 
     def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
         return self.geometry.left + (column + 0.5) * self.geometry.lane - size / 2, y - size / 2

@@ -23,7 +23,7 @@ class DancerPart:
 
 @dataclass(frozen=True, slots=True)
 class HighwayPart:
-    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : C, X or M."""
+    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : as "C600"."""
 
     box: Box
     lane: float

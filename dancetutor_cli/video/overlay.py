@@ -28,6 +28,7 @@ class Words:
     badge: str
     difficulty: str
     detail: str
+    credit: str = ""
 
 
 class Header:
@@ -40,10 +41,12 @@ class Header:
         self.lines: list[tuple[Sprite, float, float]] = []
         y = float(box[1])
         title = face.fit(words.title, title_size, 0.97 * width)
-        y = self._add(face.sprite(title, title_size, WHITE, weight=1.1 * scale, shadow=2 * scale), box[0], y)
+        y = self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], y)
         if words.artist:
             artist = face.fit(words.artist, small, 0.97 * width)
-            y = self._add(face.sprite(artist, small, SOFT, weight=0.25 * scale, shadow=1.5 * scale), box[0], y + 1 * scale)
+            y = self._add(
+                face.sprite(artist, small, SOFT, weight=0.25 * scale, shadow=1.5 * scale), box[0], y + 1 * scale
+            )
         colour = style.difficulty.get(words.difficulty, style.difficulty["Edit"])
         badge = pill(words.badge, small * 0.95, colour, face, scale)
         self._add(badge, box[0] + 2 * scale, y + 6 * scale)
@@ -52,6 +55,10 @@ class Header:
             detail = face.fit(words.detail, small * 0.85, width - badge.shape[1] - 12 * scale)
             text = face.sprite(detail, small * 0.85, SOFT, shadow=1.5 * scale)
             self._add(text, x, y + 6 * scale + (badge.shape[0] - text.shape[0]) / 2)
+        if words.credit:
+            credit = face.fit(words.credit, small * 0.85, 0.42 * width)  # the dancer's head is further right
+            line = face.sprite(credit, small * 0.85, SOFT, shadow=1.5 * scale)
+            self._add(line, box[0], y + 6 * scale + badge.shape[0] + 3 * scale)
 
     def _add(self, sprite: Sprite, x: float, y: float) -> float:
         self.lines.append((sprite, x, y))
@@ -65,7 +72,7 @@ class Header:
 
 def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface, scale: float) -> Sprite:
     """Dark words on a coloured lozenge."""
-    words = face.sprite(text, size, INK, weight=0.7 * scale)
+    words = face.sprite(text, size, INK, weight=0.3 * scale)
     height = max(8, round(1.55 * size))
     width = max(words.shape[1] + height // 2 + 2, height)
     painter = shapes.Painter(height, width)
@@ -77,21 +84,19 @@ def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface, s
 
 
 class Legend:
-    """What the markers mean; hands only where the chart needs them."""
+    """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them."""
 
     def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface) -> None:
         names = ("left foot", "right foot", "left hand", "right hand")
         self.lines: list[tuple[Sprite, float, float]] = []
-        x, middle = float(box[0]), (box[1] + box[3]) / 2
-        for limb in sorted({0, 1} | limbs):
+        step = 31 * scale
+        middle = box[3] - step / 2
+        for limb in sorted({0, 1} | limbs, reverse=True):
             mark = sprites.marker(max(8, round(24 * scale)), limb, face)
             text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale, shadow=1.5 * scale)
-            if x + mark.shape[1] + text.shape[1] > box[2]:
-                break
-            self.lines.append((mark, x, middle - mark.shape[0] / 2))
-            x += mark.shape[1] + 4 * scale
-            self.lines.append((text, x, middle - text.shape[0] / 2))
-            x += text.shape[1] + 14 * scale
+            self.lines.append((mark, box[0], middle - mark.shape[0] / 2))
+            self.lines.append((text, box[0] + mark.shape[1] + 5 * scale, middle - text.shape[0] / 2))
+            middle -= step
 
     def draw(self, frame: Frame) -> None:
         """Lay the legend over the picture."""
@@ -117,7 +122,7 @@ class Progress:
 
     def __init__(self, song: SongShape, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
         self.song, self.box, self.scale, self.face = song, box, scale, face
-        left, top, right, bottom = box
+        left, _, right, _ = box
         self.text = 17 * scale
         total = clock_text(song.end)
         room = face.width(f"{total} / {total}", self.text) + 34 * scale
@@ -158,7 +163,9 @@ class Progress:
         split = max(0, min(right - left, int(x) - left))
         frame[top:bottom, left:right] = self.ahead
         frame[top:bottom, left : left + split] = self.played[:, :split]
-        rectangle(frame, x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale, WHITE)
+        rectangle(
+            frame, x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale, WHITE
+        )
         words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
         blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
 

@@ -41,6 +41,7 @@ class HighwayStyle:
     arrow: float
     mark: float
     flash_seconds: float
+    panel_seconds: float
     difficulty: dict[str, RGB]
     accent: RGB
 
@@ -67,14 +68,17 @@ def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
     return _ARROW @ turn * size / 2
 
 
-def _distance(painter: shapes.Painter, size: float, direction: float | None) -> shapes.Field:
-    return shapes.polygon(painter.x, painter.y, _outline(size * 0.96, direction)) - 0.02 * size
+@lru_cache(maxsize=64)
+def _distance(canvas: int, size: float, direction: float | None) -> shapes.Field:
+    """Distance to the note shape on a square canvas; the slow part of a sprite, shared by all its colours."""
+    x, y = shapes.grid(canvas, canvas)
+    return shapes.polygon(x, y, _outline(size * 0.96, direction)) - 0.02 * size
 
 
 def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
     """A note: white rim, body in `colour` lit from above, dark edge. `hollow`: a lift, only its rim in colour."""
     p = shapes.Painter(size, size)
-    d = _distance(p, size * 0.95, direction)
+    d = _distance(size, size * 0.95, direction)
     unit = size / 64
     base = np.array(colour, dtype=np.float64)
     p.paint(shapes.cover(d - 1.6 * unit), (8, 9, 16), 0.9)
@@ -91,7 +95,7 @@ def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False)
 def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
     """The still target of a lane: a dark body with a bright rim."""
     p = shapes.Painter(size, size)
-    d = _distance(p, size * 0.95, direction)
+    d = _distance(size, size * 0.95, direction)
     unit = size / 64
     p.paint(shapes.cover(d - 1.6 * unit), (6, 7, 14), 0.85)
     p.paint(shapes.cover(d), colour, 0.9)
@@ -103,7 +107,7 @@ def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
     """Light around and on a receptor while its panel is pressed; 1.5 times as large as the arrow."""
     full = size * 3 // 2
     p = shapes.Painter(full, full)
-    d = _distance(p, size * 0.95, direction)
+    d = _distance(full, size * 0.95, direction)
     halo = np.exp(-np.maximum(d, 0) / (0.085 * size))
     edge = np.clip((full / 2 - np.hypot(p.x, p.y)) / (0.12 * full), 0, 1)
     p.paint(halo * edge, colour, 0.85)
@@ -162,7 +166,11 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> S
     unit = size / 32
     radius = 0.5 * size - 1
     right = limb in (1, 3)
-    d = shapes.rounded_box(p.x, p.y, 0.93 * radius, 0.93 * radius, 0.3 * radius) if right else shapes.disc(p.x, p.y, radius)
+    d = (
+        shapes.rounded_box(p.x, p.y, 0.93 * radius, 0.93 * radius, 0.3 * radius)
+        if right
+        else shapes.disc(p.x, p.y, radius)
+    )
     p.paint(shapes.cover(d), (10, 11, 20))
     p.paint(shapes.cover(d + 2.2 * unit), paint)
     if limb >= 2:

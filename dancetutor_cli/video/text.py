@@ -59,7 +59,9 @@ class Typeface:
             if _has_glyph(self._key, c):
                 out.append(c)
                 continue
-            folded = _FOLD.get(c) or "".join(d for d in unicodedata.normalize("NFKD", c) if not unicodedata.combining(d))
+            folded = _FOLD.get(c) or "".join(
+                d for d in unicodedata.normalize("NFKD", c) if not unicodedata.combining(d)
+            )
             out.append(folded if folded and not self.missing(folded) else "?")
         return "".join(out)
 

@@ -1,0 +1,89 @@
+"""What film is wanted, and whether it can be made: everything that can be refused before the dear work begins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.film_look import FilmLook
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What film is wanted. Pickles, so that another process can prepare it.
+
+    path : the chart file; selection : which chart; preset : name or file of the cost preset
+    section : "START:END" in seconds, beats or measures, or None for the whole song
+    sync : seconds by which the music plays late against the notes
+    """
+
+    path: Path
+    selection: Selection
+    look: FilmLook
+    fps: int = 30
+    preset: str = "thesis"
+    section: str | None = None
+    sync: float = 0.0
+    mute: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """The chart that a request is about, read and checked. music : the song's file, None for a silent film."""
+
+    song: Song
+    chart: Chart
+    clock: Clock
+    music: Path | None
+    warnings: tuple[str, ...]
+
+
+def look_up(request: Request) -> Subject:
+    """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
+    from dancetutor_cli import chart as charts
+
+    song = charts.load(request.path)
+    chart = request.selection.one(song)
+    music, warnings = (None, ()) if request.mute else find_music(song)
+    start, end = _section(request, chart)
+    return Subject(song, chart, Clock((Pass(start, end),), request.fps), music, warnings)
+
+
+def whole_song(chart: Chart) -> tuple[float, float]:
+    """Start and end of the film of a whole chart, seconds of the music: from its beginning to after the last note."""
+    notes = chart.notes
+    if len(notes) == 0:
+        raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
+    ticks = np.array([notes.tick.min(), max(notes.tick.max(), notes.end.max())])
+    first, last = chart.timing.seconds(ticks)
+    return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
+
+
+def _section(request: Request, chart: Chart) -> tuple[float, float]:
+    whole = whole_song(chart)
+    if request.section is None:
+        return whole
+    from dancetutor_cli.chart.section import parse_section
+
+    return parse_section(request.section, chart.timing, whole[1])
+
+
+def find_music(song: Song) -> tuple[Path | None, tuple[str, ...]]:
+    """The song's music; None and a warning if it is missing. FileError if its name leads out of the song's folder."""
+    from dancetutor_cli.library.music import music_file
+
+    try:
+        return music_file(song), ()
+    except MissingFileError as error:
+        return None, (f"{error}; the film is silent",)

@@ -1,0 +1,216 @@
+"""Worker processes: pieces of work in, results out, in any order; Ctrl-C ends all of them at once.
+
+Processes are spawned, never forked (OpenGL, numba and Windows want it so), and a piece of work is a picklable function
+of a module with picklable arguments.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import pickle
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, wait
+from typing import Any, Protocol
+
+from dancetutor_cli.errors import DancetutorError, UnavailableError
+
+Report = Callable[[int], None]
+
+
+class WorkFailedError(DancetutorError):
+    """A piece of work broke in a way nobody foresaw; carries what Python said."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One piece of work: `function(report, *arguments)`; `report(n)` tells that n more units are done; key: its name."""
+
+    key: Any
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A piece of work that has ended: its result, or the error it raised."""
+
+    key: Any
+    result: Any = None
+    error: DancetutorError | None = None
+
+
+class Workers(Protocol):
+    """What does the work. `submit` may be called at any time, also between the items of `done`."""
+
+    def submit(self, task: Task) -> None:
+        """Add a piece of work to the end of the queue."""
+
+    def done(self) -> Iterator[Done]:
+        """Yield results as they come; ends when nothing is left to do."""
+
+    def close(self) -> None:
+        """End everything now; pieces in work are lost."""
+
+
+def default_jobs() -> int:
+    """How many workers fit this machine: as many as it lets us use."""
+    try:
+        return max(1, len(os.sched_getaffinity(0)))  # type: ignore[attr-defined,unused-ignore]
+    except AttributeError:
+        return max(1, os.cpu_count() or 1)
+
+
+def open_workers(jobs: int, report: Callable[[Any, int], None]) -> Workers:
+    """`jobs` worker processes, or this process alone for 1. report(key, n) is called for what pieces report."""
+    return SerialWorkers(report) if jobs <= 1 else ProcessWorkers(jobs, report)
+
+
+def attempt(task: Task, report: Report) -> Done:
+    """Do a piece of work; whatever it raises becomes an error that can be sent between processes."""
+    try:
+        return Done(task.key, task.function(report, *task.arguments))
+    except DancetutorError as error:
+        return Done(task.key, error=error)
+    except MemoryError:
+        return Done(task.key, error=UnavailableError("out of memory; try fewer --jobs or a smaller --size"))
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return Done(task.key, error=UnavailableError(f"{where}{error.strerror or error}"))
+    except Exception as error:
+        return Done(
+            task.key, error=WorkFailedError(f"{type(error).__name__}: {error} (this is a fault of the program)")
+        )
+
+
+class SerialWorkers:
+    """Does the work in this process, when the results are asked for."""
+
+    def __init__(self, report: Callable[[Any, int], None]) -> None:
+        self._queue: deque[Task] = deque()
+        self._report = report
+
+    def submit(self, task: Task) -> None:
+        self._queue.append(task)
+
+    def done(self) -> Iterator[Done]:
+        while self._queue:
+            task = self._queue.popleft()
+            yield attempt(task, lambda n, key=task.key: self._report(key, n))  # type: ignore[misc]
+
+    def close(self) -> None:
+        self._queue.clear()
+
+
+def _worker(connection: Connection) -> None:
+    """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
+        while True:
+            task = pickle.loads(connection.recv_bytes())
+            if task is None:
+                return
+            done = attempt(task, lambda n: connection.send(n))
+            try:
+                message = pickle.dumps(done)
+            except Exception as error:
+                message = pickle.dumps(Done(done.key, error=WorkFailedError(f"a result cannot be sent: {error}")))
+            connection.send_bytes(message)
+
+
+@dataclass(eq=False)
+class _Worker:
+    process: Any
+    connection: Connection
+    task: Task | None = None
+
+
+@dataclass
+class ProcessWorkers:
+    """Spawned processes, started at once so that they import while the caller prepares the work."""
+
+    jobs: int
+    report: Callable[[Any, int], None]
+    _queue: deque[Task] = field(default_factory=deque)
+    _workers: list[_Worker] = field(default_factory=list)
+    _retried: set[Any] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        for _ in range(self.jobs):
+            self._start()
+
+    def _start(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=_worker, args=(theirs,), daemon=True)
+        process.start()
+        theirs.close()
+        self._workers.append(_Worker(process, ours))
+
+    def submit(self, task: Task) -> None:
+        self._queue.append(task)
+        self._feed()
+
+    def _feed(self) -> None:
+        for worker in self._workers:
+            if worker.task is None and self._queue:
+                worker.task = self._queue.popleft()
+                with contextlib.suppress(OSError):  # a dead worker is noticed where results are read
+                    worker.connection.send_bytes(pickle.dumps(worker.task))
+
+    def done(self) -> Iterator[Done]:
+        while self._queue or any(w.task is not None for w in self._workers):
+            self._feed()
+            busy = {w.connection: w for w in self._workers if w.task is not None}
+            for connection in wait(list(busy), timeout=1.0):
+                result = self._receive(busy[connection])  # type: ignore[index]
+                if result is not None:
+                    self._feed()
+                    yield result
+
+    def _receive(self, worker: _Worker) -> Done | None:
+        try:
+            message = pickle.loads(worker.connection.recv_bytes())
+        except (EOFError, OSError):
+            return self._bury(worker)
+        if isinstance(message, Done):
+            worker.task = None
+            return message
+        if worker.task is not None:
+            self.report(worker.task.key, message)
+        return None
+
+    def _bury(self, worker: _Worker) -> Done | None:
+        """A worker died. Its work goes to a new one, once; then it is given up."""
+        worker.process.join(5)
+        self._workers.remove(worker)
+        self._start()
+        task = worker.task
+        if task is None:
+            return None
+        if task.key not in self._retried:
+            self._retried.add(task.key)
+            self._queue.appendleft(task)
+            return None
+        code = worker.process.exitcode
+        return Done(task.key, error=UnavailableError(f"a worker process was killed (status {code}); out of memory?"))
+
+    def close(self) -> None:
+        self._queue.clear()
+        for worker in self._workers:
+            if worker.task is None:
+                with contextlib.suppress(OSError):
+                    worker.connection.send_bytes(pickle.dumps(None))
+            else:
+                worker.process.terminate()
+        for worker in self._workers:
+            worker.process.join(1.0)
+            if worker.process.is_alive():
+                worker.process.kill()
+                worker.process.join()
+            worker.connection.close()
+        self._workers.clear()

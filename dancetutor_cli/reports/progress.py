@@ -1,0 +1,70 @@
+"""How far a film is: a bar with speed and time left on a terminal, a line now and then elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+EVERY = 30.0  # seconds between lines where there is no terminal
+
+
+class FilmProgress:
+    """Shows the progress of one film on standard error; `quiet` shows nothing. Use as a context manager."""
+
+    def __init__(self, name: str, quiet: bool = False) -> None:
+        self.name, self.quiet = name, quiet
+        self.terminal = sys.stderr.isatty() and not quiet
+        self.frames = self.fps = self.done = 0
+        self.began = self.told = 0.0
+        self.bar: Progress | None = None
+        self.task: TaskID | None = None
+
+    def __enter__(self) -> FilmProgress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.stop()
+
+    def begin(self, frames: int, fps: int) -> None:
+        """The film has that many frames."""
+        self.frames, self.fps = frames, fps
+        self.began = self.told = time.monotonic()
+        if self.terminal:
+            self._open_bar()
+
+    def _open_bar(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[speed]}"),
+            TimeRemainingColumn(compact=True),
+        )
+        self.bar = Progress(*columns, console=Console(stderr=True), transient=True)
+        self.bar.start()
+        self.task = self.bar.add_task(self.name, total=self.frames, speed="")
+
+    def advance(self, frames: int) -> None:
+        """That many more frames are drawn."""
+        self.done += frames
+        now = time.monotonic()
+        speed = self.done / self.fps / max(1e-6, now - self.began) if self.fps else 0.0
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, advance=frames, speed=f"{speed:.2f}x")
+        elif not self.quiet and self.fps and now - self.told >= EVERY:
+            self.told = now
+            left = (self.frames - self.done) / self.fps / max(speed, 1e-6)
+            seconds = f"{self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s"
+            sys.stderr.write(f"{self.name}: {seconds} done, {speed:.2f}x, {left:.0f} s left\n")
+            sys.stderr.flush()

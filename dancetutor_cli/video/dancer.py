@@ -1,0 +1,62 @@
+"""The dancer's part of the picture: from a motion and a second of the music to a state for the renderer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.rig.kinematics import joint_matrices
+from dancetutor_cli.video import renderer
+from dancetutor_cli.video.blit import Frame
+from dancetutor_cli.video.scene import FrameState, Scene
+
+if TYPE_CHECKING:
+    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.video.camera import Camera
+    from dancetutor_cli.video.lights import PanelLights
+    from dancetutor_cli.video.stage import PadLike
+
+
+class Dancer:
+    """Draws the dancer at any second. Made in the process that draws: it may hold a GL context."""
+
+    def __init__(
+        self,
+        motion: Motion,
+        pad: PadLike,
+        lights: PanelLights,
+        size: tuple[int, int],
+        camera: str,
+        quality: renderer.Quality,
+        kind: renderer.RendererKind,
+    ) -> None:
+        self.motion, self.lights = motion, lights
+        self.scene = Scene(load_dancer(), pad)
+        self.camera: Camera = self.scene.camera(camera, size)
+        self.renderer = renderer.create(self.scene, size, quality, kind)
+        skeleton, names = self.scene.character.skeleton, motion.skeleton.names
+        self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in names])
+        self._theirs = np.array([names.index(skeleton.names[j]) for j in self._ours])
+
+    def frame(self, second: float) -> Frame:
+        """The picture at `second` of the music, uint8 (h, w, 3); overwritten by the next call."""
+        lit, by = self._lit(second)
+        return self.renderer.frame(FrameState(self._joints(second), self.camera, lit, by))
+
+    def _joints(self, second: float) -> NDArray[np.float64]:
+        """World matrices of the character's joints, which go by name: its file may order them its own way."""
+        skeleton = self.scene.character.skeleton
+        sampled, root = sample(self.motion, np.array([second]))
+        rotations = np.zeros((1, len(skeleton.names), 4))
+        rotations[..., 0] = 1.0
+        rotations[:, self._ours] = sampled[:, self._theirs]
+        matrices: NDArray[np.float64] = joint_matrices(skeleton, rotations, root)[0]
+        return matrices
+
+    def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        levels = [self.lights.at(column, second) for column in range(self.scene.panels)]
+        return np.array([level for level, _ in levels]), np.array([max(0, limb) for _, limb in levels])

@@ -1,0 +1,30 @@
+"""How a film is to look, as asked for on the command line; light, so that wrong wishes are refused at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from dancetutor_cli.video.layout import Layout
+from dancetutor_cli.video.scroll import Scroll
+
+Quality = Literal["draft", "good", "best"]
+RendererKind = Literal["auto", "cpu", "gl"]
+
+
+@dataclass(frozen=True, slots=True)
+class FilmLook:
+    """What does not change in a film. size : (width, height), even.
+
+    camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
+    """
+
+    layout: Layout
+    size: tuple[int, int]
+    quality: Quality = "good"
+    renderer: RendererKind = "auto"
+    camera: str | None = None
+    scroll: Scroll | None = None
+    down: bool = False
+    font: Path | None = None

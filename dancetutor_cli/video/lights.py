@@ -1,0 +1,33 @@
+"""How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dancetutor_cli.video.notes import Presses
+
+HELD = 0.62  # brightness while held, after the flash of the start
+EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
+
+
+class PanelLights:
+    """Light of each column over time; fade : seconds from full light to none."""
+
+    def __init__(self, presses: Presses, columns: int, fade: float) -> None:
+        self.presses, self.fade = presses, fade
+        self._columns = [np.flatnonzero(presses.column == c) for c in range(columns)]
+        self._starts = [presses.start[mine] for mine in self._columns]
+
+    def at(self, column: int, second: float) -> tuple[float, int]:
+        """Brightness 0..1 at `second` of the music, and the limb of the last press (-1: none or unknown)."""
+        last = int(np.searchsorted(self._starts[column], second + EPSILON, side="right")) - 1
+        if last < 0:
+            return 0.0, -1
+        press = self._columns[column][last]
+        start, end = float(self.presses.start[press]), float(self.presses.end[press])
+        fresh = 1.0 - (second - start) / self.fade
+        if second < end:
+            level = max(HELD, fresh)
+        else:
+            level = max(0.0, 1.0 - (second - end) / self.fade) ** 1.5 * (1.0 if end == start else HELD)
+        return min(1.0, level), int(self.presses.limb[press])

@@ -1,0 +1,40 @@
+"""Scroll speeds: what may be written, and that scroll segments bend the beats."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.video.scroll import Scroll, parse_scroll, parse_segments
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("C600", Scroll("C", 600)), ("x2.5", Scroll("X", 2.5)), ("2x", Scroll("X", 2)), (" m450 ", Scroll("M", 450))],
+)
+def test_speeds_are_read(text: str, expected: Scroll) -> None:
+    assert parse_scroll(text) == expected
+
+
+@pytest.mark.parametrize("text", ["", "600", "C", "Q3", "C0", "X99", "M-4", "Cnan"])
+def test_other_speeds_are_refused_with_what_is_allowed(text: str) -> None:
+    with pytest.raises(UsageError, match="C600|takes"):
+        parse_scroll(text)
+
+
+def test_m_is_c_at_the_fastest_part() -> None:
+    fastest = 180.0
+    per_second = parse_scroll("M600").factor(fastest) * fastest / 60
+    assert per_second == pytest.approx(parse_scroll("C600").factor(fastest))
+
+
+def test_scroll_segments_integrate_their_ratios() -> None:
+    segments = parse_segments("0=1,4=0.5,8=-1,x=3,9")
+    beats = np.array([-1.0, 2.0, 4.0, 6.0, 8.0, 9.0])
+    assert segments.shown(beats) == pytest.approx([-1, 2, 4, 5, 6, 5])
+
+
+def test_no_segments_leave_the_beats_alone() -> None:
+    beats = np.array([0.0, 3.5])
+    assert parse_segments("0=1").shown(beats) is beats
