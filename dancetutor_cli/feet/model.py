@@ -51,16 +51,16 @@ class Overrides:
 
 @dataclass(frozen=True, slots=True)
 class Ignores:
-    """Findings that a person does not want to see at some rows.
+    """Findings that a person does not want to see at some rows, in SMEditor's words.
 
-    moves : {tick: names of the moves whose findings are silenced there}; the names are those of `Play.moves`
+    codes : {tick: of "DS" (doublestep), "FS" (footswitch missed), "AM" (ambiguous) those that are silenced there}
     """
 
-    moves: dict[int, frozenset[str]] = field(default_factory=dict)
+    codes: dict[int, frozenset[str]] = field(default_factory=dict)
 
-    def silenced(self, tick: int, move: str) -> bool:
-        """Whether findings about `move` in the row at `tick` are not wanted."""
-        return move in self.moves.get(tick, ())
+    def silenced(self, tick: int, code: str) -> bool:
+        """Whether findings of this kind in the row at `tick` are not wanted."""
+        return code in self.codes.get(tick, ())
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,94 @@
+"""The letters of feet, `{dt1 LR(Lr)}`: how markers in files are written and read.
+
+One token stands for each row of note data that holds a step: a letter, or for several steps their letters from left to
+right in brackets. `L` and `R` are the feet (of a bracket: the heel), `l` and `r` their toes, `<` and `>` the left and
+right hand, `.` is unknown.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from dancetutor_cli.play.model import Limb, Part
+
+UNKNOWN = "."
+_LETTERS: dict[tuple[int, int], str] = {
+    (Limb.LEFT_FOOT, Part.WHOLE): "L",
+    (Limb.LEFT_FOOT, Part.HEEL): "L",
+    (Limb.LEFT_FOOT, Part.TOE): "l",
+    (Limb.RIGHT_FOOT, Part.WHOLE): "R",
+    (Limb.RIGHT_FOOT, Part.HEEL): "R",
+    (Limb.RIGHT_FOOT, Part.TOE): "r",
+    (Limb.LEFT_HAND, Part.WHOLE): "<",
+    (Limb.RIGHT_HAND, Part.WHOLE): ">",
+}
+MEANING: dict[str, tuple[Limb, Part]] = {
+    "L": (Limb.LEFT_FOOT, Part.WHOLE),
+    "l": (Limb.LEFT_FOOT, Part.TOE),
+    "R": (Limb.RIGHT_FOOT, Part.WHOLE),
+    "r": (Limb.RIGHT_FOOT, Part.TOE),
+    "<": (Limb.LEFT_HAND, Part.WHOLE),
+    ">": (Limb.RIGHT_HAND, Part.WHOLE),
+}
+LETTERS = frozenset(MEANING) | {UNKNOWN}
+
+# A marker inside a comment; the "!" pins the measure: its letters are the author's word. `{dt1 ` is our own, whatever
+# an edit by hand has made of the letters.
+MARKER = re.compile(rb"\{dt1(?:(?P<pin>!)[ \t]*|[ \t]+)(?P<text>[^{}\r\n]*)\}")
+_TOKEN = re.compile(r"[ \t]*(?:\((?P<group>[^()]*)\)|(?P<letter>[^()]))")
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """The letters of one row, and where they stand: `at` is the offset in the marker's text."""
+
+    letters: str
+    at: int
+
+
+class NotationError(ValueError):
+    """Text that is no row of tokens; `at` is where it stops making sense."""
+
+    def __init__(self, message: str, at: int) -> None:
+        super().__init__(message)
+        self.at = at
+
+
+def letter(limb: int, part: int) -> str:
+    """The letter of who presses a panel."""
+    return _LETTERS.get((limb, part), UNKNOWN)
+
+
+def marker(tokens: Iterable[str]) -> bytes:
+    """The marker of a measure; `tokens` has the letters of each row with a step."""
+    text = "".join(letters if len(letters) == 1 else f"({letters})" for letters in tokens)
+    return b"{dt1 " + text.encode("ascii") + b"}"
+
+
+def parse(text: bytes) -> list[Token]:
+    """The tokens of a marker's text; blanks between them do not count. Raises NotationError."""
+    return list(_tokens(text.decode("latin-1").rstrip(" \t")))
+
+
+def _tokens(text: str) -> Iterator[Token]:
+    at = 0
+    while at < len(text):
+        match = _TOKEN.match(text, at)
+        if match is None:
+            raise NotationError(f"'{text[at]}' without its other bracket", at)
+        name = "letter" if match["group"] is None else "group"
+        letters = match[name].replace(" ", "")
+        for offset, character in enumerate(match[name]):
+            if character not in LETTERS and character != " ":
+                at = match.start(name) + offset
+                raise NotationError(f"'{_printable(character)}' is no foot; use {' '.join('LRlr<>.')}", at)
+        if not letters:
+            raise NotationError("brackets without letters", match.start(name))
+        yield Token(letters, match.start(name))
+        at = match.end()
+
+
+def _printable(character: str) -> str:
+    return character if character.isprintable() else f"\\x{ord(character):02x}"

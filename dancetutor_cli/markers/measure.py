@@ -1,0 +1,132 @@
+"""The default style: one `{dt1 ...}` in a comment on the line that opens a measure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.feet.measures import StepRows, markers_in, measure_lines
+from dancetutor_cli.feet.notation import NotationError, marker, parse
+from dancetutor_cli.markers.splice import Splice
+
+
+class State(Enum):
+    """What stands in a file compared with what should."""
+
+    CURRENT = "current"
+    MISSING = "missing"
+    STALE = "stale"  # tokens do not fit the rows
+    DIFFERENT = "different"  # they fit, but say other feet
+    PINNED = "pinned"
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureState:
+    """One measure that has a marker or should have one. line : 1-based line of the comment."""
+
+    measure: int
+    line: int
+    state: State
+
+
+def write(
+    data: bytes, chart: Chart, rows: StepRows, letters: list[str], force: bool = False
+) -> tuple[list[Splice], list[MeasureState]]:
+    """Replacements that bring the markers of a chart up to date, and how they were before.
+
+    Parameters
+    ----------
+    data : the bytes of the chart's file
+    rows, letters : its rows with steps, and the letters of each
+    force : overwrite pinned measures too
+    """
+    wanted = _by_measure(chart, rows, letters)
+    splices, states = [], []
+    for line in measure_lines(data, chart):
+        comment = data[line.start : line.end]
+        tokens = wanted.get(line.measure)
+        if not comment and tokens is None:
+            continue
+        state = _state(comment, tokens, force)
+        if state is not None:
+            states.append(MeasureState(line.measure, int(chart.measures.line[line.measure]), state))
+        if state in (State.PINNED, None):
+            continue
+        new = _with(comment, marker(tokens), force) if tokens else _without(comment, force)
+        if new != comment:
+            splices.append(Splice(line.start, line.end, new))
+    return splices, states
+
+
+def strip(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
+    """Replacements that take the markers of a chart out; pinned ones only with `force`."""
+    splices = []
+    for line in measure_lines(data, chart):
+        comment = data[line.start : line.end]
+        new = _without(comment, force)
+        if new != comment:
+            splices.append(Splice(line.start, line.end, new))
+    return splices
+
+
+def _by_measure(chart: Chart, rows: StepRows, letters: list[str]) -> dict[int, list[str]]:
+    wanted: dict[int, list[str]] = {}
+    for measure, text in zip(chart.rows.measure[rows.row].tolist(), letters, strict=True):
+        wanted.setdefault(measure, []).append(text)
+    return wanted
+
+
+def _state(comment: bytes, tokens: list[str] | None, force: bool) -> State | None:
+    """None: no marker, and none is needed."""
+    found = markers_in(comment)
+    if not found:
+        return State.MISSING if tokens else None
+    if not force and any(m["pin"] for m in found):
+        return State.PINNED
+    if tokens and len(found) == 1 and found[0][0] == marker(tokens):
+        return State.CURRENT
+    try:
+        shape = [len(token.letters) for token in parse(found[0]["text"])]
+    except NotationError:
+        return State.STALE
+    return State.DIFFERENT if tokens and shape == [len(text) for text in tokens] else State.STALE
+
+
+def _with(comment: bytes, text: bytes, force: bool) -> bytes:
+    """The comment with its first marker replaced and no other; a marker added where there is none."""
+    found = markers_in(comment)
+    if not found:
+        return comment + b" " + text if comment else b"//" + text
+    first = found[0]
+    rest = comment[first.end() :]
+    if len(found) > 1:
+        rest = _without(b"//" + rest, force)[2:]
+    return comment[: first.start()] + text + rest
+
+
+def _without(comment: bytes, force: bool) -> bytes:
+    """The comment without markers; nothing of it is left if a marker was all there was."""
+    for match in reversed(markers_in(comment)):
+        if match["pin"] and not force:
+            continue
+        comment = _cut(comment, match.start(), match.end())
+    return comment
+
+
+def _cut(comment: bytes, start: int, end: int) -> bytes:
+    """Take one marker and the one blank that joined it to other text out of a comment."""
+    before, after = comment[:start], comment[end:]
+    if before == b"//" and not after.strip(b" \t"):
+        return after
+    if before.endswith(b" "):
+        return before[:-1] + after
+    return before + after.removeprefix(b" ")
+
+
+def counts(states: list[MeasureState]) -> Iterator[tuple[State, int]]:
+    """How many measures are in each state that occurs."""
+    for state in State:
+        if number := sum(1 for s in states if s.state is state):
+            yield state, number
