@@ -24,7 +24,7 @@ def row_letters(chart: Chart, rows: StepRows, play: Play) -> list[str]:
     letters = np.full(rows.steps.shape, ord(UNKNOWN), dtype=np.uint8)
     if len(play.rows):
         known = play.rows.tick[found] == tick
-        columns = min(letters.shape[1], play.limb.shape[1])
+        columns = min(rows.steps.shape[1], play.limb.shape[1])
         limb, part = play.limb[found[known]].astype(np.int64), play.part[found[known]].astype(np.int64)
         table = _LETTER[(limb - _LOW) * len(Part) + part]
         letters[known, :columns] = table[:, :columns]
