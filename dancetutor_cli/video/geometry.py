@@ -21,6 +21,7 @@ class Packed:
     outline, drawn by moving vertices along it, has no gaps where a texture is cut
     uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
     triangles : int32 (t, 3), counter-clockwise seen from outside; material : int32 (v,)
+    patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
     texels : float32 (n, 3), sRGB 0..1 of all textures, row by row; textures : int32 (m, 3), first texel, width, height
     """
 
@@ -32,6 +33,7 @@ class Packed:
     weights: F32
     triangles: NDArray[np.int32]
     material: NDArray[np.int32]
+    patch: NDArray[np.int32]
     texels: F32
     textures: NDArray[np.int32]
 
@@ -46,6 +48,7 @@ def pack(character: Character) -> Packed:
     positions = np.concatenate([m.positions for m in meshes]).astype(np.float32)
     normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
     material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
+    triangles = np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32)
     return Packed(
         positions=positions,
         normals=normals,
@@ -53,8 +56,9 @@ def pack(character: Character) -> Packed:
         uv=np.concatenate([m.uv for m in meshes]).astype(np.float32),
         joints=np.concatenate([m.joints for m in meshes]).astype(np.int32),
         weights=np.concatenate([m.weights for m in meshes]).astype(np.float32),
-        triangles=np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32),
+        triangles=triangles,
         material=material,
+        patch=_patches(triangles, len(positions)),
         texels=texels,
         textures=textures,
     )
@@ -83,3 +87,16 @@ def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:
     out = total[place]
     length = np.sqrt((out * out).sum(axis=1, keepdims=True))
     return np.where(length > 1e-6, out / np.maximum(length, 1e-6), normals).astype(np.float32)
+
+
+def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
+    """Number of the piece of surface of each triangle: triangles that share vertices are of one piece."""
+    label = np.arange(vertices)
+    while True:
+        lowest = label[triangles].min(axis=1)
+        before = label.copy()
+        for corner in range(3):
+            np.minimum.at(label, triangles[:, corner], lowest)
+        label = label[label]  # go to the lowest vertex known so far: few rounds even for long pieces
+        if (label == before).all():
+            return label[triangles[:, 0]].astype(np.int32)

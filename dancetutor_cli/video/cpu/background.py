@@ -1,4 +1,4 @@
-"""The standing part of the picture: a ray through every pixel to the nearest surface of the stage, drawn once a camera."""
+"""The standing part of the picture, drawn once a camera: a ray through each pixel to the nearest surface."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.video.camera import NEAR, Camera
+from dancetutor_cli.video.camera import Camera
 from dancetutor_cli.video.cpu.surfaces import palette, surface
 from dancetutor_cli.video.look import Look
 from dancetutor_cli.video.stage import Stage
@@ -88,7 +88,8 @@ def _same_around(found: Any, row: int, column: int) -> bool:  # pragma: no cover
 @njit(cache=True)
 def _shade(
     eye: Any, back: Any, quads: Any, kinds: Any, colours: Any, tile_panel: Any, tile_arrow: Any, focal: float,
-    left: int, samples: int, found: Any, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any, foot: Any,
+    left: int, samples: int, found: Any, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any,
+    foot: Any,
 ) -> None:  # fmt: skip  # pragma: no cover
     for row in range(found.shape[0]):
         for column in range(found.shape[1]):
@@ -144,9 +145,8 @@ def _quantise_all(colour: Any, out: Any) -> None:  # pragma: no cover
 def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, int], samples: int) -> Background:
     """Draw the stage; samples x samples rays a pixel where surfaces meet. size : (width, height) of the picture."""
     width, height = size
-    left = -round(camera.pan_range[0] * width)
-    # Panned right, the picture shows what is farther left: room on the left for positive pans.
-    left, right = round(camera.pan_range[1] * width), left
+    # Panned to the right, the picture shows what is farther left: positive pans need room on the left.
+    left, right = (max(0, round(pan * width)) for pan in (camera.pan_range[1], -camera.pan_range[0]))
     wide = width + left + right
     eye, back = _rays(camera, size)
     shape = (height, wide)
@@ -174,7 +174,6 @@ def _rays(camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
     back[:, 0] = right / focal
     back[:, 1] = -up / focal
     back[:, 2] = forward - right * (camera.centre[0] * width / focal) + up * (camera.centre[1] * height / focal)
-    assert NEAR > 0
     return np.array(camera.position, dtype=np.float64), back
 
 
@@ -183,7 +182,6 @@ def _quads(stage: Stage) -> Array:
     out = np.empty((len(stage.corners), 12))
     for q, (a, b, _, d) in enumerate(stage.corners):
         along, across = b - a, d - a
-        normal = np.cross(along, d - a)
         normal = np.cross(along, stage.corners[q, 2] - a)
         normal = normal / np.sqrt((normal * normal).sum())
         out[q, :3], out[q, 3] = normal, (normal * a).sum()

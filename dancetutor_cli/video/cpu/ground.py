@@ -58,19 +58,19 @@ def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
     fx, fy = x - i, y - j
     top = picture[j, i] + (picture[j, i + 1] - picture[j, i]) * fx
     bottom = picture[j + 1, i] + (picture[j + 1, i + 1] - picture[j + 1, i]) * fx
-    return top + (bottom - top) * fy
+    return float(top + (bottom - top) * fy)
 
 
 @njit(cache=True, inline="always")
-def _from_foot(x: float, z: float, foot: Any) -> float:  # pragma: no cover
-    """Distance from the line between heel (0, 1) and toe (2, 3)."""
-    dx, dz = foot[2] - foot[0], foot[3] - foot[1]
+def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no cover
+    """Distance from the line between heel and toe of foot f, columns 0 to 3."""
+    dx, dz = feet[f, 2] - feet[f, 0], feet[f, 3] - feet[f, 1]
     length = dx * dx + dz * dz
     t = 0.0
     if length > 0.0:
-        t = min(1.0, max(0.0, ((x - foot[0]) * dx + (z - foot[1]) * dz) / length))
-    ax, az = x - foot[0] - t * dx, z - foot[1] - t * dz
-    return np.sqrt(ax * ax + az * az)
+        t = min(1.0, max(0.0, ((x - feet[f, 0]) * dx + (z - feet[f, 1]) * dz) / length))
+    ax, az = x - feet[f, 0] - t * dx, z - feet[f, 1] - t * dz
+    return float(np.sqrt(ax * ax + az * az))
 
 
 @njit(cache=True)
@@ -84,6 +84,7 @@ def draw_ground(
     0..1, colour; numbers : contact darkness, its softness, strength of the marks, strength of lit panels, sole radius
     """
     radius = numbers[4]
+    far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
     for row in range(box[1], box[3]):
         for column in range(box[0], box[2]):
             c = column + shift
@@ -100,9 +101,13 @@ def draw_ground(
                 keep = 1.0 - dark * _bilinear(shadow, u, v)
             ring, owner = 0.0, 0
             for f in range(feet.shape[0]):
-                if abs(y - feet[f, 4]) > 0.03:
+                if (
+                    abs(y - feet[f, 4]) > 0.03
+                    or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
+                    or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
+                ):
                     continue
-                d = _from_foot(x, z, feet[f]) - radius
+                d = _from_foot(x, z, feet, f) - radius
                 near = feet[f, 5]
                 reach = numbers[1] * (1.6 - 0.6 * near)
                 if d < reach:

@@ -12,14 +12,17 @@ import numpy as np
 from numba import njit
 
 SNAP = 16.0
-FRONT, BACK, BOTH = 1, -1, 0
+FRONT, BACK = 1, -1
 
 
 @njit(cache=True)
 def skin(
-    positions: Any, normals: Any, hull: Any, joints: Any, weights: Any, matrices: Any, out: Any
+    positions: Any, normals: Any, hull: Any, joints: Any, weights: Any, matrices: Any, world: Any
 ) -> None:  # pragma: no cover
-    """Vertices in the world. matrices (j, 3, 4): binding pose to world; out (v, 9): place, normal, hull direction."""
+    """Vertices in the world. matrices (j, 3, 4): binding pose to world; world (v, 9): place, normal, hull direction.
+
+    Both directions get length 1.
+    """
     m = np.empty(12)
     for v in range(positions.shape[0]):
         for k in range(12):
@@ -34,27 +37,36 @@ def skin(
         x, y, z = positions[v, 0], positions[v, 1], positions[v, 2]
         nx, ny, nz = normals[v, 0], normals[v, 1], normals[v, 2]
         hx, hy, hz = hull[v, 0], hull[v, 1], hull[v, 2]
+        n, h = 0.0, 0.0
         for r in range(3):
             a, b, c = m[4 * r], m[4 * r + 1], m[4 * r + 2]
-            out[v, r] = a * x + b * y + c * z + m[4 * r + 3]
-            out[v, 3 + r] = a * nx + b * ny + c * nz
-            out[v, 6 + r] = a * hx + b * hy + c * hz
+            world[v, r] = a * x + b * y + c * z + m[4 * r + 3]
+            p = a * nx + b * ny + c * nz
+            q = a * hx + b * hy + c * hz
+            n += p * p
+            h += q * q
+            world[v, 3 + r] = p
+            world[v, 6 + r] = q
+        n, h = 1.0 / np.sqrt(max(n, 1e-12)), 1.0 / np.sqrt(max(h, 1e-12))
+        for r in range(3, 6):
+            world[v, r] *= n
+            world[v, r + 3] *= h
 
 
 @njit(cache=True)
-def project(world: Any, camera: Any, samples: float, near: float, out: Any) -> None:  # pragma: no cover
-    """Places in samples and 1 / depth, out (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
+def project(world: Any, camera: Any, samples: float, near: float, points: Any) -> None:  # pragma: no cover
+    """Places in samples and 1 / depth, points (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]
         if w < near:
-            out[v, 2] = 0.0
+            points[v, 2] = 0.0
             continue
         px = (camera[0, 0] * x + camera[0, 1] * y + camera[0, 2] * z + camera[0, 3]) / w
         py = (camera[1, 0] * x + camera[1, 1] * y + camera[1, 2] * z + camera[1, 3]) / w
-        out[v, 0] = np.floor(px * samples * SNAP + 0.5) / SNAP
-        out[v, 1] = np.floor(py * samples * SNAP + 0.5) / SNAP
-        out[v, 2] = 1.0 / w
+        points[v, 0] = np.floor(px * samples * SNAP + 0.5) / SNAP
+        points[v, 1] = np.floor(py * samples * SNAP + 0.5) / SNAP
+        points[v, 2] = 1.0 / w
 
 
 @njit(cache=True)
@@ -96,26 +108,28 @@ def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) ->
 
 @njit(cache=True)
 def fill(
-    points: Any, triangles: Any, keep: int, offset: int, depth: Any, ids: Any, box: Any
+    points: Any, triangles: Any, keep: int, offset: int, depth: Any, ids: Any, spans: Any
 ) -> None:  # pragma: no cover
-    """Draw triangles into `depth` (greatest wins) and their number + `offset` into `ids`, inside box (x0, y0, x1, y1).
+    """Draw triangles into `depth` (greatest wins) and their number + `offset` into `ids`.
 
-    points (v, 3): x, y in samples, depth; a triangle with a depth of 0 is left out. keep: FRONT, BACK or BOTH.
+    points (v, 3): x, y in samples, depth; a triangle with a depth of 0 is left out. keep: FRONT or BACK.
+    spans (rows, 2): grown to the first column drawn on and the one after the last, in each row
     """
+    height, width = depth.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
         x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
         x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
         area = (x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0)  # positive: counter-clockwise, y being downwards
-        if area == 0.0 or (area > 0.0 and keep == -1) or (area < 0.0 and keep == 1):
+        if area * keep <= 0.0:
             continue
         if z0 == 0.0 or z1 == 0.0 or z2 == 0.0:
             continue
-        left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), box[0])
-        right = min(int(np.floor(max(x0, x1, x2) - 0.5)), box[2] - 1)
-        top = max(int(np.ceil(min(y0, y1, y2) - 0.5)), box[1])
-        bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), box[3] - 1)
+        left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
+        right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
+        top = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0)
+        bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
         if left > right or top > bottom:
             continue
         sign = 1.0 if area > 0.0 else -1.0
@@ -132,6 +146,8 @@ def fill(
         zrow = z0 + (px - x0) * zx + (py - y0) * zy
         number = t + offset
         for y in range(top, bottom + 1):
+            spans[y, 0] = min(spans[y, 0], left)
+            spans[y, 1] = max(spans[y, 1], right + 1)
             f0, f1, f2, z = e0, e1, e2, zrow
             for x in range(left, right + 1):
                 if f0 >= 0.0 and f1 >= 0.0 and f2 >= 0.0 and z > depth[y, x]:
@@ -149,7 +165,7 @@ def fill(
 
 @njit(cache=True)
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
-    """As `fill`, both sides, depth only: for the shadow map."""
+    """As `fill`, what is turned to the light and only its depth: for the shadow map."""
     height, width = depth.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
@@ -179,3 +195,15 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
                     z = z0 + (px - x0) * zx + (py - y0) * zy
                     if z > depth[y, x]:
                         depth[y, x] = z
+
+
+@njit(cache=True)
+def clear(depth: Any, ids: Any, spans: Any) -> None:  # pragma: no cover
+    """Forget what `fill` has drawn: the rows of `spans`, and the spans."""
+    height, width = depth.shape
+    for y in range(height):
+        for x in range(spans[y, 0], spans[y, 1]):
+            depth[y, x] = 0.0
+            ids[y, x] = -1
+        spans[y, 0] = width
+        spans[y, 1] = 0

@@ -10,8 +10,18 @@ from numpy.typing import NDArray
 from dancetutor_cli.video.camera import NEAR, Camera
 from dancetutor_cli.video.cpu.background import Background, draw_background
 from dancetutor_cli.video.cpu.ground import blur, draw_ground, occupied
-from dancetutor_cli.video.cpu.raster import BACK, FRONT, fill, fill_depth, project, project_hull, project_light, skin
-from dancetutor_cli.video.cpu.shade import resolve
+from dancetutor_cli.video.cpu.raster import (
+    BACK,
+    FRONT,
+    clear,
+    fill,
+    fill_depth,
+    project,
+    project_hull,
+    project_light,
+    skin,
+)
+from dancetutor_cli.video.cpu.shade import light_vertices, resolve, toon_numbers
 from dancetutor_cli.video.geometry import pack
 from dancetutor_cli.video.renderer import Quality
 from dancetutor_cli.video.scene import (
@@ -28,6 +38,7 @@ from dancetutor_cli.video.scene import (
 Array = NDArray[np.float64]
 SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}
 SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}
+_MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
 SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
 
 
@@ -41,13 +52,14 @@ class CpuRenderer:
         self._samples = SAMPLES[quality]
         self._map = SHADOW_MAP[quality]
         self._mesh = pack(scene.character)
-        self._toon = _toon(scene)
+        self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
-        self._world, self._points = np.empty((count, 9)), np.empty((count, 3))
-        self._hull, self._light_points = np.empty((count, 3)), np.empty((count, 3))
+        self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)
+        self._points, self._hull, self._light_points = (np.empty((count, 3)) for _ in range(3))
         width, height = size
         shape = (height * self._samples, width * self._samples)
         self._depth, self._ids = np.zeros(shape, np.float32), np.full(shape, -1, np.int32)
+        self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
         self._out = np.empty((height, width, 3), np.uint8)
@@ -67,7 +79,7 @@ class CpuRenderer:
         light = light_direction(self._scene.look, camera)
         axes, origin, scale = self._cast(light, state)
         self._ground(state, background, shift, axes, origin, scale)
-        self._dancer(camera, light, axes, origin, scale)
+        self._dancer(camera, axes, origin, scale)
         return self._out
 
     def close(self) -> None:
@@ -108,56 +120,52 @@ class CpuRenderer:
         lit = np.clip(np.asarray(state.lit, dtype=np.float64), 0.0, 1.0)
         numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.mark, look.stage.glow, SOLE_RADIUS])
         draw_ground(
-            self._out, self._ground_box(state, axes, origin), shift, background.colour, background.ground,
+            self._out, self._ground_box(state, axes), shift, background.colour, background.ground,
             background.takes, background.panel, background.glow, background.white, background.footprint,
             self._mask, axes, origin, scale, look.light.shadow if scale else 0.0,
             lit, colours[np.clip(np.asarray(state.lit_by, dtype=np.int64), 0, 3)], feet, numbers,
         )  # fmt: skip
 
-    def _ground_box(self, state: FrameState, axes: Array, origin: Array) -> NDArray[np.int64]:
+    def _ground_box(self, state: FrameState, axes: Array) -> NDArray[np.int64]:
         """The part of the picture, in pixels, that holds the pad and all that falls on the floor."""
         low, high = self._scene.extent
         ground = -self._scene.look.stage.pad_height
         points = [(x, y, z) for x in (low[0], high[0]) for y in (0.0, ground) for z in (low[2], high[2])]
-        middle = state.joints[0, :3, 3]
-        # All of the dancer lies within this of her root; her shadow within what the map shows, laid on the floor.
-        points += [(middle[0] + a, ground, middle[2] + b) for a in (-0.7, 0.7) for b in (-0.7, 0.7)]
-        for u in (0.0, SHADOW_REACH):
-            for v in (0.0, SHADOW_REACH):
-                place = axes[0] * (origin[0] + u) + axes[1] * (origin[1] + v)
-                points.append(tuple(place + axes[2] * ((ground - place[1]) / axes[2][1])))
+        least, most = self._world[:, :3].min(0) - _MARK_REACH, self._world[:, :3].max(0) + _MARK_REACH
+        points += [(x, ground, z) for x in (least[0], most[0]) for z in (least[2], most[2])]
+        if self._map:  # the corners of her box, cast on the floor
+            slope = axes[2] / axes[2][1]
+            for x, z in [p[::2] for p in points[-4:]]:
+                for y in (least[1] - ground, most[1] - ground):
+                    points.append((x - slope[0] * y, ground, z - slope[2] * y))
         return _pixel_box(state.camera, np.array(points, dtype=np.float64), self._size)
 
-    def _dancer(self, camera: Camera, light: Array, axes: Array, origin: Array, scale: float) -> None:
+    def _dancer(self, camera: Camera, axes: Array, origin: Array, scale: float) -> None:
         samples, mesh = self._samples, self._mesh
         matrix = camera.matrix(self._size)
         focal = camera.focal * self._size[1]
         outline = self._scene.look.toon.outline_width * self._size[1] / 720.0
         project(self._world, matrix, float(samples), NEAR, self._points)
         project_hull(self._world, matrix, float(samples), NEAR, outline, focal, self._hull)
-        box = self._dancer_box()
-        if box[0] >= box[2] or box[1] >= box[3]:
-            return
-        inner = box * samples
-        part = np.s_[inner[1] : inner[3], inner[0] : inner[2]]
-        self._depth[part] = 0.0
-        self._ids[part] = -1
+        clear(self._depth, self._ids, self._spans)
         count = len(mesh.triangles)
-        fill(self._points, mesh.triangles, FRONT, 0, self._depth, self._ids, inner)
-        fill(self._hull, mesh.triangles, BACK, count, self._depth, self._ids, inner)
+        fill(self._points, mesh.triangles, FRONT, 0, self._depth, self._ids, self._spans)
+        fill(self._hull, mesh.triangles, BACK, count, self._depth, self._ids, self._spans)
+        light_vertices(
+            self._world,
+            self._points,
+            mesh.uv,
+            mesh.material,
+            np.array(camera.position),
+            axes,
+            origin,
+            scale,
+            self._vertex,
+        )
         resolve(
-            self._out, box, samples, self._ids, count, mesh.triangles, self._points, self._world, mesh.uv, mesh.material,
-            mesh.texels, mesh.textures, np.array(camera.position), light, self._shadow, axes, origin, scale, self._toon,
+            self._out, samples, self._ids, self._depth, self._spans, count, mesh.triangles, mesh.patch, self._vertex,
+            mesh.texels, mesh.textures, self._shadow, self._toon,
         )  # fmt: skip
-
-    def _dancer_box(self) -> NDArray[np.int64]:
-        """The pixels that the outlined dancer may touch: x0, y0, x1, y1."""
-        seen = self._hull[self._hull[:, 2] > 0.0, :2]
-        if not len(seen):
-            return np.zeros(4, np.int64)
-        low, high = seen.min(0) / self._samples - 1, seen.max(0) / self._samples + 2
-        limit = np.array(self._size)
-        return np.concatenate([np.clip(low, 0, limit), np.clip(high, 0, limit)]).astype(np.int64)
 
 
 def _product(joints: Array, inverse_bind: Array) -> Array:
@@ -175,13 +183,6 @@ def _feet(scene: Scene, marks: tuple[FootMark | None, FootMark | None]) -> Array
             near = max(0.0, 1.0 - mark.height / scene.look.light.contact_height)
             rows.append((*mark.heel, *mark.toe, mark.ground, near, *colour))
     return np.array(rows, dtype=np.float64).reshape(-1, 9)
-
-
-def _toon(scene: Scene) -> Array:
-    """The numbers of the toon shading in the order `shade` reads them."""
-    toon = scene.look.toon
-    shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
-    return np.array([*toon.bands, toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline])
 
 
 def _pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> NDArray[np.int64]:

@@ -6,21 +6,68 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from dancetutor_cli.video.cpu.surfaces import smooth
+from dancetutor_cli.video.look import ToonLook
+
+Array = NDArray[np.float64]
+
+
+# Places in the rows that `light_vertices` writes, one row of 64 bytes for each vertex.
+_X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = range(12)
+# Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
+_BANDS, _SOFT, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST = 0, 2, 3, 6, 8, 11, 14
+OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
+
+
+def toon_numbers(toon: ToonLook, cast: bool) -> Array:
+    """The numbers of the shading in one row; cast : is there a shadow map?"""
+    shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
+    numbers = [*toon.bands, toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast)]
+    return np.array(numbers, dtype=np.float64)
+
+
+@njit(cache=True)
+def light_vertices(
+    world: Any, points: Any, uv: Any, material: Any, eye: Any, axes: Any, origin: Any, scale: float, out: Any
+) -> None:  # pragma: no cover
+    """What is interpolated over a triangle, out float32 (v, 16).
+
+    world (v, 9), points (v, 3) from `raster`; axes (3, 3), origin (2,), scale: of the shadow map
+    """
+    for v in range(world.shape[0]):
+        x, y, z = world[v, 0], world[v, 1], world[v, 2]
+        nx, ny, nz = world[v, 3], world[v, 4], world[v, 5]
+        vx, vy, vz = eye[0] - x, eye[1] - y, eye[2] - z
+        out[v, _X], out[v, _Y], out[v, _W] = points[v, 0], points[v, 1], points[v, 2]
+        out[v, _TO_LIGHT] = nx * axes[2, 0] + ny * axes[2, 1] + nz * axes[2, 2]
+        out[v, _FACING] = (nx * vx + ny * vy + nz * vz) / np.sqrt(vx * vx + vy * vy + vz * vz)
+        out[v, _UP] = ny
+        x += nx * OFF_SURFACE[0] + axes[2, 0] * OFF_SURFACE[1]
+        y += ny * OFF_SURFACE[0] + axes[2, 1] * OFF_SURFACE[1]
+        z += nz * OFF_SURFACE[0] + axes[2, 2] * OFF_SURFACE[1]
+        out[v, _SU] = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+        out[v, _SV] = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+        out[v, _HEIGHT] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
+        out[v, _U], out[v, _V], out[v, _MATERIAL] = uv[v, 0], uv[v, 1], material[v]
 
 
 @njit(cache=True, inline="always")
-def _texel(texels: Any, texture: Any, u: float, v: float) -> Any:  # pragma: no cover
+def _texel(texels: Any, first: int, width: int, height: int, u: float, v: float) -> Any:  # pragma: no cover
     """Bilinear, repeating."""
-    first, width, height = texture[0], texture[1], texture[2]
-    if width == 1 and height == 1:
-        return texels[first, 0], texels[first, 1], texels[first, 2]
     x, y = (u - np.floor(u)) * width - 0.5, (v - np.floor(v)) * height - 0.5
-    i, j = int(np.floor(x)), int(np.floor(y))
-    fx, fy = x - i, y - j
-    i0, j0 = (i + width) % width, (j + height) % height
-    i1, j1 = (i0 + 1) % width, (j0 + 1) % height
+    i0, j0 = int(np.floor(x)), int(np.floor(y))
+    fx, fy = x - i0, y - j0
+    i1, j1 = i0 + 1, j0 + 1
+    if i0 < 0:
+        i0 = width - 1
+    if j0 < 0:
+        j0 = height - 1
+    if i1 >= width:
+        i1 = 0
+    if j1 >= height:
+        j1 = 0
     a, b = first + j0 * width + i0, first + j0 * width + i1
     c, d = first + j1 * width + i0, first + j1 * width + i1
     wa, wb, wc, wd = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
@@ -48,118 +95,104 @@ def _sunlit(shadow: Any, u: float, v: float, height: float) -> float:  # pragma:
     return top + (bottom - top) * fy
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _colour(
-    t: int, px: float, py: float, triangles: Any, points: Any, world: Any, uv: Any, material: Any, texels: Any,
-    textures: Any, eye: Any, light: Any, shadow: Any, axes: Any, origin: Any, scale: float, toon: Any,
-) -> Any:  # fmt: skip  # pragma: no cover
-    """Colour 0..1 of triangle t at a place in samples."""
-    a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-    x0, y0, x1, y1, x2, y2 = points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]
-    area = (x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0)
+    a: int, b: int, c: int, px: float, py: float, vertex: Any, texels: Any, textures: Any, shadow: Any, toon: Any
+) -> Any:  # pragma: no cover
+    """Colour 0..1 of the triangle of vertices a, b, c at a place in samples."""
+    x0, y0, x1, y1 = vertex[a, _X], vertex[a, _Y], vertex[b, _X], vertex[b, _Y]
+    x2, y2 = vertex[c, _X], vertex[c, _Y]
     # Weights on the picture, kept inside of the triangle: a pixel's middle may lie just outside.
-    w0 = max(((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1)) / area, 0.0)
-    w1 = max(((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2)) / area, 0.0)
+    inverse = 1.0 / ((x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0))
+    w0 = max(((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1)) * inverse, 0.0)
+    w1 = max(((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2)) * inverse, 0.0)
     w2 = max(1.0 - w0 - w1, 0.0)
-    w0, w1, w2 = w0 * points[a, 2], w1 * points[b, 2], w2 * points[c, 2]
+    w0, w1, w2 = w0 * vertex[a, _W], w1 * vertex[b, _W], w2 * vertex[c, _W]
     total = 1.0 / (w0 + w1 + w2)
     w0, w1, w2 = w0 * total, w1 * total, w2 * total
-    x = world[a, 0] * w0 + world[b, 0] * w1 + world[c, 0] * w2
-    y = world[a, 1] * w0 + world[b, 1] * w1 + world[c, 1] * w2
-    z = world[a, 2] * w0 + world[b, 2] * w1 + world[c, 2] * w2
-    nx = world[a, 3] * w0 + world[b, 3] * w1 + world[c, 3] * w2
-    ny = world[a, 4] * w0 + world[b, 4] * w1 + world[c, 4] * w2
-    nz = world[a, 5] * w0 + world[b, 5] * w1 + world[c, 5] * w2
-    n = 1.0 / np.sqrt(max(nx * nx + ny * ny + nz * nz, 1e-12))
-    nx, ny, nz = nx * n, ny * n, nz * n
-    vx, vy, vz = eye[0] - x, eye[1] - y, eye[2] - z
-    n = 1.0 / np.sqrt(vx * vx + vy * vy + vz * vz)
-    facing = (nx * vx + ny * vy + nz * vz) * n
-    to_light = nx * light[0] + ny * light[1] + nz * light[2]
-    sun = 1.0
-    if scale > 0.0 and to_light > toon[0] - toon[2]:
-        # A centimetre out of the surface, so that it does not shadow itself.
-        bx, by, bz = (
-            x + nx * 0.012 + light[0] * 0.006,
-            y + ny * 0.012 + light[1] * 0.006,
-            z + nz * 0.012 + light[2] * 0.006,
-        )
-        su = (axes[0, 0] * bx + axes[0, 1] * by + axes[0, 2] * bz - origin[0]) * scale
-        sv = (axes[1, 0] * bx + axes[1, 1] * by + axes[1, 2] * bz - origin[1]) * scale
-        sun = _sunlit(shadow, su, sv, axes[2, 0] * bx + axes[2, 1] * by + axes[2, 2] * bz + 100.0)
-    half = smooth(toon[0] - toon[2], toon[0] + toon[2], to_light) * sun
-    full = smooth(toon[1] - toon[2], toon[1] + toon[2], to_light) * sun
-    level = toon[3] + (toon[4] - toon[3]) * half + (toon[5] - toon[4]) * full
-    level *= 0.95 + 0.05 * ny
-    edge = toon[6] * smooth(toon[7], toon[7] + 0.2, 1.0 - facing) * (0.6 + 0.4 * ny)
-    m = material[a]
-    r, g, bl = _texel(
-        texels,
-        textures[m],
-        uv[a, 0] * w0 + uv[b, 0] * w1 + uv[c, 0] * w2,
-        uv[a, 1] * w0 + uv[b, 1] * w1 + uv[c, 1] * w2,
-    )
-    r *= level * (toon[8] + (1.0 - toon[8]) * half)
-    g *= level * (toon[9] + (1.0 - toon[9]) * half)
-    bl *= level * (toon[10] + (1.0 - toon[10]) * half)
-    edge = max(edge, 0.0)
-    return min(r + (1.0 - r) * edge, 1.0), min(g + (1.0 - g) * edge, 1.0), min(bl + (1.0 - bl) * edge, 1.0)
+    to_light = vertex[a, _TO_LIGHT] * w0 + vertex[b, _TO_LIGHT] * w1 + vertex[c, _TO_LIGHT] * w2
+    facing = vertex[a, _FACING] * w0 + vertex[b, _FACING] * w1 + vertex[c, _FACING] * w2
+    up = vertex[a, _UP] * w0 + vertex[b, _UP] * w1 + vertex[c, _UP] * w2
+    sun, soft = 1.0, toon[_SOFT]
+    if toon[_CAST] > 0.0 and to_light > toon[_BANDS] - soft:
+        su = vertex[a, _SU] * w0 + vertex[b, _SU] * w1 + vertex[c, _SU] * w2
+        sv = vertex[a, _SV] * w0 + vertex[b, _SV] * w1 + vertex[c, _SV] * w2
+        height = vertex[a, _HEIGHT] * w0 + vertex[b, _HEIGHT] * w1 + vertex[c, _HEIGHT] * w2
+        sun = _sunlit(shadow, su, sv, height + 100.0)
+    half = smooth(toon[_BANDS] - soft, toon[_BANDS] + soft, to_light) * sun
+    full = smooth(toon[_BANDS + 1] - soft, toon[_BANDS + 1] + soft, to_light) * sun
+    level = toon[_LEVELS] + (toon[_LEVELS + 1] - toon[_LEVELS]) * half
+    level = (level + (toon[_LEVELS + 2] - toon[_LEVELS + 1]) * full) * (0.95 + 0.05 * up)
+    rim = toon[_RIM] * smooth(toon[_RIM + 1], toon[_RIM + 1] + 0.2, 1.0 - facing) * (0.6 + 0.4 * up)
+    m = int(vertex[a, _MATERIAL])
+    u = vertex[a, _U] * w0 + vertex[b, _U] * w1 + vertex[c, _U] * w2
+    v = vertex[a, _V] * w0 + vertex[b, _V] * w1 + vertex[c, _V] * w2
+    red, green, blue = _texel(texels, textures[m, 0], textures[m, 1], textures[m, 2], u, v)
+    red *= level * (toon[_SHADE] + (1.0 - toon[_SHADE]) * half)
+    green *= level * (toon[_SHADE + 1] + (1.0 - toon[_SHADE + 1]) * half)
+    blue *= level * (toon[_SHADE + 2] + (1.0 - toon[_SHADE + 2]) * half)
+    return min(red + (1.0 - red) * rim, 1.0), min(green + (1.0 - green) * rim, 1.0), min(blue + (1.0 - blue) * rim, 1.0)
 
 
 @njit(cache=True)
 def resolve(
-    out: Any, box: Any, samples: int, ids: Any, count: int, triangles: Any, points: Any, world: Any, uv: Any,
-    material: Any, texels: Any, textures: Any, eye: Any, light: Any, shadow: Any, axes: Any, origin: Any, scale: float,
-    toon: Any,
+    out: Any, samples: int, ids: Any, depth: Any, spans: Any, count: int, triangles: Any, patch: Any, vertex: Any,
+    texels: Any, textures: Any, shadow: Any, toon: Any,
 ) -> None:  # fmt: skip  # pragma: no cover
-    """Put the samples of `box` (x0, y0, x1, y1 in pixels) on the picture.
+    """Put the samples on the picture.
 
-    ids : triangle of each sample, -1 for none, those from `count` on are outline. One colour serves all samples of a
-    pixel that see the same triangle.
+    ids : triangle of each sample, -1 for none, those from `count` on are outline; depth : 1 / depth of each sample;
+    spans : the columns of samples in use in each row of them.
+    One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
-    share = 1.0 / (samples * samples)
-    for row in range(box[1], box[3]):
-        for column in range(box[0], box[2]):
-            first = ids[row * samples, column * samples]
-            same = True
+    total = samples * samples
+    share = 1.0 / total
+    seen = np.empty(total, np.int64)  # the triangle of each sample, -1 once it is coloured
+    depths = np.empty(total)
+    for row in range(out.shape[0]):
+        first, last = spans[row * samples, 0], spans[row * samples, 1]
+        for j in range(1, samples):
+            first, last = min(first, spans[row * samples + j, 0]), max(last, spans[row * samples + j, 1])
+        for column in range(first // samples, (last + samples - 1) // samples):
+            covered = 0
+            k = 0
             for j in range(samples):
                 for i in range(samples):
-                    if ids[row * samples + j, column * samples + i] != first:
-                        same = False
-            if same:
-                if first < 0:
+                    seen[k] = ids[row * samples + j, column * samples + i]
+                    if seen[k] >= 0:
+                        depths[k] = depth[row * samples + j, column * samples + i]
+                        covered += 1
+                    k += 1
+            if covered == 0:
+                continue
+            r, g, b = 0.0, 0.0, 0.0
+            for k in range(total):
+                t = seen[k]
+                if t < 0:
                     continue
-                if first >= count:
-                    r, g, b = toon[11], toon[12], toon[13]
-                else:
-                    r, g, b = _colour(
-                        first, (column + 0.5) * samples, (row + 0.5) * samples, triangles, points, world, uv, material,
-                        texels, textures, eye, light, shadow, axes, origin, scale, toon,
-                    )  # fmt: skip
-                covered = 1.0
-            else:
-                r, g, b, covered = 0.0, 0.0, 0.0, 0.0
-                last = -1
-                lr, lg, lb = 0.0, 0.0, 0.0
-                for j in range(samples):
-                    for i in range(samples):
-                        y, x = row * samples + j, column * samples + i
-                        t = ids[y, x]
-                        if t < 0:
-                            continue
-                        if t >= count:
-                            lr, lg, lb = toon[11], toon[12], toon[13]
-                        elif t != last:
-                            lr, lg, lb = _colour(
-                                t, x + 0.5, y + 0.5, triangles, points, world, uv, material, texels, textures, eye,
-                                light, shadow, axes, origin, scale, toon,
-                            )  # fmt: skip
-                        last = t
-                        r += lr * share
-                        g += lg * share
-                        b += lb * share
-                        covered += share
-            rest = 1.0 - covered
+                if t >= count:
+                    r += share * toon[_OUTLINE]
+                    g += share * toon[_OUTLINE + 1]
+                    b += share * toon[_OUTLINE + 2]
+                    continue
+                piece, close, weight = patch[t], 0.006 * depths[k], share
+                for m in range(k + 1, total):
+                    other = seen[m]
+                    if other == t or (
+                        0 <= other < count and patch[other] == piece and abs(depths[m] - depths[k]) < close
+                    ):
+                        seen[m] = -1
+                        weight += share
+                px, py = (column + 0.5) * samples, (row + 0.5) * samples
+                if weight < 0.5:
+                    px, py = column * samples + k % samples + 0.5, row * samples + k // samples + 0.5
+                cr, cg, cb = _colour(
+                    triangles[t, 0], triangles[t, 1], triangles[t, 2], px, py, vertex, texels, textures, shadow, toon
+                )
+                r += weight * cr
+                g += weight * cg
+                b += weight * cb
+            rest = 1.0 - covered * share
             out[row, column, 0] = int(255.0 * r + out[row, column, 0] * rest + 0.5)
             out[row, column, 1] = int(255.0 * g + out[row, column, 1] * rest + 0.5)
             out[row, column, 2] = int(255.0 * b + out[row, column, 2] * rest + 0.5)

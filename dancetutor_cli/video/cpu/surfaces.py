@@ -1,4 +1,4 @@
-"""Colours of the stage: one rule for each kind of surface. The same rules as gl/shaders/surfaces.glsl; keep them equal."""
+"""Colours of the stage, one rule for each kind of surface; gl/shaders/surfaces.glsl has the same rules."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from dancetutor_cli.video.look import RGB, StageLook
 from dancetutor_cli.video.stage import PANEL, Stage, pad_extent
 
 COLOURS = (
-    "floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel", "panel_blank", "groove",
-    "arrow",
+    "floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel", "panel_blank",
+    "groove", "arrow",
 )  # fmt: skip
 _NUMBERS = len(COLOURS)  # row of the palette with tile, pool; the next has the pad's middle and half size
 
@@ -52,15 +52,16 @@ def _line(x: float, tile: float, half: float, footprint: float) -> float:  # pra
     """How much of a footprint around x is covered by lines of half width `half`, one every `tile` metres."""
     d = abs(x / tile - np.floor(x / tile + 0.5)) * tile
     cover = min(1.0, max(0.0, (half - d) / footprint + 0.5))
-    return cover * min(1.0, 2.0 * half / footprint)
+    return float(cover * min(1.0, 2.0 * half / footprint))
 
 
 @njit(cache=True)
 def _floor(x: float, z: float, footprint: float, palette: Any) -> Any:  # pragma: no cover
-    numbers, pad = palette[12], palette[13]
-    dx = max(abs(x - pad[0]) - pad[2], 0.0)
-    dz = max(abs(z - pad[1]) - pad[3], 0.0)
-    away = (dx * dx + dz * dz) / (numbers[1] * numbers[1])
+    px, pz, tile = palette[13, 0], palette[13, 1], palette[12, 0]
+    half_x, half_z, pool = palette[13, 2], palette[13, 3], palette[12, 1]
+    dx = max(abs(x - px) - half_x, 0.0)
+    dz = max(abs(z - pz) - half_z, 0.0)
+    away = (dx * dx + dz * dz) / (pool * pool)
     light = 1.0 / (1.0 + away)
     light = light * light
     line = max(
@@ -84,8 +85,8 @@ def arrow_distance(a: float, b: float) -> float:  # pragma: no cover
 @njit(cache=True)
 def _pad(x: float, z: float, footprint: float, palette: Any, panel: Any, arrow: Any) -> Any:  # pragma: no cover
     """Colour, column of the panel or -1, how much it glows when lit, and how white."""
-    corner, size = palette[14], palette[12, 2]
-    across, deep = (corner[0] - x) / size, (z - corner[1]) / size
+    size = palette[12, 2]
+    across, deep = (palette[14, 0] - x) / size, (z - palette[14, 1]) / size
     i = min(max(int(np.floor(across)), 0), panel.shape[0] - 1)
     j = min(max(int(np.floor(deep)), 0), panel.shape[1] - 1)
     lx, lz = -(across - i - 0.5), deep - j - 0.5  # world directions, in panel widths from the tile's middle
