@@ -65,8 +65,8 @@ def _floor(x: float, z: float, footprint: float, palette: Any) -> Any:  # pragma
     light = 1.0 / (1.0 + away)
     light = light * light
     line = max(
-        _line(x - pad[0] - pad[2], numbers[0], 0.007, footprint),
-        _line(z - pad[1] - pad[3], numbers[0], 0.007, footprint),
+        _line(x - px - half_x, tile, 0.007, footprint),
+        _line(z - pz - half_z, tile, 0.007, footprint),
     )
     r, g, b = _mix(palette, 1, 0, light)
     line *= light
