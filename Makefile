@@ -10,7 +10,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help setup setup-dev demo test lint bench clean
+.PHONY: help setup setup-dev demo test lint bench character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -18,6 +18,7 @@ help:
 	@echo "make lint    ruff and mypy --strict"
 	@echo "make bench   measure speed; print a table"
 	@echo "make setup   only set up $(VENV)"
+	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make clean   remove $(VENV), build/ and caches"
 
 setup: $(VENV)/.runtime
@@ -52,6 +53,16 @@ lint: setup-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+# Its own environment, so that the versions that shaped the dancer are pinned and nothing else needs them.
+build/venv-character/.ready: requirements-character.lock pyproject.toml | $(BIN)/python
+	$(PYTHON) -m venv build/venv-character
+	@build/venv-character/bin/pip install --quiet --require-hashes -r requirements-character.lock
+	@build/venv-character/bin/pip install --quiet --no-deps -e .
+	@touch $@
+
+character: build/venv-character/.ready
+	@build/venv-character/bin/python tools/build_character.py
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)

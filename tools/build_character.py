@@ -15,7 +15,7 @@ import numpy as np
 from build_character_bake import Atlas
 from build_character_loft import Lofted
 from build_character_mesh import even, surface
-from build_character_parts import Part, parts
+from build_character_parts import Part, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
 
@@ -41,7 +41,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     out = np.zeros((len(points), len(ORDER)))
     if part.skin == "heat":
         out = skin.at(points, normals)
-        return _with_ankles(out, points) if part.name == "leggings" else out
+        return _with_ankles(out, points) if part.name in ("leggings", "figure") else out
     if part.skin == "foot":
         toes = _smooth((points[:, 2] - 0.078) / 0.040)
         shin = _smooth((points[:, 1] - 0.072) / 0.090)
@@ -102,12 +102,10 @@ def occlusion(points: Array, normals: Array, strength: float) -> Array:
     return np.round(np.clip(1.04 - strength * dark, 0.62, 1.0), 5)
 
 
-def dancer() -> Character:
-    """The stylised dancer with her painted atlas."""
-    skin = reference()
-    atlas = Atlas(2048, 1024)
+def assemble(name: str, pieces: list[Part], skin: Skin, atlas: Atlas) -> Character:
+    """Make all pieces, skin them, paint their atlas and join what shares a material."""
     pending: list[tuple[Part, Array, Array, np.ndarray, Array, int]] = []
-    for part in parts():
+    for part in pieces:
         made = part.make()
         weights = weights_of(part, made, skin)
         points, normals, triangles = made
@@ -115,14 +113,16 @@ def dancer() -> Character:
         if not part.tint:
             open_ = "eye" in part.name or "lid" in part.name
             shade = (
-                np.ones(len(points)) if open_ else occlusion(points, normals, 0.10 if part.name == "leggings" else 0.22)
+                np.ones(len(points))
+                if open_
+                else occlusion(points, normals, 0.0 if part.name in ("leggings", "figure") else 0.22)
             )
             source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
             points, normals, weights = points[source], normals[source], weights[source]
             slot = len(atlas.parts) - 1
         pending.append((part, points, normals, triangles, weights, slot))
     uv = atlas.pack()
-    material = Material("dancer", (1.0, 1.0, 1.0, 1.0), atlas.paint(uv))
+    material = Material(name, (1.0, 1.0, 1.0, 1.0), atlas.paint(uv))
     meshes: dict[str, list[Mesh]] = {}
     for part, points, normals, triangles, weights, slot in pending:
         for sign in (1, -1) if part.mirror else (1,):
@@ -136,8 +136,8 @@ def dancer() -> Character:
                 (triangles if sign > 0 else triangles[:, ::-1]).astype(np.int32), *skinned, paint,
             )  # fmt: skip
             meshes.setdefault(group_of(part, side), []).append(mesh)
-    print("atlas scale:", round(atlas.scale, 3), "charts:", len(atlas.charts))
-    return character("dancer", [merged(name, group) for name, group in meshes.items()])
+    print(f"{name}: atlas at {atlas.scale:.2f} of the wanted density, {len(atlas.charts)} charts")
+    return character(name, [merged(mesh, group) for mesh, group in meshes.items()])
 
 
 def group_of(part: Part, side: str) -> str:
@@ -172,13 +172,18 @@ def character(name: str, meshes: list[Mesh]) -> Character:
 
 
 def main(folder: Path = DATA) -> None:
-    """Write dancer.glb into the package, or into the folder given."""
+    """Write dancer.glb and mannequin.glb into the package, or into the folder given."""
     folder.mkdir(parents=True, exist_ok=True)
-    made = dancer()
-    write_glb(folder / "dancer.glb", made)
-    for mesh in made.meshes:
-        print(f"{mesh.name}: {len(mesh.positions)} vertices, {len(mesh.triangles)} triangles")
-    print(sum(len(m.triangles) for m in made.meshes), "triangles,", (folder / "dancer.glb").stat().st_size, "bytes")
+    skin = reference()
+    for made in (
+        assemble("dancer", parts(), skin, Atlas(2048, 1024)),
+        assemble("mannequin", mannequin_parts(), skin, Atlas(1024, 512)),
+    ):
+        path = folder / f"{made.name}.glb"
+        write_glb(path, made)
+        for mesh in made.meshes:
+            print(f"  {mesh.name}: {len(mesh.positions)} vertices, {len(mesh.triangles)} triangles")
+        print(f"  {sum(len(m.triangles) for m in made.meshes)} triangles, {path.stat().st_size} bytes")
 
 
 if __name__ == "__main__":

@@ -212,3 +212,17 @@ def arrow(q: Array) -> Array:
     bars = np.maximum(bars, x - 0.92)
     stem = np.maximum(x - 0.24, np.maximum(y - 0.6, -0.95 - y))
     return np.minimum(bars, stem)
+
+
+def figure(p: Array, n: Array) -> Array:
+    """Pale grey, dark bands at the joints, a visor that shows where the head looks."""
+    base = fill(p, colour("#d9dce6"))
+    x, y = np.abs(p[:, 0]), p[:, 1]
+    along = (np.stack([x, y, p[:, 2]], axis=1) - SHOULDER) @ ARM
+    on_arm = (x > 0.17) & (along > 0.03)
+    bands = [np.where(on_arm, np.abs(along - s), 1.0) for s in (0.045, 0.262)]
+    bands += [np.where(on_arm, 1.0, np.abs(y - h)) for h in (0.485, 1.075, 1.475)]
+    for d in bands:
+        base = over(base, colour("#6f7690"), inside(d - 0.006, 0.001))
+    visor = np.maximum(np.abs(y - 1.590) - 0.017, 0.045 - p[:, 2])
+    return over(base, colour("#454b63"), inside(visor, 0.001))

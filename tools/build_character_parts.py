@@ -48,7 +48,7 @@ def shirt_mesh() -> Lofted:
         (-0.32, 0.96, -0.14),
         (0.32, 1.46, 0.14),
         0.005,
-        ramp([0.008, 0.03], [0.012, 0.0215], lambda p: np.abs(neck(p))),
+        ramp([0.008, 0.03], [0.0125, 0.0220], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM))),
     )
     normals = gradient(body.shirt_cloth(), points)
     bowl = np.abs(neck(points)) < 0.002
@@ -121,6 +121,14 @@ def parts() -> list[Part]:
         Part("lid", lambda: placed(joined(*head.lid(True))), "eyelid_joint", 1300, paint.lid, True),
         Part("lower lid", lambda: placed(joined(*head.lid(False))), "skullbase", 1300, paint.lid, True),
     ]  # fmt: skip
+
+
+def mannequin_parts() -> list[Part]:
+    """A plain figure that shows the pose: one skin with its joints marked, and the limbs' colours."""
+    fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0105, 0.0085], lambda p: np.abs(p[:, 0]))
+    box = ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16))
+    coloured = [part for part in parts() if part.name in ("shoe", "wristband", "shoe collar", "sole")]
+    return [Part("figure", of_shape(body.figure(), box, 0.0055, fine), "heat", 700, paint.figure), *coloured]
 
 
 def placed(part: Lofted) -> Lofted:

@@ -112,9 +112,7 @@ def stack(
     f = np.asarray(front, float) - (np.asarray(front, float) @ t) * t
     f /= np.linalg.norm(f)
     side = np.cross(t, f)
-    table = np.array(rows, float)
-    if table.shape[1] == 5:
-        table = np.concatenate([table, np.zeros((len(table), 1))], axis=1)
+    table = np.array([(*row, 0.0)[:6] for row in rows], float)
     curves = [smooth_curve(table[:, 0], table[:, k]) for k in range(1, 6)]
 
     def distance(p: Array) -> Array:

@@ -14,8 +14,8 @@ RIGHT = np.array([1.0, 0.0, 0.0])
 
 
 def hem() -> Lofted:
-    curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.007, -0.012), RIGHT, FRONT, 40)
-    return band(curve, out, 0.022, 0.0065)
+    curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.005, -0.012), RIGHT, FRONT, 40)
+    return band(curve, out, 0.026, 0.0070)
 
 
 def cuff() -> Lofted:
@@ -93,7 +93,7 @@ def sole() -> Lofted:
 
 
 def _around_upper(ring: Array, y: Array) -> Array:
-    """The line where the rubber meets the upper: along each ray from the middle, 1 mm outside its surface."""
+    """The line where the rubber meets the upper: along each ray from the middle, 2 mm outside its surface."""
     shape, middle = body.shoe_upper(), np.array([HIP[0], 0.05])
     low, high = np.zeros(len(ring)), np.ones(len(ring))
     length = np.linalg.norm(ring - middle, axis=1)
@@ -102,7 +102,7 @@ def _around_upper(ring: Array, y: Array) -> Array:
         p = middle + mid[:, None] * (ring - middle)
         inside = shape(np.stack([p[:, 0], y, p[:, 1]], axis=1)) < 0
         low, high = np.where(inside, mid, low), np.where(inside, high, mid)
-    flat = middle + np.round(np.minimum(low + 0.001 / length, 0.97), 7)[:, None] * (ring - middle)
+    flat = middle + np.round(np.minimum(low + 0.0022 / length, 0.985), 7)[:, None] * (ring - middle)
     return np.stack([flat[:, 0], y, flat[:, 1]], axis=1)
 
 

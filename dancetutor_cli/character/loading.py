@@ -1,14 +1,53 @@
-"""The characters that come with the program."""
+"""The characters that come with the program, and a user's own, each ready to be moved and drawn."""
 
 from __future__ import annotations
 
-from dancetutor_cli.character.model import Character
+from dataclasses import fields, replace
+from pathlib import Path
+
+from dancetutor_cli.character.model import Character, Material, Mesh
 from dancetutor_cli.character.reader import read_character
+from dancetutor_cli.colours import LimbColours, limb_colours
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.resources import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
+BUILT_IN = ("dancer", "mannequin")
+SUFFIXES = (".glb", ".vrm")
 
 
 def load_dancer() -> Character:
-    """The project's own dancer, on the joints of `rig.skeleton.dancer_skeleton`."""
-    return read_character(DATA / "dancer.glb")
+    """The project's own dancer, on the joints of `rig.skeleton.dancer_skeleton`, shoes in the configured colours."""
+    return _built_in("dancer")
+
+
+def load_character(name_or_path: str) -> Character:
+    """The character called `name_or_path` ("dancer", "mannequin"), or the one in that .glb or .vrm file.
+
+    A user's character comes fitted to the rig: see `fitting.fit_character`.
+
+    Raises UsageError for an unknown name, FileError for a file that cannot be used; both are one line.
+    """
+    if name_or_path in BUILT_IN:
+        return _built_in(name_or_path)
+    path = Path(name_or_path)
+    if path.suffix.lower() not in SUFFIXES:
+        names = ", ".join(BUILT_IN)
+        raise UsageError(f"no character {name_or_path!r}; there are: {names}, or give a .glb or .vrm file")
+    from dancetutor_cli.character.fitting import fit_character
+
+    return fit_character(path)
+
+
+def _built_in(name: str) -> Character:
+    character = read_character(DATA / f"{name}.glb")
+    return replace(character, meshes=tuple(_coloured(mesh) for mesh in character.meshes))
+
+
+def _coloured(mesh: Mesh) -> Mesh:
+    """A mesh whose material is named after a limb wears that limb's colour of configs/colours.yaml."""
+    name = mesh.material.name
+    if name not in {field.name for field in fields(LimbColours)}:
+        return mesh
+    r, g, b = (c / 255 for c in getattr(limb_colours(), name))
+    return replace(mesh, material=Material(name, (r, g, b, 1.0)))
