@@ -183,7 +183,7 @@ def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
 
 
 def fastest_bpm(chart: Chart) -> float:
-    """The highest BPM that matters: what is as fast or faster lasts at least 2 % of the chart; bursts of gimmicks do not."""
+    """The highest BPM that matters: what is as fast lasts at least 2 % of the chart, so bursts of gimmicks are not."""
     shares = sorted(bpm_shares(chart), reverse=True)
     total, heard = sum(length for _, length in shares), 0.0
     for bpm, length in shares:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
+from dancetutor_cli.errors import DancetutorError, MissingFileError
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film_look import FilmLook

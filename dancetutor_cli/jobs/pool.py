@@ -28,7 +28,7 @@ class WorkFailedError(DancetutorError):
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One piece of work: `function(report, *arguments)`; `report(n)` tells that n more units are done; key: its name."""
+    """One piece of work, `key`: `function(report, *arguments)`, where `report(n)` tells that n more units are done."""
 
     key: Any
     function: Callable[..., Any]

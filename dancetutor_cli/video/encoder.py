@@ -87,7 +87,7 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
     arguments = ("-y", *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
     with ffmpeg.Process((*arguments, ffmpeg.local(path)), "encoding video", write=True) as process:
         for frame in frames:
-            process.write(memoryview(frame).cast("B"))
+            process.write(frame.data)
         process.finish()
 
 
@@ -102,7 +102,7 @@ def save_picture(frame: Frame, path: Path) -> None:
 
 
 def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
-    """Make the film of its segments and the sound (a WAV file or None). `work`: a folder for what it needs meanwhile."""
+    """Make the film of its segments and the sound, a WAV file or None; `work`: a folder for what that needs."""
     listing = work / "segments.txt"
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")

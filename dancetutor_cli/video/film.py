@@ -87,9 +87,11 @@ class Film:
         header, legend, progress = layout.header, layout.legend, layout.progress
         limbs = {int(limb) for limb in np.unique(plan.notes.limb) if limb >= 0}
         return (
-            overlay.Header(plan.words, pixels(header.box, size), scale, face, style) if header else None,
-            overlay.Legend(limbs, pixels(legend.box, size), scale, face) if legend else None,
-            overlay.Progress(plan.song, pixels(progress.box, size), scale, face, style) if progress else None,
+            overlay.Header(plan.words, pixels(header.box, size), scale * header.text, face, style) if header else None,
+            overlay.Legend(limbs, pixels(legend.box, size), scale * legend.text, face) if legend else None,
+            overlay.Progress(plan.song, pixels(progress.box, size), scale * progress.text, face, style)
+            if progress
+            else None,
         )
 
     @cached_property

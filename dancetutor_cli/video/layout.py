@@ -23,7 +23,7 @@ class DancerPart:
 
 @dataclass(frozen=True, slots=True)
 class HighwayPart:
-    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : as "C600"."""
+    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : "C600"."""
 
     box: Box
     lane: float
@@ -34,9 +34,10 @@ class HighwayPart:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A place for words. box : share of the picture."""
+    """A place for words. box : share of the picture; text : how much larger than usual they are."""
 
     box: Box
+    text: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

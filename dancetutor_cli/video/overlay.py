@@ -62,7 +62,7 @@ class Header:
 
     def _add(self, sprite: Sprite, x: float, y: float) -> float:
         self.lines.append((sprite, x, y))
-        return y + sprite.shape[0]
+        return float(y + sprite.shape[0])
 
     def draw(self, frame: Frame) -> None:
         """Lay the words over the picture."""
@@ -147,9 +147,9 @@ class Progress:
             base = 1.5 * self.scale
             rectangle(picture, a + x, floor - base - (room - base) * height, a + x + 1, floor, colour, 0.88)
         for edge in self.song.section:
-            x = a + self._position(edge) * (b - a)
-            if a < x < b:
-                rectangle(picture, x - self.scale, 0, x + self.scale, bottom - top, style.difficulty["Medium"], 0.8)
+            at = a + self._position(edge) * (b - a)
+            if a < at < b:
+                rectangle(picture, at - self.scale, 0, at + self.scale, bottom - top, style.difficulty["Medium"], 0.8)
         return picture
 
     def _position(self, second: float) -> float:

@@ -26,24 +26,24 @@ def polygon(x: Field, y: Field, points: NDArray[np.float64]) -> Field:
         nearest = np.minimum(nearest, (x - ax - t * ex) ** 2 + (y - ay - t * ey) ** 2)
         if ay != by:
             inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * ex)
-    return np.where(inside, -1, 1) * np.sqrt(nearest)
+    return np.asarray(np.where(inside, -1, 1) * np.sqrt(nearest))
 
 
 def disc(x: Field, y: Field, radius: float) -> Field:
     """Distance to a disc around the centre."""
-    return np.hypot(x, y) - radius
+    return np.asarray(np.hypot(x, y) - radius)
 
 
 def rounded_box(x: Field, y: Field, half_width: float, half_height: float, radius: float) -> Field:
     """Distance to a rectangle around the centre with round corners."""
     qx, qy = np.abs(x) - half_width + radius, np.abs(y) - half_height + radius
     outside = np.hypot(np.maximum(qx, 0), np.maximum(qy, 0))
-    return outside + np.minimum(np.maximum(qx, qy), 0) - radius
+    return np.asarray(outside + np.minimum(np.maximum(qx, qy), 0) - radius)
 
 
 def cover(distance: Field, width: float = 1.0) -> Field:
     """Share of each sample inside the shape, its edge `width` samples soft."""
-    return np.clip(0.5 - distance * SAMPLES / width, 0, 1)
+    return np.asarray(np.clip(0.5 - distance * SAMPLES / width, 0, 1))
 
 
 class Painter:
@@ -64,4 +64,4 @@ class Painter:
         """The picture as a premultiplied uint8 sprite (h, w, 4)."""
         h, w = (n // SAMPLES for n in self.x.shape)
         mean = self.picture.reshape(h, SAMPLES, w, SAMPLES, 4).mean(axis=(1, 3))
-        return np.rint(mean * 255).astype(np.uint8)
+        return np.asarray(np.rint(mean * 255), dtype=np.uint8)

@@ -62,10 +62,10 @@ def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
     """Corners of the note shape; direction in degrees clockwise from up."""
     if direction is None:
-        return _SQUARE * size / 2
+        return np.asarray(_SQUARE * size / 2)
     a = np.radians(direction)
     turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
-    return _ARROW @ turn * size / 2
+    return np.asarray(_ARROW @ turn * size / 2)
 
 
 @lru_cache(maxsize=64)

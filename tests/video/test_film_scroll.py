@@ -19,7 +19,7 @@ def test_speeds_are_read(text: str, expected: Scroll) -> None:
 
 @pytest.mark.parametrize("text", ["", "600", "C", "Q3", "C0", "X99", "M-4", "Cnan"])
 def test_other_speeds_are_refused_with_what_is_allowed(text: str) -> None:
-    with pytest.raises(UsageError, match="C600|takes"):
+    with pytest.raises(UsageError, match=r"C600|takes"):
         parse_scroll(text)
 
 

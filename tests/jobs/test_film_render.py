@@ -1,0 +1,193 @@
+"""Whole films: sound and picture agree, any number of workers gives the same bytes, failures leave nothing behind."""
+
+from __future__ import annotations
+
+import hashlib
+import stat
+import subprocess
+import sys
+import wave
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.jobs.film_plan import Prepared
+from dancetutor_cli.jobs.render import make_film
+from dancetutor_cli.video import ffmpeg
+from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.notes import NoteTrack
+from dancetutor_cli.video.sound import SoundPlan
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "video"))
+from film_plans import film_plan
+
+RATE = 48000
+NOTES = np.array([0.5130, 1.2371, 2.0, 2.7419, 3.3333, 4.1, 4.8765, 5.5511])
+
+
+class Silent:
+    """Progress that counts."""
+
+    def __init__(self) -> None:
+        self.frames = self.seen = 0
+
+    def begin(self, frames: int, fps: int) -> None:
+        self.frames = frames
+
+    def advance(self, frames: int) -> None:
+        self.seen += frames
+
+
+def write_clicks(path: Path) -> None:
+    """A stereo WAV with a click at each note."""
+    track = np.zeros(7 * RATE)
+    t = np.arange(int(0.02 * RATE)) / RATE
+    for second in NOTES:
+        at = int(np.ceil(second * RATE))
+        track[at : at + len(t)] += 0.8 * np.sin(2 * np.pi * 1800 * t + 1) * np.exp(-t * 220)
+    with wave.open(str(path), "wb") as out:
+        out.setnchannels(2)
+        out.setsampwidth(2)
+        out.setframerate(RATE)
+        out.writeframes(np.repeat((track * 32767).astype("<i2"), 2).tobytes())
+
+
+def decode_sound(film: Path) -> NDArray[np.float32]:
+    """What a player hears, from the film's time 0 on."""
+    command = [ffmpeg.executable(), "-v", "error", "-i", str(film), "-map", "0:a", "-ac", "1", "-ar", str(RATE)]
+    raw = subprocess.run([*command, "-f", "f32le", "-"], check=True, capture_output=True).stdout
+    return np.frombuffer(raw, dtype="<f4")
+
+
+def decode_pictures(film: Path, size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Every picture of a film."""
+    command = [ffmpeg.executable(), "-v", "error", "-i", str(film), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    raw = subprocess.run(command, check=True, capture_output=True).stdout
+    return np.frombuffer(raw, dtype=np.uint8).reshape(-1, size[1], size[0], 3)
+
+
+def onsets(samples: NDArray[np.float32]) -> NDArray[np.float64]:
+    loud = np.flatnonzero(np.abs(samples) > 0.4 * np.abs(samples).max())
+    return loud[np.insert(np.diff(loud) > 0.2 * RATE, 0, True)] / RATE
+
+
+@pytest.mark.parametrize("fps", [30, 60])
+def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int) -> None:
+    size = (240, 240)
+    write_clicks(tmp_path / "song.wav")
+    clock = Clock((Pass(-0.25, 6.2),), fps)
+    columns = np.full(len(NOTES), 2)
+    plan = film_plan(NOTES, clock, size, columns)
+    notes = NoteTrack(*(getattr(plan.notes, field.name)[:0] for field in fields(NoteTrack)))
+    plan = replace(plan, notes=notes, beats=np.full(clock.frames, -1.0))  # nothing else moves than the receptor's light
+    film = tmp_path / "film.mp4"
+    prepared = Prepared(plan, SoundPlan(tmp_path / "song.wav"), ())
+    make_film(lambda: prepared, Encoding("mp4", size, fps), film, 1, Silent())
+
+    heard = onsets(decode_sound(film))
+    assert len(heard) == len(NOTES)
+    assert np.abs(heard - (NOTES + 0.25)).max() < 0.002  # the encoder's priming is taken off by the file's edit list
+
+    pictures = decode_pictures(film, size)
+    assert len(pictures) == clock.frames
+    lane = 240 * 88 / 720
+    x, y = round(120 + 0.5 * lane), round(0.15 * 0.933 * 240)
+    r = round(0.6 * lane)
+    light = pictures[:, y - r : y + r, x - r : x + r].astype(float).mean(axis=(1, 2, 3))
+    jumps = np.flatnonzero(np.diff(light) > 0.35 * np.diff(light).max()) + 1
+    lit = jumps[np.insert(np.diff(jumps) > 0.3 * fps, 0, True)] / fps
+    assert len(lit) == len(NOTES)
+    late = lit - heard
+    assert late.min() > -0.002 and late.max() < 1 / fps + 0.002
+
+
+def digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_any_number_of_workers_makes_the_same_film(tmp_path: Path) -> None:
+    plan = film_plan(np.arange(0.5, 9.0, 0.25), size=(96, 96))
+    write_clicks(tmp_path / "song.wav")
+    prepared = Prepared(plan, SoundPlan(tmp_path / "song.wav"), ())
+    films = []
+    for jobs in (1, 2):
+        film = tmp_path / f"film{jobs}.mp4"
+        progress = Silent()
+        make_film(lambda: prepared, Encoding("mp4", (96, 96), 30), film, jobs, progress)
+        assert progress.seen == progress.frames == plan.clock.frames
+        films.append(digest(film))
+    assert films[0] == films[1]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["film1.mp4", "film2.mp4", "song.wav"]
+
+
+def test_the_film_is_marked_as_bt709_and_starts_fast(tmp_path: Path) -> None:
+    plan = film_plan(np.array([0.5]), size=(64, 64))
+    film = tmp_path / "film.mp4"
+    make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Silent())
+    said = subprocess.run([ffmpeg.executable(), "-i", str(film)], capture_output=True, text=True, check=False).stderr
+    assert "yuv420p(tv, bt709" in said and "unknown" not in said.split("yuv420p")[1].split("\n")[0]
+    data = film.read_bytes()
+    assert data.index(b"moov") < data.index(b"mdat")
+
+
+def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path) -> None:
+    plan = film_plan(np.array([0.2, 0.4]), size=(64, 48))
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    (folder / "frame_999999.png").write_bytes(b"old")
+    (folder / "mine.png").write_bytes(b"the user's")
+    make_film(lambda: Prepared(plan, None, ()), Encoding("png", (64, 48), 30), folder, 1, Silent())
+    names = sorted(p.name for p in folder.iterdir())
+    assert names == [*(f"frame_{k:06d}.png" for k in range(plan.clock.frames)), "mine.png"]
+
+    from dancetutor_cli.video.film import Film
+
+    shown = np.asarray(Image.open(folder / "frame_000017.png"))
+    assert (shown == Film(plan).frame(17)).all()
+
+
+@pytest.mark.parametrize("kind", ["gif", "webp"])
+def test_moving_pictures_have_all_frames(tmp_path: Path, kind: str) -> None:
+    clock = Clock((Pass(0.0, 1.0),), 20)
+    plan = film_plan(np.array([0.2, 0.4]), clock, (64, 64))
+    film = tmp_path / f"film.{kind}"
+    make_film(lambda: Prepared(plan, None, ()), Encoding(kind, (64, 64), 20), film, 1, Silent())  # type: ignore[arg-type]
+    with Image.open(film) as image:
+        assert image.format == kind.upper() and image.size == (64, 64)
+        assert getattr(image, "n_frames", 1) >= 15  # equal neighbours may be merged
+        assert image.info.get("loop") == 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands in for ffmpeg")
+def test_a_dead_encoder_says_its_own_words_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fake = tmp_path / "ffmpeg"
+    fake.write_text("#!/bin/sh\nhead -c 5000 >/dev/null\necho 'the codec fell over' >&2\nexit 7\n")
+    fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setattr(ffmpeg, "executable", lambda: str(fake))
+    plan = film_plan(np.array([0.5]), size=(64, 64))
+    out = tmp_path / "out"
+    out.mkdir()
+    with pytest.raises(DancetutorError, match="the codec fell over") as caught:
+        make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), out / "film.mp4", 1, Silent())
+    assert "\n" not in str(caught.value)
+    assert list(out.iterdir()) == []
+
+
+def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
+    class Stop(Silent):
+        def advance(self, frames: int) -> None:
+            raise KeyboardInterrupt
+
+    film = tmp_path / "film.mp4"
+    film.write_bytes(b"the old one")
+    plan = film_plan(np.array([0.5]), size=(64, 64))
+    with pytest.raises(KeyboardInterrupt):
+        make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
+    assert film.read_bytes() == b"the old one"
+    assert [p.name for p in tmp_path.iterdir()] == ["film.mp4"]
