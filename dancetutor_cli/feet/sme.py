@@ -1,0 +1,144 @@
+"""SMEditor's `data.sme` as input: the feet and the silenced findings that a person has set in that editor."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.feet.contradictions import Said
+from dancetutor_cli.feet.model import FeetProblem
+from dancetutor_cli.play.model import Limb, Part
+
+FILE_NAME = "data.sme"
+OURS = "dancetutor"  # our own key in the file: what we wrote into it, which is no person's word
+# SMEditor's values: a foot, or with numbers a part of one.
+FEET: dict[str | int, tuple[Limb, Part]] = {
+    "Left": (Limb.LEFT_FOOT, Part.WHOLE),
+    "Right": (Limb.RIGHT_FOOT, Part.WHOLE),
+    1: (Limb.LEFT_FOOT, Part.HEEL),
+    2: (Limb.LEFT_FOOT, Part.TOE),
+    3: (Limb.RIGHT_FOOT, Part.HEEL),
+    4: (Limb.RIGHT_FOOT, Part.TOE),
+}
+_CODES = {
+    "DS": "DS", "Unmarked DS": "DS", "FS": "FS", "Missed FS": "FS", "AM": "AM", "Ambiguous": "AM",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class ChartData:
+    """What `data.sme` says about one chart. ignores : {tick: codes}"""
+
+    said: tuple[Said, ...] = ()
+    ignores: dict[int, frozenset[str]] = field(default_factory=dict)
+    problems: tuple[FeetProblem, ...] = ()
+
+
+def read_sme(song: Song, chart: Chart) -> ChartData:
+    """What the `data.sme` in the song's folder says about a chart; nothing if there is none. Never raises."""
+    path = song.path.parent / FILE_NAME
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        return ChartData()
+    except OSError as error:
+        return _unreadable(f"{path.name} cannot be read: {error.strerror}")
+    stems = song_stems(path.parent)
+    if len(stems) > 1:
+        return _unreadable(f"{path.name} is not used: its folder has several songs")
+    try:
+        data = json.loads(raw.decode("utf-8-sig"))
+    except ValueError as error:
+        return _unreadable(f"{path.name} is no JSON ({error}); it is not used")
+    entry = chart_entry(data, chart, place_in_type(song, chart))
+    return _chart_data(entry, chart, _our_overrides(data, chart, place_in_type(song, chart)))
+
+
+def place_in_type(song: Song, chart: Chart) -> int:
+    """The place of a chart among those of its steps type, in file order: how `data.sme` tells charts apart."""
+    return [c.index for c in song.charts if c.steps_type == chart.steps_type].index(chart.index)
+
+
+def song_stems(folder: Path) -> set[str]:
+    """The names, without suffix, of the chart files in a folder; more than one means several songs."""
+    suffixes = (".sm", ".ssc")
+    return {p.stem.lower() for p in folder.iterdir() if p.suffix.lower() in suffixes and not p.name.startswith(".")}
+
+
+def chart_entry(data: Any, chart: Chart, place: int) -> Any:
+    """The value that belongs to a chart in the parsed file; None where there is none."""
+    parity = data.get("parity") if isinstance(data, dict) else None
+    charts = parity.get(chart.steps_type) if isinstance(parity, dict) else None
+    return charts[place] if isinstance(charts, list) and place < len(charts) else None
+
+
+def _our_overrides(data: Any, chart: Chart, place: int) -> set[tuple[float, int, object]]:
+    entry = chart_entry(data.get(OURS), chart, place) if isinstance(data, dict) else None
+    return set(overrides_of(entry))
+
+
+def overrides_of(entry: Any) -> Iterator[tuple[float, int, str | int]]:
+    """The well-formed overrides of a chart's entry: beat, column, value."""
+    listed = entry.get("overrides") if isinstance(entry, dict) else None
+    for item in listed if isinstance(listed, list) else ():
+        if not isinstance(item, list) or len(item) != 3:
+            continue
+        beat, column, value = item
+        numbers = isinstance(beat, int | float) and isinstance(column, int) and not isinstance(beat, bool)
+        if numbers and isinstance(value, str | int) and not isinstance(value, bool) and value in FEET:
+            yield float(beat), column, value
+
+
+def tick_of(beat: float) -> int:
+    """The tick that SMEditor means by a beat rounded to three digits."""
+    return round(beat * TICKS_PER_BEAT)
+
+
+def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) -> ChartData:
+    notes = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
+    lines = dict(zip(chart.notes.tick.tolist(), chart.notes.line.tolist(), strict=True))
+    said: list[Said] = []
+    problems: list[FeetProblem] = []
+    for beat, column, value in overrides_of(entry):
+        if (beat, column, value) in ours:
+            continue
+        tick = tick_of(beat)
+        if (tick, column) not in notes:
+            text = f"{FILE_NAME} gives a foot to beat {beat:g}, column {column}, where no note is"
+            problems.append(FeetProblem("sme-no-note", text))
+            continue
+        limb, part = FEET[value]
+        said.append(Said(tick, column, limb, part, FILE_NAME, lines[tick], 1))
+    return ChartData(tuple(_with_parts(said)), dict(_ignores(entry)), tuple(problems))
+
+
+def _with_parts(said: list[Said]) -> Iterator[Said]:
+    """SMEditor calls a foot that is on one panel its heel; here heel and toe are only told apart in brackets."""
+    toes = {(s.tick, s.limb) for s in said if s.part == Part.TOE}
+    heels = {(s.tick, s.limb) for s in said if s.part != Part.TOE}
+    for s in said:
+        part = s.part
+        if part != Part.TOE:
+            part = Part.HEEL if (s.tick, s.limb) in toes else Part.WHOLE
+        elif (s.tick, s.limb) not in heels:
+            part = Part.WHOLE
+        yield Said(s.tick, s.column, s.limb, part, s.source, s.line, s.place)
+
+
+def _ignores(entry: Any) -> Iterator[tuple[int, frozenset[str]]]:
+    listed = entry.get("ignores") if isinstance(entry, dict) else None
+    for beat, names in listed.items() if isinstance(listed, dict) else ():
+        try:
+            tick = tick_of(float(beat))
+        except (ValueError, OverflowError):
+            continue
+        if isinstance(names, list):
+            yield tick, frozenset(_CODES[name] for name in names if isinstance(name, str) and name in _CODES)
+
+
+def _unreadable(text: str) -> ChartData:
+    return ChartData(problems=(FeetProblem("sme-unreadable", text),))

@@ -1,0 +1,87 @@
+"""The last look before a file is written: does every reader still see the same song in it?"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.model import Chart, NoteTable, RowTable, Song
+from dancetutor_cli.errors import FileError
+
+_COMMENT = re.compile(rb"//[^\n]*")
+_BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
+
+
+class HarmError(FileError):
+    """A change would alter what a game reads; it is not written. A fault of the program, or a very odd file."""
+
+
+def unchanged(before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False) -> Song:
+    """Read `after` back and compare it with the song it was made from.
+
+    Parameters
+    ----------
+    before : the song as it was read
+    after : the bytes to be written in its place
+    ours : which charts the program itself has added, and which therefore do not count
+
+    Returns the song as read from `after`. Raises `HarmError` naming the first difference.
+    """
+    try:
+        song = parse(after, before.path)
+    except FileError as error:
+        raise _harm(before.path, error.message) from error
+    for what in _differences(before, song, ours):
+        raise _harm(before.path, f"{what} would change")
+    return song
+
+
+def _harm(path: Path, what: str) -> HarmError:
+    return HarmError(path, f"refused, nothing was written: {what}; please report this file")
+
+
+def _differences(before: Song, after: Song, ours: Callable[[Chart], bool]) -> Iterator[str]:
+    for name in ("format", "title", "subtitle", "artist", "music", "tags", "timing"):
+        if getattr(before, name) != getattr(after, name):
+            yield f"the song's {name}"
+    old, new = ([c for c in song.charts if not ours(c)] for song in (before, after))
+    if len(old) != len(new):
+        yield "the number of charts"
+    for a, b in zip(old, new, strict=False):
+        for name in ("steps_type", "difficulty", "meter", "description", "columns", "timing", "tags"):
+            if getattr(a, name) != getattr(b, name):
+                yield f"the {name.replace('_', ' ')} of {a.label}"
+        if not _same_notes(a.notes, b.notes) or not _same_rows(a.rows, b.rows):
+            yield f"the note data of {a.label}"
+        if hash_input(before.data, a) != hash_input(after.data, b):
+            yield f"the score hash of {a.label}"
+    if _bpms(before.data) != _bpms(after.data)[: len(_bpms(before.data))]:
+        yield "the BPMs"
+
+
+def _same_notes(a: NoteTable, b: NoteTable) -> bool:
+    names = ("tick", "column", "kind", "end", "judged")
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in names)
+
+
+def _same_rows(a: RowTable, b: RowTable) -> bool:
+    return np.array_equal(a.tick, b.tick) and np.array_equal(a.measure, b.measure)
+
+
+def hash_input(data: bytes, chart: Chart) -> bytes:
+    """What the Simply Love theme hashes of a chart's note data, before it shortens the measures.
+
+    It looks for the field by cutting at every `:` and `;`, also those in comments, and only then drops comments and
+    blanks. So a `:` that got into a comment would cut the notes short here, as it does there.
+    """
+    start, end = chart.notes_span
+    text = re.split(rb"[:;]", data[start:end], maxsplit=1)[0].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return re.sub(rb"[\r\t\f\v ]+", b"", _COMMENT.sub(b"", text))
+
+
+def _bpms(data: bytes) -> list[bytes]:
+    return [re.sub(rb"\s+", b"", _COMMENT.sub(b"", text)) for text in _BPMS.findall(data)]
