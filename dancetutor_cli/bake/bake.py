@@ -9,15 +9,18 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.body import BodyPath, body_path
+from dancetutor_cli.motion.body import BodyPath, body_path, stepping
 from dancetutor_cli.motion.feet import FootPath, foot_path
 from dancetutor_cli.motion.ik import Targets, solve
+from dancetutor_cli.motion.layers import add_layers
 from dancetutor_cli.motion.look import look
 from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.paths import sample_path
 from dancetutor_cli.motion.plan import Planner
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
-from dancetutor_cli.motion.targets import ik_targets, moved, sample_path
+from dancetutor_cli.motion.targets import ik_targets, moved
 from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.physics.hair import add_hair
 from dancetutor_cli.play.model import Play
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -88,6 +91,10 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     inserted = _posed(plan, body, more, skeleton, settings)
     at, rotations, root = _refined(skeleton, (at, rotations, root), (more, *inserted))
     look(skeleton, rotations, root, body, at, settings)
+    ends = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
+    free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
+    add_layers(skeleton, at, rotations, stepping(ends, settings), free, settings.layers)
+    add_hair(skeleton, at, rotations, root, settings.hair)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
 

@@ -9,14 +9,18 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.body import BodyPath
 from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.feet import foot_path
+from dancetutor_cli.motion.inertia import Controller, follow
+from dancetutor_cli.motion.paths import UP, leaning, sample_path, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.motion.track import Plan, Press
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_points
 
 Array = NDArray[np.float64]
-PIN_IN, PIN_OUT = 0.30, 0.25  # seconds in which the body begins and ends to follow a palm
+FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
+PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,16 +37,11 @@ def arm_targets(
     plan: Plan, body: BodyPath, at: Array, shoulders: Array, chest: Array, skeleton: Skeleton, settings: MotionSettings
 ) -> HandTargets:
     """Targets at times `at` (f,); shoulders (f, 2, 3) and chest (f, 4) as the IK will be asked for them."""
-    arms = settings.arms
-    wrists, elbows = np.empty_like(shoulders), np.empty_like(shoulders)
-    upright = quat.swing_twist(chest, np.array([0.0, 1.0, 0.0]))[1]
-    swing = _swing(plan, body, at, settings)
-    for side, sign in ((0, 1.0), (1, -1.0)):
-        hang = np.zeros((len(at), 3))
-        hang[:, 0], hang[:, 1] = sign * arms.out, -arms.down + 0.25 * np.abs(swing[:, side])
-        hang[:, 2] = arms.forward + swing[:, side]
-        wrists[:, side] = shoulders[:, side] + quat.rotate(upright, hang)
-        elbows[:, side] = quat.rotate(upright, np.array([sign * 0.7, -0.25, -0.75]))
+    upright = quat.swing_twist(chest, UP)[1]
+    hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
+    wrists = shoulders + quat.rotate(upright[:, None], hang) + lag
+    out = np.array([[1.0], [-1.0]]) * np.array([0.7, 0.0, 0.0]) + np.array([0.0, -0.25, -0.75])
+    elbows = quat.rotate(upright[:, None], out)
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
     pinned = np.zeros((len(at), 2))
     for press in plan.presses:
@@ -50,20 +49,40 @@ def arm_targets(
     return HandTargets(wrists, turn, pinned, elbows)
 
 
-def _swing(plan: Plan, body: BodyPath, at: Array, settings: MotionSettings) -> Array:
-    """How far forward each hand (f, 2) is: it follows the opposite foot."""
-    from dancetutor_cli.motion.feet import foot_path
-    from dancetutor_cli.motion.paths import smooth_path
-    from dancetutor_cli.motion.targets import sample_path
+def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
+    """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
+    Both (n, 2, 3) at the body's times, the second in the world.
+    """
+    arms = settings.arms
+    swing = _swing(plan, body, settings)
+    hang = np.empty((len(swing), 2, 3))
+    hang[..., 0] = np.array([1.0, -1.0]) * arms.out
+    hang[..., 1] = -arms.down + 0.25 * np.abs(swing)
+    hang[..., 2] = arms.forward + swing
+    chest = leaning(body.tilt, body.chest_yaw)
+    upright = quat.from_axis_angle(UP, body.chest_yaw)
+    pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
+    rate = 1.0 / float(body.times[1] - body.times[0])
+    controller = Controller.of(settings.inertia.hand_frequency, settings.inertia.hand_damping)
+    lag = np.empty_like(hang)
+    for side, name in enumerate(SIDES):
+        arm = skeleton.rest[skeleton.index(f"{name}_shoulder")] - skeleton.offsets[0]
+        target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
+        lag[:, side] = follow(target, rate, controller) - target
+    far = np.linalg.norm(lag, axis=2, keepdims=True)
+    return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
+
+
+def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
+    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot."""
     front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
     ahead = []
     for track in plan.feet[::-1]:  # the left hand goes with the right foot
         path = foot_path(track, body.times, settings.step.heel_drop)
         ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
     both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
-    rate = 1.0 / float(body.times[1] - body.times[0])
-    return sample_path(smooth_path(both, np.ones(len(both)), rate, 0.09), body.times, at)
+    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)
 
 
 def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
@@ -89,12 +108,9 @@ def _from_matrix(m: Array) -> Array:
 
 
 def _press(
-    press: object, at: Array, wrists: Array, turn: Array, pinned: Array, elbows: Array, shoulders: Array,
+    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, elbows: Array, shoulders: Array,
     skeleton: Skeleton, settings: MotionSettings,
 ) -> None:  # fmt: skip
-    from dancetutor_cli.motion.track import Press
-
-    assert isinstance(press, Press)
     down, side = settings.hands.reach_down, press.side
     near = np.flatnonzero((at > press.start - down) & (at < press.end + down))
     if not len(near):

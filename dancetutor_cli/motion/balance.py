@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.banded import BandedLeastSquares, differences
 from dancetutor_cli.motion.feet import FootPath
 from dancetutor_cli.motion.qp import Limits, solve
-from dancetutor_cli.motion.settings import BodySettings
+from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 
 Array = NDArray[np.float64]
 UNIT = 0.03  # metres; scales the programme
@@ -21,15 +21,18 @@ FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball;
 HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
 
 
-def balanced_path(feet: tuple[FootPath, FootPath], lever: Array, rate: float, body: BodySettings) -> Array:
+def balanced_path(feet: tuple[FootPath, FootPath], lever: Array, times: Array, settings: MotionSettings) -> Array:
     """Path (n, 2) of the centre of mass over the ground.
 
     Parameters
     ----------
-    feet : at n even times, `rate` per second
+    feet : at the n even `times`, seconds
     lever : (n,) y / (y'' + g), seconds squared; ignored in flight
+    settings : of the body, and how the weight sways while both feet stand
     """
+    body, rate = settings.body, 1.0 / float(times[1] - times[0])
     low, high, middle = _support(feet)
+    middle = middle + _sway(feet, times, settings.layers)
     down = np.stack([f.down for f in feet])
     flight = ~down.any(axis=0)
     weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
@@ -54,6 +57,15 @@ def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
     left, right = feet[0].down[:, None], feet[1].down[:, None]
     best = np.where(left == right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
     return np.minimum(*lows), np.maximum(*highs), best
+
+
+def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) -> Array:
+    """(n, 2): how far the weight wanders from foot to foot; where one foot stands alone this is drowned by its weight."""
+    across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
+    across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
+    both = feet[0].down & feet[1].down
+    phase = np.sin(2 * np.pi * times / layers.sway_time) + 0.4 * np.sin(2 * np.pi * times / (0.37 * layers.sway_time))
+    return np.asarray(across * (layers.sway * phase * both)[:, None])
 
 
 def _axis(

@@ -11,6 +11,7 @@ from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.height import HeightPath, height_path
+from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.paths import smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan, Press, Turn, airborne
@@ -61,7 +62,7 @@ def body_path(
         mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
         above = np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (len(times), 1))
     reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
-    mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), rate, settings.body)
+    mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
     ground = mass_ground - above[:, [0, 2]]
     yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
     bent = _bent(plan.presses, deeper, times, settings)
@@ -69,6 +70,10 @@ def body_path(
     height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
+    drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
+    tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
+    controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
+    tilt = follow(tilt, rate, controller)
     return BodyPath(times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching)
 
 
@@ -123,14 +128,15 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 
 def _height(
-    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array, above: Array, skeleton: Skeleton, settings: MotionSettings,
+    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
+    above: Array, skeleton: Skeleton, settings: MotionSettings,
 ) -> HeightPath:  # fmt: skip
     """Height of the centre of mass; `above` (n,): how far it is over the root."""
     body = settings.body
     wanted = np.full(len(yaw), np.inf)
     highest = np.full(len(yaw), np.inf)
     for side in (0, 1):
-        most = leg_room(feet, ground, yaw, skeleton, body.reach - 0.002, side)
+        most = leg_room(feet, ground, yaw, skeleton, body.soft_reach, side)
         soft = leg_room(feet, ground, yaw, skeleton, body.stance, side)
         highest = np.minimum(highest, most)
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
@@ -139,6 +145,11 @@ def _height(
     share, depth = bent[:, 0], bent[:, 1]
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
     return height_path(times, wanted + above, highest + above, flights, body)
+
+
+def stepping(feet: tuple[FootPath, FootPath], settings: MotionSettings) -> Array:
+    """(n,) 1 while the left foot is in the air at full height, -1 for the right one, 0 when both are equally high."""
+    return np.clip((feet[0].ball[:, 1] - feet[1].ball[:, 1]) / settings.step.height_slow, -1.0, 1.0)
 
 
 def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
@@ -156,7 +167,8 @@ def _looking(yaw: Array, ground: Array, rate: float, settings: MotionSettings) -
     ones = np.ones(len(yaw))
     gap = _wrapped(screen_yaw(ground, settings) - yaw)
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
-    chest = yaw + smooth_path(torso[:, None], ones, rate, 0.06)[:, 0]
+    controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
+    chest = yaw + follow(smooth_path(torso[:, None], ones, rate, 0.05), rate, controller)[:, 0]
     gap = _wrapped(screen_yaw(ground, settings) - chest)
     head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
     return chest, chest + smooth_path(head[:, None], ones, rate, 0.04)[:, 0]

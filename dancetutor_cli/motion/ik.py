@@ -230,7 +230,7 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
     """How far a shoulder is from where its arm could reach the wrist's target."""
     v = sub(wrist, shoulder)
     d = length(v)
-    return scale(v, weight * max(0.0, d - most) / max(d, 1e-9))
+    return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
 
 
 @njit(cache=True)

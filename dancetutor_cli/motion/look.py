@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.body import BodyPath, screen_yaw
+from dancetutor_cli.motion.paths import UP, leaning, sample_path
 from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.targets import UP, leaning, sample_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import Skeleton

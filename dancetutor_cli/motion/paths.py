@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.banded import BandedLeastSquares, differences
+from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]
+UP = np.array([0.0, 1.0, 0.0])
 
 
 def smooth_path(target: Array, weight: Array, rate: float, time_constant: float) -> Array:
@@ -34,3 +36,19 @@ def _add_jerk(problem: BandedLeastSquares, n: int, rate: float, time_constant: f
     start = np.arange(n - 3)
     jerk = np.tile(differences(3) * (rate * time_constant) ** 3, (n - 3, 1))
     problem.add(start, jerk, np.ones(n - 3), np.zeros((n - 3, problem.right.shape[1])))
+
+
+def sample_path(path: Array, times: Array, at: Array) -> Array:
+    """Linear interpolation of an evenly spaced path (n, ...) at other times (f,), ends held."""
+    x = np.clip((at - times[0]) * ((len(times) - 1) / (times[-1] - times[0])), 0.0, len(times) - 1.0)
+    i = np.minimum(x.astype(np.int64), len(times) - 2)
+    w = (x - i).reshape(-1, *([1] * (path.ndim - 1)))
+    return np.asarray((1.0 - w) * path[i] + w * path[i + 1])
+
+
+def leaning(tilt: Array, yaw: Array) -> Array:
+    """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
+    angle = np.linalg.norm(tilt, axis=1)
+    axis = np.column_stack((tilt[:, 1], np.zeros_like(angle), -tilt[:, 0]))
+    axis[angle < 1e-9] = [1.0, 0.0, 0.0]
+    return quat.multiply(quat.from_axis_angle(axis, angle), quat.from_axis_angle(UP, yaw))

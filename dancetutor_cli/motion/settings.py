@@ -59,6 +59,7 @@ class BodySettings:
     """How the body rides on the feet."""
 
     stance: float
+    soft_reach: float
     reach: float
     turn_to_feet: float
     step_rise: float
@@ -115,6 +116,42 @@ class LookSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class InertiaSettings:
+    """How chest and hands overshoot."""
+
+    chest_frequency: float
+    chest_damping: float
+    hand_frequency: float
+    hand_damping: float
+
+
+@dataclass(frozen=True, slots=True)
+class LayerSettings:
+    """Small movements on top."""
+
+    breath_time: float
+    breath_shoulders: float
+    breath_nod: float
+    head_bob: float
+    shoulder_drop: float
+    sway: float
+    sway_time: float
+    blink_time: float
+
+
+@dataclass(frozen=True, slots=True)
+class HairSettings:
+    """The braid."""
+
+    rate: float
+    gravity: float
+    damping: float
+    stiffness: float
+    head_radius: float
+    back_radius: float
+
+
+@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 
@@ -132,6 +169,9 @@ class MotionSettings:
     arms: ArmSettings
     mines: MineSettings
     look: LookSettings
+    inertia: InertiaSettings
+    layers: LayerSettings
+    hair: HairSettings
     sampling: SamplingSettings
 
 
@@ -143,6 +183,9 @@ _SECTIONS: dict[str, type[Any]] = {
     "arms": ArmSettings,
     "mines": MineSettings,
     "look": LookSettings,
+    "inertia": InertiaSettings,
+    "layers": LayerSettings,
+    "hair": HairSettings,
     "sampling": SamplingSettings,
 }
 

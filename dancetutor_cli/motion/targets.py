@@ -11,31 +11,15 @@ from dancetutor_cli.motion.arms import arm_targets
 from dancetutor_cli.motion.body import BodyPath, ankle_of
 from dancetutor_cli.motion.feet import FootPath
 from dancetutor_cli.motion.ik import Targets
+from dancetutor_cli.motion.paths import UP, leaning, sample_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-UP = np.array([0.0, 1.0, 0.0])
 ACROSS = np.array([1.0, 0.0, 0.0])
 PELVIS_SHARE = 0.45  # the pelvis tilts this part of the chest's tilt
-
-
-def sample_path(path: Array, times: Array, at: Array) -> Array:
-    """Linear interpolation of an evenly spaced path (n, ...) at other times (f,), ends held."""
-    x = np.clip((at - times[0]) * ((len(times) - 1) / (times[-1] - times[0])), 0.0, len(times) - 1.0)
-    i = np.minimum(x.astype(np.int64), len(times) - 2)
-    w = (x - i).reshape(-1, *([1] * (path.ndim - 1)))
-    return np.asarray((1.0 - w) * path[i] + w * path[i + 1])
-
-
-def leaning(tilt: Array, yaw: Array) -> Array:
-    """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
-    angle = np.linalg.norm(tilt, axis=1)
-    axis = np.column_stack((tilt[:, 1], np.zeros_like(angle), -tilt[:, 0]))
-    axis[angle < 1e-9] = ACROSS
-    return quat.multiply(quat.from_axis_angle(axis, angle), quat.from_axis_angle(UP, yaw))
 
 
 def ik_targets(

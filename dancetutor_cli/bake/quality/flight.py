@@ -9,7 +9,8 @@ from dancetutor_cli.bake.quality.body import GRAVITY, Body, intervals
 from dancetutor_cli.bake.quality.figures import Figure
 
 Array = NDArray[np.float64]
-SHORTEST = 5  # frames; a parabola through fewer says nothing
+SHORTEST = 5  # frames; fewer say nothing about a parabola
+FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g says nothing
 
 
 def flight_figures(body: Body) -> tuple[Figure, ...]:
@@ -22,13 +23,14 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
             continue
         t = body.times[first:end] - body.times[first]
         fit = np.polyfit(t, height[first:end], 2)
-        gravity.append(-2.0 * fit[0])
+        if (end - first) / body.rate >= FIT:
+            gravity.append(-2.0 * fit[0])
         residual.append(float(np.abs(np.polyval(fit, t) - height[first:end]).max()))
         apex.append(float(height[first:end].max() - max(height[first - 1], height[end])))
     wrong = max((abs(g / GRAVITY - 1.0) for g in gravity), default=float("nan"))
     force = ground_force(body)
     return (
-        Figure("flights", float(len(gravity)), ""),
+        Figure("flights", float(len(apex)), ""),
         Figure("flight gravity off by", 100 * wrong, "%", 2.0),
         Figure("flight residual", 1000 * max(residual, default=float("nan")), "mm", 3.0),
         Figure("apex", 100 * max(apex, default=float("nan")), "cm", 10.0),
