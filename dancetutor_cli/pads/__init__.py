@@ -1,5 +1,5 @@
-"""Panel geometry of each steps type, from `configs/pads.yaml`."""
+"""Panel geometry of each steps type, from configs/pads.yaml."""
 
-from dancetutor_cli.pads.pad import Pad, Panel, load_pad, pad_names
+from dancetutor_cli.pads.pad import MAX_PANELS, Pad, load_pad, load_pads
 
-__all__ = ["Pad", "Panel", "load_pad", "pad_names"]
+__all__ = ["MAX_PANELS", "Pad", "load_pad", "load_pads"]

@@ -1,102 +1,136 @@
-"""A pad: its panels with positions and arrows, and where the dancer stands at home."""
+"""A pad: where its panels are, which of them one foot can press together, and where the dancer waits."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.resources import config_path
 
-HOME_SIDE = 0.25  # a foot at home stands this far to its own side of the centre, panel widths
-# Degrees, counter-clockwise from right; None: no direction (a centre panel).
-ARROWS: dict[str, float | None] = {
-    "right": 0, "up-right": 45, "up": 90, "up-left": 135, "left": 180, "down-left": 225, "down": 270,
-    "down-right": 315, "centre": None,
-}  # fmt: skip
+MAX_PANELS = 10  # a row of the solver packs into 64 bits
+HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (cost-model.md)
+_KEYS = ("panels", "centre", "home", "reach")
 
 
-@dataclass(frozen=True, slots=True)
-class Panel:
-    """x : panel widths to the dancer's right; y : towards the screen; arrow : a name of `ARROWS`."""
-
-    x: float
-    y: float
-    arrow: str
-
-    @property
-    def angle(self) -> float | None:
-        """Where the arrow points, degrees counter-clockwise from right seen from above; None for a centre panel."""
-        return ARROWS[self.arrow]
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Pad:
-    """The pad of a steps type. panels : in column order; centre : (x, y), panel widths."""
+    """Geometry of a steps type; c panels in column order, lengths in panel widths, x right and y to the screen.
+
+    steps_type : "dance-single"
+    names : c names of panels
+    panels : float64 (c, 2), middle of each panel
+    arrows : float64 (c, 2), where the arrow on each panel points; (0, 0) where there is none
+    centre : (x, y) where the dancer waits
+    home : columns on which the left and the right foot start
+    reach : panels at most so far apart are neighbours
+    """
 
     steps_type: str
-    panels: tuple[Panel, ...]
+    names: tuple[str, ...]
+    panels: NDArray[np.float64]
+    arrows: NDArray[np.float64]
     centre: tuple[float, float]
+    home: tuple[int, int]
+    reach: float
 
-    @property
-    def positions(self) -> NDArray[np.float64]:
-        """(columns, 2), panel widths."""
-        return np.array([(p.x, p.y) for p in self.panels])
+    def __len__(self) -> int:
+        return len(self.names)
 
-    @property
-    def home(self) -> NDArray[np.float64]:
-        """Where the left and the right foot stand at home, (2, 2), panel widths."""
-        cx, cy = self.centre
-        return np.array([(cx - HOME_SIDE, cy), (cx + HOME_SIDE, cy)])
+    @cached_property
+    def distances(self) -> NDArray[np.float64]:
+        """Distance between the middles of any two panels, (c, c)."""
+        difference = self.panels[:, None] - self.panels[None]
+        return np.hypot(difference[..., 0], difference[..., 1])
+
+    @cached_property
+    def neighbours(self) -> NDArray[np.bool_]:
+        """Whether one foot can press two panels, (c, c); no panel is its own neighbour."""
+        near: NDArray[np.bool_] = (self.distances <= self.reach + 1e-6) & ~np.eye(len(self), dtype=bool)
+        return near
+
+    def mirrored(self, *, left_right: bool) -> NDArray[np.int64] | None:
+        """For each column the column of the mirrored panel, left-right or up-down; None if the pad is not symmetric."""
+        sign = np.array([-1.0, 1.0] if left_right else [1.0, -1.0])
+        image = np.array(self.centre) + (self.panels - self.centre) * sign
+        apart = np.abs(image[:, None] - self.panels[None]).max(axis=2)
+        if (apart.min(axis=1) > 1e-6).any():
+            return None
+        return np.asarray(apart.argmin(axis=1), dtype=np.int64)
 
 
-def pad_names() -> tuple[str, ...]:
-    """The steps types that have a pad."""
-    return tuple(_entries())
+def load_pad(steps_type: str, path: Path | None = None) -> Pad | None:
+    """The pad of a steps type, or None if there is none for it.
+
+    Parameters
+    ----------
+    steps_type : as in chart files; case does not count
+    path : another file in the form of configs/pads.yaml
+
+    Raises FileError for a file that is wrong, with line and the names that exist.
+    """
+    return load_pads(path or config_path("pads.yaml")).get(steps_type.lower())
 
 
 @cache
-def load_pad(steps_type: str) -> Pad | None:
-    """The pad of a steps type, or None if it has none. Raises `UsageError` if the entry is wrong."""
-    entry = _entries().get(steps_type)
-    return None if entry is None else parse_pad(steps_type, entry)
+def load_pads(path: Path) -> dict[str, Pad]:
+    """Every pad of a file in the form of configs/pads.yaml, by steps type. Raises FileError."""
+    source = read(path)
+    return {str(name).lower(): _pad(source, str(name)) for name in source.data}
 
 
-@cache
-def _entries() -> dict[str, Any]:
-    path = config_path("pads.yaml")
-    loaded = yaml.load(path.read_bytes(), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    if not isinstance(loaded, dict):
-        raise UsageError(f"{path}: a mapping of steps types is wanted")
-    return loaded
+def _pad(source: MarkedYaml, steps_type: str) -> Pad:
+    source.only((steps_type,), _KEYS)
+    data = source.data[steps_type]
+    for key in _KEYS:
+        if key not in data:
+            raise source.error((steps_type,), f"{steps_type}: key '{key}' is missing")
+    names, places, arrows = _panels(source, steps_type, data["panels"])
+    home = data["home"]
+    if not isinstance(home, list) or len(home) != 2 or home[0] == home[1] or not all(h in names for h in home):
+        raise source.error(
+            (steps_type, "home"), f"{steps_type}: 'home' must be two different panels of {', '.join(names)}"
+        )
+    return Pad(
+        steps_type=steps_type.lower(),
+        names=names,
+        panels=np.array(places),
+        arrows=np.array(arrows),
+        centre=_pair(source, (steps_type, "centre"), data["centre"]),
+        home=(names.index(home[0]), names.index(home[1])),
+        reach=_number(source, (steps_type, "reach"), data["reach"]),
+    )
 
 
-def parse_pad(steps_type: str, entry: Any) -> Pad:
-    """A pad from its entry. Raises `UsageError` naming what is wrong and what is allowed."""
-    where = f"pads.yaml: {steps_type}"
-    if not isinstance(entry, dict) or set(entry) != {"centre", "panels"}:
-        raise UsageError(f"{where}: wants the keys centre and panels")
-    panels = []
-    for column, panel in enumerate(entry["panels"]):
-        if not isinstance(panel, dict) or set(panel) != {"at", "arrow"}:
-            raise UsageError(f"{where}: panel {column} wants the keys at and arrow")
-        if panel["arrow"] not in ARROWS:
-            raise UsageError(f"{where}: panel {column}: no arrow '{panel['arrow']}'; there are {', '.join(ARROWS)}")
-        x, y = _pair(panel["at"], f"{where}: panel {column}")
-        panels.append(Panel(x, y, panel["arrow"]))
-    if not 1 <= len(panels) <= 16:
-        raise UsageError(f"{where}: 1 to 16 panels are wanted, not {len(panels)}")
-    if len({(p.x, p.y) for p in panels}) != len(panels):
-        raise UsageError(f"{where}: two panels stand on the same place")
-    return Pad(steps_type, tuple(panels), _pair(entry["centre"], where))
+def _panels(source: MarkedYaml, steps_type: str, data: Any) -> tuple[tuple[str, ...], list[Any], list[Any]]:
+    if not isinstance(data, list) or not 2 <= len(data) <= MAX_PANELS:
+        raise source.error((steps_type, "panels"), f"{steps_type}: 'panels' must be a list of 2 to {MAX_PANELS} panels")
+    names, places, arrows = [], [], []
+    for number, entry in enumerate(data):
+        keys = (steps_type, "panels", number)
+        if not isinstance(entry, list) or len(entry) != 4:
+            raise source.error(keys, f"{steps_type}: a panel is [name, x, y, [arrow x, arrow y]]")
+        names.append(str(entry[0]))
+        places.append((_number(source, keys, entry[1]), _number(source, keys, entry[2])))
+        arrows.append(_pair(source, keys, entry[3]))
+        if names.index(names[-1]) != number or places.index(places[-1]) != number:
+            raise source.error(keys, f"{steps_type}: two panels have the same name or place ({names[-1]})")
+    return tuple(names), places, arrows
 
 
-def _pair(value: Any, where: str) -> tuple[float, float]:
-    if isinstance(value, list) and len(value) == 2 and all(isinstance(v, int | float) for v in value):
-        return float(value[0]), float(value[1])
-    raise UsageError(f"{where}: a position is two numbers [x, y], not {value!r}")
+def _pair(source: MarkedYaml, keys: tuple[str | int, ...], value: Any) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise source.error(keys, f"{keys[0]}: {value!r} must be [x, y]")
+    return _number(source, keys, value[0]), _number(source, keys, value[1])
+
+
+def _number(source: MarkedYaml, keys: tuple[str | int, ...], value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise source.error(keys, f"{keys[0]}: {value!r} must be a number")
+    return float(value)
