@@ -6,6 +6,7 @@ rotations and scales do to the mesh is kept in `inverse_bind`, so the picture at
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -30,20 +31,30 @@ def read_character(path: Path) -> Character:
 
 def character_of(container: Container) -> Character:
     """The character in a container that was read and checked."""
-    nodes = read_nodes(container)
-    reader = _Reader(container, nodes)
+    return character_with_nodes(container, read_nodes(container), ())[0]
+
+
+def character_with_nodes(
+    container: Container, nodes: Nodes, keep: Iterable[int], skip: Collection[int] = ()
+) -> tuple[Character, dict[int, int]]:
+    """The character, and the joint index of each node that became a joint.
+
+    keep : nodes that must become joints even if no vertex hangs on them; skip : nodes whose meshes are left out
+    """
+    reader = _Reader(container, nodes, keep)
     for index, node in enumerate(container.items("nodes")):
-        if "mesh" in node:
+        if "mesh" in node and index not in skip:
             reader.add_mesh(index, node)
     if not reader.meshes:
         raise container.fail("holds no triangle meshes moved by a skeleton; export the character with its skin")
-    return Character(container.path.stem, reader.skeleton, tuple(reader.meshes), reader.inverse_bind)
+    character = Character(container.path.stem, reader.skeleton, tuple(reader.meshes), reader.inverse_bind)
+    return character, reader.joint_of
 
 
 class _Reader:
     """Collects joints and meshes of one file."""
 
-    def __init__(self, container: Container, nodes: Nodes) -> None:
+    def __init__(self, container: Container, nodes: Nodes, keep: Iterable[int]) -> None:
         self.container = container
         self.nodes = nodes
         self.meshes: list[Mesh] = []
@@ -51,7 +62,7 @@ class _Reader:
         self.vertices = 0
         self.triangles = 0
         self.skins = [self._skin(skin) for skin in container.items("skins")]
-        self.joint_of = self._joints()
+        self.joint_of = self._joints(keep)
         self.skeleton = self._skeleton()
         self.inverse_bind = np.tile(np.eye(4), (len(self.joint_of), 1, 1))
         self.inverse_bind[:, :3, 3] = -self.skeleton.rest
@@ -76,10 +87,10 @@ class _Reader:
             raise fail("a skin has fewer inverse bind matrices than joints; the file is broken")
         return joints, matrices[: len(joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
 
-    def _joints(self) -> dict[int, int]:
+    def _joints(self, keep: Iterable[int]) -> dict[int, int]:
         """Joint index of each node that is a joint of a skin, or above one."""
         used: set[int] = set()
-        for joints, _ in self.skins:
+        for joints in (*(joints for joints, _ in self.skins), list(keep)):
             for node in joints:
                 while node >= 0 and node not in used:
                     used.add(node)

@@ -1,0 +1,201 @@
+"""A user's character fitted to the rig: its bones found, its rest pose brought to ours, its size to a dancer's.
+
+The fitted character keeps its own bone lengths. Each joint's rest rotation is the identity and its rest pose our
+A pose, so the world rotation of a joint of our rig is the world rotation of the same joint of the character; only
+the binding pose, which may be a T pose, differs, and `inverse_bind` carries that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.container import Container, read_container
+from dancetutor_cli.character.humanoid import find_humanoid
+from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.nodes import Nodes, read_nodes
+from dancetutor_cli.character.reader import character_with_nodes
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
+
+Array = NDArray[np.float64]
+
+HEIGHT = 1.70  # metres a user's character is scaled to
+LEAST_LEG = 0.38  # metres; shorter legs do not reach panels 0.28 m from the centre: such a character is made taller
+_ALIGNED = tuple(
+    (f"{s}_{a}", f"{s}_{b}")
+    for s in "lr"
+    for a, b in (("shoulder", "elbow"), ("elbow", "radiocarpal"), ("hip", "knee"), ("knee", "talocrural"))
+)
+
+
+def fit_character(path: Path) -> Character:
+    """Read a .glb or .vrm file and fit it to the rig.
+
+    The joints that were found carry H-Anim names, joint 0 is HumanoidRoot; others keep their own names. She stands
+    on y = 0, looks to +Z and is scaled to `HEIGHT`. What she holds stays behind: a dancer needs her hands.
+
+    Raises FileError, one line, for a file that cannot be used; it lists bones that are missing or in the wrong place.
+    """
+    container = read_container(path)
+    nodes = read_nodes(container)
+    humanoid = find_humanoid(container, nodes)
+    named = humanoid.joints()
+    held = _held(container, nodes, {n for n, joint in named.items() if joint.endswith("_radiocarpal")})
+    character, joint_of = character_with_nodes(container, nodes, named, held)
+    names = {joint_of[node]: joint for node, joint in named.items()}
+    character = _rooted(character, names)
+    character = _upright(character, path)
+    return _in_rest_pose(character)
+
+
+def _held(container: Container, nodes: Nodes, hands: set[int]) -> set[int]:
+    """Nodes of unskinned meshes below a hand: weapons and tools, often several at once to choose from."""
+    below = set(hands)
+    for i in nodes.order:
+        if int(nodes.parents[i]) in below:
+            below.add(i)
+    return {i for i, node in enumerate(container.items("nodes")) if i in below - hands and "skin" not in node}
+
+
+def _rooted(character: Character, names: dict[int, str]) -> Character:
+    """Joints renamed, the hips first, what is not below them hung on them; nodes above the hips go."""
+    skeleton = character.skeleton
+    taken = set(names.values())
+    labels = [names.get(j, n + "_" if n in taken else n) for j, n in enumerate(skeleton.names)]
+    root = labels.index("HumanoidRoot")
+    parents = skeleton.parents.copy()
+    above: set[int] = set()
+    node = int(parents[root])
+    while node >= 0:
+        above.add(node)
+        node = int(parents[node])
+    order = [root, *(j for j in range(len(labels)) if j != root)]
+    parents[[j for j in order if j in above or parents[j] in above]] = root
+    parents[root] = -1
+    order = _parents_first(order, parents)
+    place = np.argsort(order)
+    rest = skeleton.rest[order]
+    new = np.array([-1 if parents[j] < 0 else place[parents[j]] for j in order], dtype=np.int32)
+    offsets = rest.copy()
+    offsets[1:] -= rest[new[1:]]
+    meshes = tuple(replace(m, joints=place[m.joints].astype(np.uint16)) for m in character.meshes)
+    return replace(
+        character,
+        skeleton=Skeleton(tuple(labels[j] for j in order), new, offsets),
+        meshes=meshes,
+        inverse_bind=character.inverse_bind[order],
+    )
+
+
+def _parents_first(order: list[int], parents: NDArray[np.int32]) -> list[int]:
+    done: list[int] = [order[0]]
+    seen = {order[0]}
+    waiting = order[1:]
+    while waiting:
+        ready = [j for j in waiting if int(parents[j]) in seen]
+        done += ready
+        seen |= set(ready)
+        waiting = [j for j in waiting if j not in seen]
+    return done
+
+
+def _upright(character: Character, path: Path) -> Character:
+    """Turn the character to look to +Z, scale it, and stand it on the ground at the origin."""
+    at = dict(zip(character.skeleton.names, character.skeleton.rest, strict=True))
+    left = at["l_hip"] - at["r_hip"] + at["l_shoulder"] - at["r_shoulder"]
+    up = at["skullbase"] - (at["l_talocrural"] + at["r_talocrural"]) / 2
+    if min(np.linalg.norm(left), np.linalg.norm(up)) < 1e-6:
+        raise FileError(path, "its bones lie in one point; export the character in its rest pose")
+    axis = np.eye(3)[np.abs(up).argmax()] * np.sign(up[np.abs(up).argmax()])
+    left = left - (left @ axis) * axis
+    if np.linalg.norm(left) < 1e-6:
+        raise FileError(path, "its left and right cannot be told apart; export the character standing upright")
+    left /= np.linalg.norm(left)
+    turn = np.stack([left, axis, np.cross(left, axis)])
+    vertices = _rest_vertices(character) @ turn.T
+    leg = sum(float(np.linalg.norm(at[f"l_{a}"] - at[f"l_{b}"])) for a, b in (("hip", "knee"), ("knee", "talocrural")))
+    height = float(np.ptp(vertices[:, 1]))
+    if leg < 1e-6 or height < 1e-6:
+        raise FileError(path, "it has no height or no legs; export the character in its rest pose")
+    scale = max(HEIGHT / height, LEAST_LEG / leg)
+    move = np.eye(4)
+    move[:3, :3] = turn * scale
+    middle = turn @ (at["l_talocrural"] + at["r_talocrural"]) / 2
+    move[:3, 3] = -scale * np.array([middle[0], _ground(character, vertices), middle[2]])
+    rest = character.skeleton.rest @ move[:3, :3].T + move[:3, 3]
+    return _with_rest(character, rest, np.tile(move, (len(rest), 1, 1)))
+
+
+def _ground(character: Character, vertices: Array) -> float:
+    """Height of the soles: the lowest vertex that a foot moves."""
+    feet = [j for j, n in enumerate(character.skeleton.names) if n.endswith(("_talocrural", "_metatarsal"))]
+    at = 0
+    low = []
+    for mesh in character.meshes:
+        share = (mesh.weights * np.isin(mesh.joints, feet)).sum(axis=1)
+        part = vertices[at : at + len(share)]
+        low += [float(part[share > 0.5, 1].min())] if (share > 0.5).any() else []
+        at += len(share)
+    return min(low, default=float(vertices[:, 1].min()))
+
+
+def _rest_vertices(character: Character) -> Array:
+    """All vertices where the rest pose puts them, (v, 3)."""
+    matrices = character.inverse_bind.copy()
+    matrices[:, :3, 3] += character.skeleton.rest
+    out = []
+    for mesh in character.meshes:
+        skin = np.einsum("vk,vkij->vij", mesh.weights.astype(np.float64), matrices[mesh.joints])
+        out.append(np.einsum("vij,vj->vi", skin[:, :3, :3], mesh.positions) + skin[:, :3, 3])
+    return np.concatenate(out)
+
+
+def _with_rest(character: Character, rest: Array, moves: Array) -> Character:
+    """New rest positions (j, 3); moves (j, 4, 4) takes what each joint carries from the old rest place to the new."""
+    parents = character.skeleton.parents
+    offsets = rest.copy()
+    offsets[1:] -= rest[parents[1:]]
+    old = character.inverse_bind.copy()
+    old[:, :3, 3] += character.skeleton.rest  # from the mesh to the old rest place
+    inverse_bind = moves @ old
+    inverse_bind[:, :3, 3] -= rest
+    return replace(character, skeleton=Skeleton(character.skeleton.names, parents, offsets), inverse_bind=inverse_bind)
+
+
+def _in_rest_pose(character: Character) -> Character:
+    """Turn limbs so that they lie as ours do at rest: a T pose becomes our A pose."""
+    skeleton, ours = character.skeleton, dancer_skeleton()
+    rest, wanted = skeleton.rest, ours.rest
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(skeleton.names), 1))
+    for joint, tip in _ALIGNED:
+        a, b = skeleton.index(joint), skeleton.index(tip)
+        turns[a] = quat.between(rest[b] - rest[a], wanted[ours.index(tip)] - wanted[ours.index(joint)])
+    for side in "lr":
+        turns[skeleton.index(f"{side}_talocrural")] = _foot_turn(skeleton, side)
+    own = {skeleton.index(joint) for joint, _ in _ALIGNED}
+    own |= {skeleton.index(f"{s}_talocrural") for s in "lr"}
+    moves = np.tile(np.eye(4), (len(turns), 1, 1))
+    placed = rest.copy()
+    for j, p in enumerate(skeleton.parents):
+        if p >= 0:
+            if j not in own:
+                turns[j] = turns[p]
+            placed[j] = placed[p] + quat.rotate(turns[p], rest[j] - rest[p])
+        moves[j, :3, :3] = quat.to_matrix(turns[j])
+        moves[j, :3, 3] = placed[j] - moves[j, :3, :3] @ rest[j]
+    placed[:, 1] += (lift := rest[skeleton.index("l_talocrural"), 1] - placed[skeleton.index("l_talocrural"), 1])
+    moves[:, 1, 3] += lift
+    return _with_rest(character, placed, moves)
+
+
+def _foot_turn(skeleton: Skeleton, side: str) -> Array:
+    """The turn about the vertical that points the toes to +Z; none without a toe joint."""
+    if f"{side}_metatarsal" not in skeleton.names:
+        return np.array([1.0, 0.0, 0.0, 0.0])
+    way = skeleton.rest[skeleton.index(f"{side}_metatarsal")] - skeleton.rest[skeleton.index(f"{side}_talocrural")]
+    return quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.asarray(-np.arctan2(way[0], way[2])))

@@ -1,0 +1,233 @@
+"""Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
+
+Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
+Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid and KayKit. The result is checked against the tree: a bone lies below
+the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification, humanoid.md.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from dancetutor_cli.character.container import Container
+from dancetutor_cli.character.nodes import Nodes
+from dancetutor_cli.errors import FileError
+
+# VRM bone: the joint of our rig, words its name may be made of
+_MIDDLE = {
+    "hips": ("HumanoidRoot", "hips hip pelvis"),
+    "neck": ("vc4", "neck neck01 neck1 necklower"),
+    "head": ("skullbase", "head"),
+}
+_SIDED = {
+    "UpperLeg": ("hip", "upleg upperleg thigh legupper"),
+    "LowerLeg": ("knee", "leg lowerleg calf shin leglower knee"),
+    "Foot": ("talocrural", "foot ankle"),
+    "Toes": ("metatarsal", "toes toe toebase ball"),
+    "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone"),
+    "UpperArm": ("shoulder", "arm upperarm uparm armupper"),
+    "LowerArm": ("elbow", "forearm lowerarm armlower elbow"),
+    "Hand": ("radiocarpal", "hand wrist"),
+    "Eye": ("eyeball_joint", "eye"),
+}
+_SPINE = re.compile(r"(spine|chest|upperchest|torso|abdomen|waist)\w*")
+_HELPERS = frozenset(
+    ("ik", "fk", "ctrl", "control", "pole", "target", "roll", "twist", "end", "leaf", "nub", "slot", "handslot")
+    + ("mch", "org", "tip", "helper")
+)
+_PREFIXES = ("mixamorig", "bip01", "bip001", "ccbase", "def", "jbipc", "jbip", "bone")
+_LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
+_PAIRED = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
+REQUIRED = ("hips", "spine", "head", *(side + bone for side in ("left", "right") for bone in _PAIRED))
+
+
+@dataclass(frozen=True, slots=True)
+class Humanoid:
+    """bones : VRM bone name -> node index; trunk : nodes between hips and neck or head, from below."""
+
+    bones: dict[str, int]
+    trunk: tuple[int, ...]
+
+    def joints(self) -> dict[int, str]:
+        """Node index -> joint of our rig. The trunk's last node moves as the rib cage (vt4) does."""
+        out = {}
+        for bone, node in self.bones.items():
+            joint = joint_of_bone(bone)
+            if joint:
+                out[node] = joint
+        spine = ("vl5", "vt10", "vt4")
+        count = len(self.trunk)
+        for i, node in enumerate(self.trunk):
+            if node not in out:
+                place = 2 if count == 1 else round(i * 2 / (count - 1))
+                out.setdefault(node, spine[place])
+        return _first_of_each(out, self.trunk)
+
+
+def joint_of_bone(bone: str) -> str | None:
+    """Our joint for a VRM bone name; None for bones we do not move, and for the spine, which goes by its place."""
+    if bone in _MIDDLE:
+        return _MIDDLE[bone][0]
+    for side, letter in (("left", "l"), ("right", "r")):
+        if bone.startswith(side) and bone[len(side) :] in _SIDED:
+            return f"{letter}_{_SIDED[bone[len(side) :]][0]}"
+    return None
+
+
+def _first_of_each(joints: dict[int, str], trunk: tuple[int, ...]) -> dict[int, str]:
+    """Where a long spine gives a joint to two nodes, the upper one keeps it; the other moves along."""
+    last = {joint: node for node, joint in joints.items() if node in trunk}
+    return {node: joint for node, joint in joints.items() if node not in trunk or last[joint] == node}
+
+
+def find_humanoid(container: Container, nodes: Nodes) -> Humanoid:
+    """The bones of a character file.
+
+    Raises FileError, one line, that lists every required bone which is missing or hangs in the wrong place.
+    """
+    bones = _from_vrm(container) or _from_hanim(nodes) or _from_names(container, nodes)
+    trunk = _trunk(nodes, bones)
+    if trunk:
+        bones.setdefault("spine", trunk[0])
+    missing = [bone for bone in REQUIRED if bone not in bones]
+    wrong = _misplaced(nodes, bones)
+    if missing or wrong:
+        found = len(REQUIRED) - len(missing)
+        parts = [f"no {', '.join(missing)}"] if missing else []
+        raise FileError(
+            container.path,
+            f"is no usable humanoid ({found} of {len(REQUIRED)} bones found): {'; '.join([*parts, *wrong])}; "
+            "rename or re-parent these bones, or export it as VRM",
+        )
+    return Humanoid(bones, trunk)
+
+
+def _from_vrm(container: Container) -> dict[str, int]:
+    """VRM 1.0's or 0.x's map, if the file has one."""
+    extensions = container.document.get("extensions", {})
+    extensions = extensions if isinstance(extensions, dict) else {}
+    out: dict[str, int] = {}
+    for name in ("VRMC_vrm", "VRM"):
+        humanoid = extensions.get(name, {})
+        humanoid = humanoid.get("humanoid", {}) if isinstance(humanoid, dict) else {}
+        bones = humanoid.get("humanBones", {}) if isinstance(humanoid, dict) else {}
+        pairs: list[tuple[Any, Any]] = []
+        if isinstance(bones, dict):
+            pairs = list(bones.items())
+        elif isinstance(bones, list):
+            pairs = [(bone.get("bone"), bone) for bone in bones if isinstance(bone, dict)]
+        for bone, value in pairs:
+            if isinstance(bone, str) and isinstance(value, dict):
+                out[bone] = container.integer(
+                    value.get("node"), 0, len(container.items("nodes")) - 1, f"node of {bone}"
+                )
+        if out:
+            break
+    return out
+
+
+def _from_hanim(nodes: Nodes) -> dict[str, int]:
+    """Our own names, which are H-Anim's: there `l_shoulder` is the upper arm, elsewhere the collar bone."""
+    place = {name: i for i, name in enumerate(nodes.names)}
+    if not {"HumanoidRoot", "l_hip", "skullbase"} <= set(place):
+        return {}
+    names = {joint_of_bone(f"{side}{bone}"): f"{side}{bone}" for side in ("left", "right") for bone in _SIDED}
+    names |= {joint: bone for bone, (joint, _) in _MIDDLE.items()}
+    return {bone: place[joint] for joint, bone in names.items() if joint in place}
+
+
+def words_of(name: str) -> tuple[str, str]:
+    """Side ("left", "right", "") and plain words of a bone's name: ("left", "upleg") for "mixamorig:LeftUpLeg"."""
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    tokens = [t for t in re.split(r"[^A-Za-z0-9]+", name) if t]
+    tokens = [t.lower() for t in tokens]
+    side = ""
+    for token in list(tokens):
+        found = {"l": "left", "left": "left", "r": "right", "right": "right"}.get(token)
+        if found and not side:
+            side = found
+            tokens.remove(token)
+    if _HELPERS & {re.sub(r"\d+$", "", t) for t in tokens}:
+        return side, ""
+    plain = "".join(tokens)
+    for prefix in _PREFIXES:
+        if plain.startswith(prefix) and len(plain) > len(prefix):
+            plain = plain[len(prefix) :]
+            break
+    for word, found in (("left", "left"), ("right", "right")):
+        if not side and plain.startswith(word) and len(plain) > len(word):
+            side, plain = found, plain[len(word) :]
+    return side, plain
+
+
+def _from_names(container: Container, nodes: Nodes) -> dict[str, int]:
+    items = container.items("nodes")
+    order = [i for i in nodes.order if "mesh" not in items[i]]  # a mesh may be called "Arm.L" too
+    words = {i: words_of(nodes.names[i]) for i in order}
+    rigify = _rigify_spine(words)
+    bones: dict[str, int] = dict(rigify)
+    for i in order:
+        side, plain = words[i]
+        bare = re.sub(r"0*\d{1,3}$", "", plain) if re.search(r"\d$", plain) else plain
+        table = _SIDED if side else _MIDDLE
+        for bone, (_, names) in table.items():
+            if plain in names.split() or (bare in names.split() and not _is_second(plain)):
+                bones.setdefault(f"{side}{bone}" if side else bone, i)
+                break
+    return bones
+
+
+def _is_second(plain: str) -> bool:
+    """A numbered bone other than the first: the second of a chain."""
+    number = re.search(r"(\d+)$", plain)
+    return number is not None and int(number.group(1)) > 1
+
+
+def _rigify_spine(words: dict[int, tuple[str, str]]) -> dict[str, int]:
+    """Rigify calls everything from hips (spine) to head (spine.006) spine."""
+    plain = {word: i for i, (_, word) in words.items()}
+    if "spine" in plain and "spine006" in plain and not {"hips", "hip", "pelvis", "head"} & set(plain):
+        return {"hips": plain["spine"], "neck": plain.get("spine004", plain["spine006"]), "head": plain["spine006"]}
+    return {}
+
+
+def _above(nodes: Nodes, node: int) -> list[int]:
+    """The ancestors of a node, nearest first."""
+    out = []
+    node = int(nodes.parents[node])
+    while node >= 0:
+        out.append(node)
+        node = int(nodes.parents[node])
+    return out
+
+
+def _trunk(nodes: Nodes, bones: dict[str, int]) -> tuple[int, ...]:
+    if "hips" not in bones or "head" not in bones:
+        return ()
+    above = _above(nodes, bones["head"])
+    if bones["hips"] not in above:
+        return ()
+    chain = above[: above.index(bones["hips"])]
+    if bones.get("neck") in chain:
+        chain = chain[chain.index(bones["neck"]) + 1 :]
+    return tuple(
+        reversed([n for n in chain if _SPINE.match(words_of(nodes.names[n])[1]) or n in bones.values()] or chain)
+    )
+
+
+def _misplaced(nodes: Nodes, bones: dict[str, int]) -> list[str]:
+    """A line for each bone that does not lie below the bone it must hang on."""
+    pairs = [("spine", "hips"), ("head", "spine")]
+    for side in ("left", "right"):
+        pairs += [(f"{side}UpperLeg", "hips"), (f"{side}UpperArm", "hips")]
+        for limb in _LIMBS.values():
+            pairs += [(f"{side}{b}", f"{side}{a}") for a, b in pairwise(limb)]
+    out = []
+    for bone, above in pairs:
+        if bone in bones and above in bones and bones[above] not in _above(nodes, bones[bone]):
+            below = f"{bone} {nodes.names[bones[bone]]!r}"
+            out.append(f"{below} is not below {above} {nodes.names[bones[above]]!r}")
+    return out

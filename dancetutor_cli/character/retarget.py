@@ -1,0 +1,157 @@
+"""The dancer's motion on another character: her world rotations, feet and pressing hands placed by its own limbs.
+
+A fitted character (`fitting.fit_character`) rests as the dancer does with identity rotations, so a world rotation
+delta is the world rotation itself. Legs are then solved in closed form with the character's own lengths, so that its
+soles stand where hers do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.model import Character
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import local_rotations, world_transforms
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+
+STRETCH = 0.995  # of the leg's length: the knee never locks
+HAND_BLEND = 0.25  # seconds over which a hand leaves its own way for the panel
+_LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
+_LEFT_HAND = 2  # play.model.Limb
+
+
+def retarget(motion: Motion, character: Character) -> Motion:
+    """The motion for `character`'s skeleton; the same motion if it is the dancer's skeleton already.
+
+    Joints without a counterpart keep their rest rotation. Times and contacts stay.
+    """
+    own = character.skeleton
+    if own.names == motion.skeleton.names and np.allclose(own.offsets, motion.skeleton.offsets, atol=1e-9):
+        return motion
+    positions, world = world_transforms(motion.skeleton, motion.rotations, motion.root)
+    source = {name: (positions[:, j], world[:, j]) for j, name in enumerate(motion.skeleton.names)}
+    turned = _world_rotations(own, source, len(motion.times))
+    ankles = {side: _ankle_target(motion.skeleton, own, source, side) for side in "lr"}
+    root = _root(motion, own, turned, ankles)
+    for side in "lr":
+        turned = _limb(own, turned, root, side, _LEG, ankles[side], source, np.ones(len(motion.times)))
+        weight = _hand_weight(motion, _LEFT_HAND + "lr".index(side))
+        if weight.any():
+            wrist = source[f"{side}_radiocarpal"][0]
+            turned = _limb(own, turned, root, side, _ARM, wrist, source, weight)
+    return replace(motion, skeleton=own, rotations=quat.continuous(local_rotations(own, turned)), root=root)
+
+
+def _world_rotations(own: Skeleton, source: dict[str, tuple[Array, Array]], frames: int) -> Array:
+    """World rotation (f, j, 4) of every joint: its counterpart's, or its parent's."""
+    out = np.empty((frames, len(own.names), 4))
+    for j, (name, parent) in enumerate(zip(own.names, own.parents.tolist(), strict=True)):
+        out[:, j] = source[name][1] if name in source else out[:, parent]
+    return out
+
+
+def _ankle_target(dancer: Skeleton, own: Skeleton, source: dict[str, tuple[Array, Array]], side: str) -> Array:
+    """Where the character's ankle must be for its sole to stand where the dancer's does.
+
+    The ground under the ball of the foot is the point that both share: heels and toes turn about it.
+    """
+    place, turn = source[f"{side}_talocrural"]
+    point = _under_ball(dancer, side)
+    return np.asarray(place + quat.rotate(turn, point) - quat.rotate(turn, _under_ball(own, side)))
+
+
+def _under_ball(skeleton: Skeleton, side: str) -> Array:
+    """From the ankle to the ground under the ball of the foot, in the rest pose; the soles rest on y = 0."""
+    ankle = skeleton.rest[skeleton.index(f"{side}_talocrural")]
+    ahead = 1.3 * ankle[1]  # where there is no toe joint
+    if f"{side}_metatarsal" in skeleton.names:
+        ahead = skeleton.rest[skeleton.index(f"{side}_metatarsal")][2] - ankle[2]
+    return np.array([0.0, -ankle[1], ahead])
+
+
+def _root(motion: Motion, own: Skeleton, turned: Array, ankles: dict[str, Array]) -> Array:
+    """Root positions (f, 3): her height in proportion to the legs, pulled to where both feet are in reach."""
+    root = motion.root.copy()
+    root[:, 1] *= own.rest[0, 1] / motion.skeleton.rest[0, 1]
+    hips = {s: quat.rotate(turned[:, 0], own.rest[own.index(f"{s}_hip")] - own.rest[0]) for s in "lr"}
+    reach = {s: STRETCH * sum(_lengths(own, s, _LEG)) for s in "lr"}
+    for _ in range(12):
+        for side in "lr":
+            way = root + hips[side] - ankles[side]
+            over = np.maximum(np.linalg.norm(way, axis=1) - reach[side], 0.0)
+            root = root - way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9) * over[:, None]
+    return root
+
+
+def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tuple[float, float]:
+    a, b, c = (skeleton.rest[skeleton.index(f"{side}_{name}")] for name in chain)
+    return float(np.linalg.norm(b - a)), float(np.linalg.norm(c - b))
+
+
+def _limb(
+    own: Skeleton,
+    turned: Array,
+    root: Array,
+    side: str,
+    chain: tuple[str, str, str],
+    target: Array,
+    source: dict[str, tuple[Array, Array]],
+    weight: Array,
+) -> Array:
+    """World rotations with one limb solved: its end at `target` where weight (f,) is 1, its bend as the dancer's.
+
+    The cosine law gives the bend; the twist of both bones stays the dancer's. The last joint keeps its world rotation.
+    """
+    upper, lower, last = (own.index(f"{side}_{name}") for name in chain)
+    positions, _ = world_transforms(own, local_rotations(own, turned), root)
+    start, end = positions[:, upper], positions[:, last]
+    goal = end + (target - end) * weight[:, None]
+    first, second = _lengths(own, side, chain)
+    way = goal - start
+    distance = np.linalg.norm(way, axis=1, keepdims=True)
+    axis = way / np.maximum(distance, 1e-9)
+    span = np.clip(distance, abs(first - second) * 1.001 + 1e-6, (first + second) * 0.9999)
+    along = (first**2 - second**2 + span**2) / (2 * span)
+    aside = np.sqrt(np.maximum(first**2 - along**2, 0.0))
+    bend = source[f"{side}_{chain[1]}"][0] - (source[f"{side}_{chain[0]}"][0] + source[f"{side}_{chain[2]}"][0]) / 2
+    forward = quat.rotate(turned[:, upper], np.array([0.0, 0.0, 1.0 if chain is _LEG else -1.0]))
+    bend = bend + 0.02 * forward  # a straight limb shows no bend: knees to the front, elbows to the back
+    bend = bend - np.sum(bend * axis, axis=1, keepdims=True) * axis
+    bend /= np.maximum(np.linalg.norm(bend, axis=1, keepdims=True), 1e-9)
+    middle = start + along * axis + aside * bend
+    tip = start + axis * span
+    out = turned.copy()
+    for joint, tip_joint, line in ((upper, lower, middle - start), (lower, last, tip - middle)):
+        current = quat.rotate(out[:, joint], own.offsets[tip_joint])
+        out[:, joint] = quat.multiply(quat.between(current, line), out[:, joint])
+    return _carry(own, turned, out, (upper, lower))
+
+
+def _carry(own: Skeleton, before: Array, after: Array, moved: tuple[int, int]) -> Array:
+    """Joints of the limb that have no counterpart (twist bones, between the named ones) turn with their parent."""
+    named = {"hip", "knee", "talocrural", "metatarsal", "shoulder", "elbow", "radiocarpal"}
+    dirty = set(moved)
+    for j, parent in enumerate(own.parents.tolist()):
+        if parent in dirty and j not in moved and own.names[j][2:] not in named:
+            local = quat.multiply(quat.conjugate(before[:, parent]), before[:, j])
+            after[:, j] = quat.multiply(after[:, parent], local)
+            dirty.add(j)
+    return after
+
+
+def _hand_weight(motion: Motion, limb: int) -> Array:
+    """1 while the hand presses a panel, easing in and out over `HAND_BLEND`; (f,)."""
+    out = np.zeros(len(motion.times))
+    for contact in motion.contacts:
+        if contact.limb == limb:
+            early = np.clip(1 - (contact.start - motion.times) / HAND_BLEND, 0, 1)
+            late = np.clip(1 - (motion.times - contact.end) / HAND_BLEND, 0, 1)
+            t = np.minimum(early, late)
+            out = np.maximum(out, t * t * (3 - 2 * t))
+    return out
