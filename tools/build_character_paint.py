@@ -15,7 +15,7 @@ def colour(code: str) -> Array:
 
 SKIN, BLUSH, SHADE = colour("#f8c9a8"), colour("#ee7f7a"), colour("#e0a083")
 HAIR, HAIR_DEEP, HAIR_SHINE = colour("#b8366e"), colour("#7d1f55"), colour("#f08bb0")
-WHITE, INDIGO, PINK, VIOLET = colour("#f7f5fa"), colour("#403a86"), colour("#e0457f"), colour("#6d55cf")
+WHITE, INDIGO, PINK, VIOLET = colour("#f7f5fa"), colour("#5c55bd"), colour("#e0457f"), colour("#6d55cf")
 LINE, LASH, BROW = colour("#7a2f3c"), colour("#35182c"), colour("#8c2b5a")
 
 
@@ -183,7 +183,7 @@ def leggings(p: Array, n: Array) -> Array:
     outer = np.abs(p[:, 0]) > 0.09
     side = p[:, 2] - axis
     base = fill(p, INDIGO)
-    base = over(base, colour("#2f2a68"), inside(np.abs(side) - 0.019, 0.001) * outer)
+    base = over(base, colour("#433d98"), inside(np.abs(side) - 0.019, 0.001) * outer)
     base = over(base, WHITE, inside(np.abs(side - 0.006) - 0.0045, 0.001) * outer)
     base = over(base, PINK, inside(np.abs(side + 0.006) - 0.0045, 0.001) * outer)
     return over(base, PINK, inside(np.abs(p[:, 1] - 0.163) - 0.006, 0.001))

@@ -35,8 +35,8 @@ _SIDED = {
 }
 _SPINE = re.compile(r"(spine|chest|upperchest|torso|abdomen|waist)\w*")
 _HELPERS = frozenset(
-    ("ik", "fk", "ctrl", "control", "pole", "target", "roll", "twist", "end", "leaf", "nub", "slot", "handslot")
-    + ("mch", "org", "tip", "helper")
+    {"ik", "fk", "ctrl", "control", "pole", "target", "roll", "twist", "end", "leaf", "nub", "slot", "handslot"}
+    | {"mch", "org", "tip", "helper"}
 )
 _PREFIXES = ("mixamorig", "bip01", "bip001", "ccbase", "def", "jbipc", "jbip", "bone")
 _LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
