@@ -65,6 +65,22 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
     _sync_folder(target.parent)
 
 
+def back_up(path: Path) -> Path:
+    """Copy a file beside itself as NAME.bak, NAME.bak2, ...; an earlier copy of the same bytes will do. Returns it."""
+    data = path.read_bytes()
+    number = 1
+    while True:
+        copy = path.with_name(f"{path.name}.bak{'' if number == 1 else number}")
+        if not copy.exists():
+            write_atomic(copy, data)
+            with contextlib.suppress(OSError):
+                copy.chmod(stat.S_IMODE(path.stat().st_mode))
+            return copy
+        if _content(copy) == data:
+            return copy
+        number += 1
+
+
 def remove_leftover(path: Path) -> bool:
     """Remove the temporary file that a killed process may have left beside `path`; True if there was one.
 

@@ -1,11 +1,227 @@
-"""`dancetutor annotate`."""
+"""`dancetutor annotate`: write L/R foot markers into chart files, or take them out."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
 import click
+
+from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
+from dancetutor_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.annotate import Item, Order, Outcome
+
+STYLES = ("measure", "rows", "sidecar", "smeditor", "edit")
+_MANY = 24  # songs from which on starting worker processes pays
+_COLOURS = {"+": "green", "-": "red", "@": "cyan"}
+
+
+def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...]:
+    names = [name.strip() for name in value.split(",") if name.strip()]
+    for name in names:
+        if name not in STYLES:
+            raise UsageError(f"there is no style '{name}'; there are {', '.join(STYLES)}")
+    if not names:
+        raise UsageError(f"--style: name one or more of {', '.join(STYLES)}")
+    return tuple(name for name in STYLES if name in names)
 
 
 @click.command()
-def command() -> None:
-    """Not there yet."""
-    raise click.ClickException("annotate is not there yet")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
+@click.option(
+    "--style", "styles", default="measure", show_default=True, callback=_styles, metavar="STYLE[,STYLE]",
+    help=f"Where to write the feet: {', '.join(STYLES)}.",
+)  # fmt: skip
+@click.option("--strip", is_flag=True, help="Take the markers out again.")
+@click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
+@click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
+@click.option("--dry-run", is_flag=True, help="Write nothing; say which files would change.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Write into this folder, not in place."
+)
+@click.option(
+    "--into-file", is_flag=True, help="Style edit: add the charts to the file instead of writing .edit files."
+)
+@click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
+@click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
+@selection_options
+@preset_option
+def command(
+    paths: tuple[Path, ...],
+    styles: tuple[str, ...],
+    strip: bool,
+    check: bool,
+    diff: bool,
+    dry_run: bool,
+    output: Path | None,
+    into_file: bool,
+    force: bool,
+    backup: bool,
+    jobs: int | None,
+    preset: str,
+    **selection: Any,
+) -> int:
+    """Write L/R foot markers into chart files, or take them out.
+
+    PATH is a .sm or .ssc file, or a folder that is searched for them. Only comments are added, byte by byte;
+    --strip gives back the file as it was.
+
+    Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
+    """
+    from dancetutor_cli.jobs.annotate import Order
+    from dancetutor_cli.library import find_files
+
+    if into_file and "edit" not in styles:
+        raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
+    order = Order(
+        styles=styles,
+        preset=preset,
+        selection=Selection(**selection),
+        strip=strip,
+        force=force,
+        into_file=into_file,
+        write=not (check or diff or dry_run),
+        backup=backup,
+        diff=diff,
+    )
+    songs = _songs(_items(paths, output, find_files(paths)))
+    talk = _Talk(order, check, dry_run)
+    talk.begin()
+    for outcome in _outcomes(songs, order, jobs):
+        talk.tell(outcome)
+    return talk.end()
+
+
+def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) -> list[Item]:
+    """Where each file goes. Under -o DIR: a file into DIR, what lies in a folder at the same place below DIR."""
+    from dancetutor_cli.jobs.annotate import Item
+
+    if output is None:
+        return [Item(path, path) for path in files]
+    if output.exists() and not output.is_dir():
+        raise UsageError(f"{output}: -o wants a folder")
+    items: dict[Path, Item] = {}
+    for path in files:
+        folder = next((p for p in paths if p != path and path.is_relative_to(p)), path.parent)
+        target = output / path.relative_to(folder)
+        if target in items:
+            raise UsageError(f"{path} and {items[target].source} would both become {target}; annotate them separately")
+        items[target] = Item(path, target)
+    return list(items.values())
+
+
+def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
+    """Files of one song together: they share what lies beside them."""
+    songs: dict[tuple[Path, str], list[Item]] = {}
+    for item in items:
+        songs.setdefault((item.source.parent, item.source.stem.lower()), []).append(item)
+    return [tuple(song) for song in songs.values()]
+
+
+def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None) -> Iterator[Outcome]:
+    """What became of each file, in the order of the files as far as they are done."""
+    from dancetutor_cli.jobs.annotate import annotate_song
+
+    wanted = jobs or _fitting_jobs(len(songs))
+    if min(wanted, len(songs)) <= 1:
+        for song in songs:
+            yield from annotate_song(song, order)
+        return
+    from dancetutor_cli.jobs.annotate import annotate_task
+    from dancetutor_cli.jobs.pool import Task, open_workers
+
+    workers = open_workers(min(wanted, len(songs)), lambda key, n: None)
+    try:
+        for number, song in enumerate(songs):
+            workers.submit(Task(number, annotate_task, (song, order)))
+        waiting: dict[int, list[Outcome]] = {}
+        turn = 0
+        for done in workers.done():
+            if done.error is not None:
+                raise done.error
+            waiting[done.key] = done.result
+            while turn in waiting:
+                yield from waiting.pop(turn)
+                turn += 1
+    finally:
+        workers.close()
+
+
+def _fitting_jobs(songs: int) -> int:
+    if songs < _MANY:
+        return 1
+    from dancetutor_cli.jobs.pool import default_jobs
+
+    return default_jobs()
+
+
+@dataclass
+class _Talk:
+    """Says what happened, and knows how it ends."""
+
+    order: Order
+    check: bool
+    dry_run: bool
+    files: Counter[str] = field(default_factory=Counter)
+    lacking: bool = False
+
+    def begin(self) -> None:
+        if "rows" in self.order.styles and not self.order.strip:
+            from dancetutor_cli.markers.rows import WARNING
+
+            click.echo(f"warning: {WARNING}", err=True)
+
+    def tell(self, outcome: Outcome) -> None:
+        for note in outcome.notes:
+            click.echo(f"warning: {_safe(note)}", err=True)
+        if outcome.error is not None:
+            self.files["failed"] += 1
+            click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
+            return
+        self.files["changed" if outcome.changed else "unchanged"] += 1
+        self.lacking |= bool(outcome.lacks)
+        if self.check:
+            for lack in outcome.lacks:
+                click.echo(_safe(lack))
+        if self.order.diff:
+            for line in outcome.diff:
+                click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
+        elif not self.check:
+            click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{_details(outcome)}")
+
+    def _verb(self, outcome: Outcome) -> str:
+        if not outcome.changed:
+            return "unchanged"
+        past = "stripped" if self.order.strip else "annotated"
+        return past if self.order.write else f"would be {past}:"
+
+    def end(self) -> int:
+        total = sum(self.files.values())
+        parts = ", ".join(f"{n} {name}" for name, n in sorted(self.files.items()) if n)
+        if total > 1:
+            click.echo(f"{total} files: {parts}", err=self.order.diff)
+        if self.files["failed"]:
+            return 2
+        return 1 if self.check and self.lacking else 0
+
+
+def _details(outcome: Outcome) -> str:
+    counts = Counter(dict(outcome.counts))
+    words = (("missing", "new"), ("different", "other feet"), ("stale", "stale"), ("pinned", "pinned, left alone"))
+    measures = sum(counts[name] for name in ("missing", "different", "stale", "pinned", "current"))
+    if not measures:
+        return ""
+    parts = [f"{counts[name]} {word}" for name, word in words if counts[name]]
+    return f": {measures} measures" + (f" ({', '.join(parts)})" if parts else "")
+
+
+def _safe(text: str) -> str:
+    from dancetutor_cli.reports.safe import safe
+
+    return safe(text)

@@ -45,7 +45,7 @@ def contradictions(chart: Chart, said: Iterable[Said]) -> tuple[list[Said], list
     if not ordered:
         return [], []
     pad = load_pad(chart.steps_type)
-    panels = [] if pad is None else [(float(x), float(y)) for x, y in pad.panels]
+    panels = [] if pad is None else [(panel.x, panel.y) for panel in pad.panels]
     ends = _hold_ends(chart)
     held: dict[int, tuple[Said, int]] = {}
     good: list[Said] = []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -20,6 +20,7 @@ class State(Enum):
     STALE = "stale"  # tokens do not fit the rows
     DIFFERENT = "different"  # they fit, but say other feet
     PINNED = "pinned"
+    IMPOSSIBLE = "impossible"  # rows stand on the line of the comma
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ class MeasureState:
 
 
 def write(
-    data: bytes, chart: Chart, rows: StepRows, letters: list[str], force: bool = False
+    data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str], force: bool = False
 ) -> tuple[list[Splice], list[MeasureState]]:
     """Replacements that bring the markers of a chart up to date, and how they were before.
 
@@ -46,7 +47,7 @@ def write(
     splices, states = [], []
     for line in measure_lines(data, chart):
         comment = data[line.start : line.end]
-        tokens = wanted.get(line.measure)
+        tokens = wanted.pop(line.measure, None)
         if not comment and tokens is None:
             continue
         state = _state(comment, tokens, force)
@@ -57,6 +58,7 @@ def write(
         new = _with(comment, marker(tokens), force) if tokens else _without(comment, force)
         if new != comment:
             splices.append(Splice(line.start, line.end, new))
+    states += (MeasureState(m, int(chart.measures.line[m]), State.IMPOSSIBLE) for m in wanted)
     return splices, states
 
 
@@ -71,7 +73,7 @@ def strip(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
     return splices
 
 
-def _by_measure(chart: Chart, rows: StepRows, letters: list[str]) -> dict[int, list[str]]:
+def _by_measure(chart: Chart, rows: StepRows, letters: Sequence[str]) -> dict[int, list[str]]:
     wanted: dict[int, list[str]] = {}
     for measure, text in zip(chart.rows.measure[rows.row].tolist(), letters, strict=True):
         wanted.setdefault(measure, []).append(text)
@@ -123,10 +125,3 @@ def _cut(comment: bytes, start: int, end: int) -> bytes:
     if before.endswith(b" "):
         return before[:-1] + after
     return before + after.removeprefix(b" ")
-
-
-def counts(states: list[MeasureState]) -> Iterator[tuple[State, int]]:
-    """How many measures are in each state that occurs."""
-    for state in State:
-        if number := sum(1 for s in states if s.state is state):
-            yield state, number

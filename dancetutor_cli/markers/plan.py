@@ -1,0 +1,121 @@
+"""What would change in a chart file: its charts solved, every style asked, the result read back and compared."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.feet import overrides_for
+from dancetutor_cli.feet.measures import step_rows
+from dancetutor_cli.markers import measure, rows
+from dancetutor_cli.markers.letters import row_letters
+from dancetutor_cli.markers.measure import MeasureState, State
+from dancetutor_cli.markers.model import MEASURE, ROWS, ChartFeet, Lack
+from dancetutor_cli.markers.splice import Splice, apply
+from dancetutor_cli.markers.verify import unchanged
+from dancetutor_cli.play.preset import Preset
+
+
+@dataclass(slots=True)
+class Plan:
+    """What became of one file. data : its new bytes; the rest is for people.
+
+    counts : measures by what was done about them; lacks : what `--check` reports
+    """
+
+    data: bytes
+    lacks: list[Lack] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+
+
+def solve_charts(song: Song, charts: Sequence[Chart], preset: Preset, notes: list[str]) -> Iterator[ChartFeet]:
+    """The feet of each chart that has a pad; what people said about them wrongly goes to `notes`."""
+    from dancetutor_cli.play import solve_chart
+
+    padless = set()
+    for chart in charts:
+        _overrides, _, problems = overrides_for(song, chart)
+        for problem in problems:
+            place = "".join(f":{n}" for n in (problem.line, problem.column) if n is not None)
+            notes.append(f"{song.path}{place}: {problem.message}")
+        play = solve_chart(chart, preset)
+        if play is None:
+            padless.add(chart.steps_type)
+            continue
+        found = step_rows(song.data, chart)
+        yield ChartFeet(chart, found, tuple(row_letters(chart, found, play)), play)
+    padless = {name for name in padless if not name.startswith("lights")}
+    if padless:
+        notes.append(f"{song.path}: there is no pad for {', '.join(sorted(padless))}, so these charts get no feet")
+
+
+def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bool) -> Plan:
+    """Write the styles that live inside note data: `measure` and `rows`."""
+    plan = Plan(song.data)
+    splices: list[Splice] = []
+    for one in feet:
+        if MEASURE in styles:
+            new, states = measure.write(song.data, one.chart, one.rows, one.letters, force)
+            splices += new
+            _tell_measures(plan, song, one.chart, states)
+        if ROWS in styles:
+            new, lacking = rows.write(song.data, one.chart, one.rows, one.letters)
+            splices += new
+            if lacking:
+                plan.lacks.append(Lack(f"{one.chart.label}: {lacking} rows lack their letters", one.chart.line))
+            plan.counts["rows"] += len(one.rows)
+    plan.data = apply(song.data, splices)
+    if any(warning.code == "cr-only" for warning in song.warnings):
+        plan.notes.append(f"{song.path}: lines end at CR alone; a comment would swallow the rest, so none is written")
+    return plan
+
+
+def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bool) -> Plan:
+    """Take the styles that live inside note data out."""
+    plan = Plan(song.data)
+    splices: list[Splice] = []
+    for chart in charts:
+        found: list[Splice] = []
+        if MEASURE in styles:
+            found += measure.strip(song.data, chart, force)
+            plan.counts["removed"] += len(found)
+        if ROWS in styles:
+            found += rows.strip(song.data, chart)
+        if found:
+            plan.lacks.append(Lack(f"{chart.label}: {len(found)} markers to take out", chart.line))
+        splices += found
+    plan.data = apply(song.data, splices)
+    return plan
+
+
+def checked(song: Song, plan: Plan) -> Plan:
+    """The plan, if its bytes read like the song they were made from; raises `verify.HarmError` if not."""
+    if plan.data != song.data:
+        unchanged(song, plan.data)
+    return plan
+
+
+def _tell_measures(plan: Plan, song: Song, chart: Chart, states: Sequence[MeasureState]) -> None:
+    """Count what was found, and list what lacks: one line for each kind in a chart, with the first place."""
+    by_state: dict[State, list[MeasureState]] = {}
+    for one in states:
+        by_state.setdefault(one.state, []).append(one)
+        plan.counts[one.state.value] += 1
+    words = {
+        State.MISSING: "have no feet yet",
+        State.STALE: "have feet that do not fit their rows any more",
+        State.DIFFERENT: "have feet other than the solver finds",
+    }
+    for state, text in words.items():
+        if found := by_state.get(state):
+            number = f"{len(found)} measures" if len(found) > 1 else f"measure {found[0].measure}"
+            text = text if len(found) > 1 else text.replace("have", "has", 1)
+            plan.lacks.append(Lack(f"{chart.label}: {number} {text}", found[0].line))
+    if found := by_state.get(State.IMPOSSIBLE):
+        plan.notes.append(
+            f"{song.path}:{found[0].line}: {chart.label}: {len(found)} measures begin on the line of their comma; "
+            "they are left alone"
+        )
