@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import UnavailableError, UsageError
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.scene import FrameState, Scene
 
 Quality = Literal["draft", "good", "best"]
@@ -62,11 +62,22 @@ def create(
     if kind == "auto":
         kind = "gl" if _gpu() else "cpu"
     if kind == "gl":
-        raise UnavailableError("the gl renderer is not there yet; use --renderer cpu")
+        return _create_gl(scene, size, quality)
     from dancetutor_cli.video.cpu.renderer import CpuRenderer
 
     return CpuRenderer(scene, size, quality)
 
 
 def _gpu() -> bool:
-    return False
+    from dancetutor_cli.video.gl.probe import gpu_device
+
+    return gpu_device() is not None
+
+
+def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Renderer:
+    from dancetutor_cli.video.gl.compat import load_pyrender
+
+    load_pyrender()
+    from dancetutor_cli.video.gl.renderer import GlRenderer
+
+    return GlRenderer(scene, size, quality)

@@ -80,8 +80,10 @@ def draw_ground(
 ) -> None:  # fmt: skip  # pragma: no cover
     """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on.
 
-    shift : columns that the standing picture is ahead; feet (n, 9): heel x z, toe x z, ground, nearness to the ground
-    0..1, colour; numbers : contact darkness, its softness, strength of the marks, strength of lit panels, sole radius
+    shift : columns that the standing picture is ahead; shadow with axes, origin and scale : how much of the light is
+    taken, `prepare.Cast`; dark : darkness of the shadow; lit, lit_colour : `prepare.panel_lights`;
+    feet : `prepare.feet_on_floor`; numbers : contact darkness, its softness, strength of the marks, strength of lit
+    panels, sole radius
     """
     radius = numbers[4]
     far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
@@ -102,7 +104,8 @@ def draw_ground(
             ring, owner = 0.0, 0
             for f in range(feet.shape[0]):
                 if (
-                    abs(y - feet[f, 4]) > 0.03
+                    feet[f, 5] < 0.0
+                    or abs(y - feet[f, 4]) > 0.03
                     or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
                     or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
                 ):

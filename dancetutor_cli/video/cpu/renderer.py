@@ -23,23 +23,18 @@ from dancetutor_cli.video.cpu.raster import (
 )
 from dancetutor_cli.video.cpu.shade import light_vertices, resolve, toon_numbers
 from dancetutor_cli.video.geometry import pack
-from dancetutor_cli.video.renderer import Quality
-from dancetutor_cli.video.scene import (
-    SOLE_RADIUS,
-    FootMark,
-    FrameState,
-    Scene,
-    check_state,
-    foot_marks,
-    light_direction,
-    shadow_axes,
+from dancetutor_cli.video.prepare import (
+    SAMPLES,
+    SHADOW_MAP,
+    Cast,
+    feet_on_floor,
+    ground_box,
+    panel_lights,
+    place_cast,
+    skin_matrices,
 )
-
-Array = NDArray[np.float64]
-SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}
-SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}
-_MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
-SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
+from dancetutor_cli.video.renderer import Quality
+from dancetutor_cli.video.scene import SOLE_RADIUS, FrameState, Scene, check_state
 
 
 class CpuRenderer:
@@ -74,12 +69,12 @@ class CpuRenderer:
         shift = background.left - camera.pan_pixels(self._size[0])
         np.copyto(self._out, background.picture[:, shift : shift + self._size[0]])
         mesh = self._mesh
-        matrices = np.ascontiguousarray(_product(state.joints, self._scene.character.inverse_bind))
+        matrices = skin_matrices(self._scene, state)
         skin(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights, matrices, self._world)
-        light = light_direction(self._scene.look, camera)
-        axes, origin, scale = self._cast(light, state)
-        self._ground(state, background, shift, axes, origin, scale)
-        self._dancer(camera, axes, origin, scale)
+        cast = place_cast(self._scene, state, self._map)
+        self._draw_shadow(cast)
+        self._draw_ground(state, background, shift, cast)
+        self._draw_dancer(camera, cast)
         return self._out
 
     def close(self) -> None:
@@ -93,54 +88,30 @@ class CpuRenderer:
             self._background = (key, drawn)
         return self._background[1]
 
-    def _cast(self, light: Array, state: FrameState) -> tuple[Array, Array, float]:
-        """Draw the shadow map. Axes of the light's view, the place of the map's corner in it, texels a metre."""
-        axes = shadow_axes(light)
+    def _draw_shadow(self, cast: Cast) -> None:
         if not self._map:
-            return axes, np.zeros(2), 0.0
-        scale = self._map / SHADOW_REACH
-        middle = state.joints[0, :3, 3]
-        # On the texel grid of the world, so that the shadow's edge does not crawl as she moves.
-        origin = np.array([np.floor((axes[k] * middle).sum() * scale) / scale - SHADOW_REACH / 2 for k in (0, 1)])
+            return
         self._shadow[:] = 0.0
-        project_light(self._world, axes, origin, scale, self._light_points)
+        project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
         fill_depth(self._light_points, self._mesh.triangles, self._shadow)
         occupied(self._shadow, self._mask)
-        radius = max(1, round(self._scene.look.light.shadow_soft * scale / 2))
+        radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
         blur(self._mask, radius, self._spare)
         blur(self._mask, radius, self._spare)
-        return axes, origin, scale
 
-    def _ground(
-        self, state: FrameState, background: Background, shift: int, axes: Array, origin: Array, scale: float
-    ) -> None:
+    def _draw_ground(self, state: FrameState, background: Background, shift: int, cast: Cast) -> None:
         look = self._scene.look
-        feet = _feet(self._scene, foot_marks(self._scene, state.joints))
-        colours = np.array(self._scene.colours.by_limb, dtype=np.float64)
-        lit = np.clip(np.asarray(state.lit, dtype=np.float64), 0.0, 1.0)
+        bounds = self._world[:, :3].min(0), self._world[:, :3].max(0)
+        box = ground_box(self._scene, state.camera, self._size, bounds, cast)
+        lit, lit_colour = panel_lights(self._scene, state)
         numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.mark, look.stage.glow, SOLE_RADIUS])
         draw_ground(
-            self._out, self._ground_box(state, axes), shift, background.colour, background.ground,
-            background.takes, background.panel, background.glow, background.white, background.footprint,
-            self._mask, axes, origin, scale, look.light.shadow if scale else 0.0,
-            lit, colours[np.clip(np.asarray(state.lit_by, dtype=np.int64), 0, 3)], feet, numbers,
+            self._out, box, shift, background.colour, background.ground, background.takes, background.panel,
+            background.glow, background.white, background.footprint, self._mask, cast.axes, cast.origin, cast.scale,
+            look.light.shadow if cast.scale else 0.0, lit, lit_colour, feet_on_floor(self._scene, state), numbers,
         )  # fmt: skip
 
-    def _ground_box(self, state: FrameState, axes: Array) -> NDArray[np.int64]:
-        """The part of the picture, in pixels, that holds the pad and all that falls on the floor."""
-        low, high = self._scene.extent
-        ground = -self._scene.look.stage.pad_height
-        points = [(x, y, z) for x in (low[0], high[0]) for y in (0.0, ground) for z in (low[2], high[2])]
-        least, most = self._world[:, :3].min(0) - _MARK_REACH, self._world[:, :3].max(0) + _MARK_REACH
-        points += [(x, ground, z) for x in (least[0], most[0]) for z in (least[2], most[2])]
-        if self._map:  # the corners of her box, cast on the floor
-            slope = axes[2] / axes[2][1]
-            for x, z in [p[::2] for p in points[-4:]]:
-                for y in (least[1] - ground, most[1] - ground):
-                    points.append((x - slope[0] * y, ground, z - slope[2] * y))
-        return _pixel_box(state.camera, np.array(points, dtype=np.float64), self._size)
-
-    def _dancer(self, camera: Camera, axes: Array, origin: Array, scale: float) -> None:
+    def _draw_dancer(self, camera: Camera, cast: Cast) -> None:
         samples, mesh = self._samples, self._mesh
         matrix = camera.matrix(self._size)
         focal = camera.focal * self._size[1]
@@ -152,44 +123,10 @@ class CpuRenderer:
         fill(self._points, mesh.triangles, FRONT, 0, self._depth, self._ids, self._spans)
         fill(self._hull, mesh.triangles, BACK, count, self._depth, self._ids, self._spans)
         light_vertices(
-            self._world,
-            self._points,
-            mesh.uv,
-            mesh.material,
-            np.array(camera.position),
-            axes,
-            origin,
-            scale,
-            self._vertex,
-        )
+            self._world, self._points, mesh.uv, mesh.material, np.array(camera.position), cast.axes, cast.origin,
+            cast.scale, self._vertex,
+        )  # fmt: skip
         resolve(
             self._out, samples, self._ids, self._depth, self._spans, count, mesh.triangles, mesh.patch, self._vertex,
             mesh.texels, mesh.textures, self._shadow, self._toon,
         )  # fmt: skip
-
-
-def _product(joints: Array, inverse_bind: Array) -> Array:
-    """joints @ inverse_bind as (j, 3, 4), in a fixed order of additions: matrix libraries differ in the last bit."""
-    out = joints[:, :3, 0, None] * inverse_bind[:, None, 0, :]
-    for k in (1, 2, 3):
-        out = out + joints[:, :3, k, None] * inverse_bind[:, None, k, :]
-    return np.asarray(out)
-
-
-def _feet(scene: Scene, marks: tuple[FootMark | None, FootMark | None]) -> Array:
-    rows = []
-    for mark, colour in zip(marks, scene.colours.by_limb[:2], strict=True):
-        if mark is not None:
-            near = max(0.0, 1.0 - mark.height / scene.look.light.contact_height)
-            rows.append((*mark.heel, *mark.toe, mark.ground, near, *colour))
-    return np.array(rows, dtype=np.float64).reshape(-1, 9)
-
-
-def _pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> NDArray[np.int64]:
-    """Bounds of world points on the picture, x0, y0, x1, y1; everything if one of them is behind the camera."""
-    places = camera.project(points, size)
-    width, height = size
-    if (places[:, 2] < NEAR).any():
-        return np.array([0, 0, width, height])
-    low, high = np.floor(places[:, :2].min(0)) - 2, np.ceil(places[:, :2].max(0)) + 3
-    return np.concatenate([np.clip(low, 0, size), np.clip(high, 0, size)]).astype(np.int64)

@@ -1,0 +1,3 @@
+#version 330 core
+// The shadow map has depth only.
+void main() {}

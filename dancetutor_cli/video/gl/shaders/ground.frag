@@ -1,0 +1,85 @@
+#version 330 core
+// Shadow, contact shadows, lit panels and foot marks on the standing picture, as in cpu/ground.py.
+uniform sampler2D standing;   // colour 0..1, and how much the pixel takes shadows
+uniform sampler2D ground;     // world x, y, z, and metres in a pixel
+uniform sampler2D panels;     // panel or -1, glow, whiteness
+uniform sampler2DShadow shadow;
+uniform sampler2D lights;     // a texel for each panel: colour 0..1, how lit
+uniform int shift;
+uniform mat4 light;
+uniform float dark;
+uniform float spread;         // distance of the shadow's taps, part of the map
+uniform vec4 contact;         // darkness, softness, strength of the marks, strength of lit panels
+uniform float radius;
+uniform vec4 foot[2];         // heel x, z, toe x, z
+uniform vec2 foot_state[2];   // ground, nearness to it; nearness < 0: no foot
+uniform vec3 foot_colour[2];
+
+out vec4 colour;
+
+float shadowed(vec3 at) {
+    vec3 p = (light * vec4(at, 1.0)).xyz * 0.5 + 0.5;
+    if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) {
+        return 0.0;
+    }
+    float sum = 0.0;
+    for (int i = -1; i <= 1; ++i) {
+        for (int j = -1; j <= 1; ++j) {
+            sum += float((2 - abs(i)) * (2 - abs(j))) * texture(shadow, vec3(p.xy + spread * vec2(i, j), 0.999));
+        }
+    }
+    return 1.0 - sum / 16.0;
+}
+
+float from_foot(vec2 p, vec4 f) {
+    vec2 line = f.zw - f.xy;
+    float along = clamp(dot(p - f.xy, line) / max(dot(line, line), 1e-9), 0.0, 1.0);
+    return length(p - f.xy - along * line);
+}
+
+float dither(ivec2 p) {
+    int r = p.y & 3, c = p.x & 3;
+    int rank = ((r ^ c) & 1) * 8 + (r & 1) * 4 + (((r ^ c) >> 1) & 1) * 2 + ((r >> 1) & 1);
+    return (float(rank) + 0.5) / 16.0;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy) + ivec2(shift, 0);
+    vec4 base = texelFetch(standing, pixel, 0);
+    if (base.a <= 0.0) {
+        discard;
+    }
+    vec4 at = texelFetch(ground, pixel, 0);
+    vec4 info = texelFetch(panels, pixel, 0);
+    float keep = dark > 0.0 ? 1.0 - dark * shadowed(at.xyz) : 1.0;
+    float ring = 0.0;
+    vec3 ring_colour = vec3(0.0);
+    for (int f = 0; f < 2; ++f) {
+        float near = foot_state[f].y;
+        if (near < 0.0 || abs(at.y - foot_state[f].x) > 0.03) {
+            continue;
+        }
+        float d = from_foot(at.xz, foot[f]) - radius;
+        float reach = contact.y * (1.6 - 0.6 * near);
+        keep *= 1.0 - contact.x * near * (1.0 - smoothstep(0.0, reach, d));
+        float band = clamp((0.0085 - abs(d - 0.020)) / at.w + 0.5, 0.0, 1.0) * contact.z * (0.25 + 0.75 * near);
+        if (band > ring) {
+            ring = band;
+            ring_colour = foot_colour[f];
+        }
+    }
+    vec4 lit = info.x >= 0.0 ? texelFetch(lights, ivec2(int(info.x + 0.5), 0), 0) : vec4(0.0);
+    float shine = info.y * lit.a * contact.w;
+    if (keep >= 1.0 && shine <= 0.0 && ring <= 0.0) {
+        discard;
+    }
+    keep = 1.0 - (1.0 - keep) * base.a;
+    vec3 value = base.rgb * keep;
+    if (shine > 0.0) {
+        value = mix(value, lit.rgb * (0.35 + 0.65 * keep), shine);
+        value = mix(value, vec3(1.0), info.z * lit.a * contact.w);
+    }
+    value = mix(value, ring_colour, ring * base.a);
+    // The 8-bit target rounds to the nearest: dither less a half gives the same steps as the software renderer.
+    colour = vec4(value + (dither(pixel) - 0.5) / 255.0, 1.0);
+}
