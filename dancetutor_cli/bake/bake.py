@@ -26,7 +26,7 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.rig.soles import place, sole_points
+from dancetutor_cli.rig.soles import palm_points, place, sole_points
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -36,6 +36,7 @@ Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
+NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
 KEY_TOLERANCE = 0.0004  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
@@ -150,9 +151,9 @@ def _refined(
     seen = world_transforms(skeleton, guess, (root[:-1] + root[1:]) / 2)
     true = world_transforms(skeleton, between[1], between[2])
     wanted = np.zeros(len(times) - 1, dtype=bool)
-    for points in sole_points(skeleton):
+    for points in (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton))):
         right, drawn = place(points, *true), place(points, *seen)
-        low = right[..., 1].min(axis=1) < 0.004
+        low = right[..., 1].min(axis=1) < NEAR_GROUND
         wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
     order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
     merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
 
 SUFFIXES = (".npz", ".glb")
+AFTER = 2.5  # seconds after the last row that a section may still reach
 _TABLE = "-"  # the value of --report without a file
 
 
@@ -55,12 +56,13 @@ def command(
     chart = Selection(**selection).one(song)
     target = output or Path(default_name(song, chart))
     _check_target(target)
-    play = solve_chart(chart, load_preset(preset))
-    if play is None:
-        raise UsageError(f"{file}: no pad is known for steps type '{chart.steps_type}'")
+    play, pad = solve_chart(chart, load_preset(preset)), load_pad(chart.steps_type)
+    if play is None or pad is None:
+        raise UsageError(f"{file}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake")
     if not (play.limb >= 0).any():
         raise DancetutorError(f"{file}: {chart.label}: the chart has no steps, so there is nothing to dance")
-    motion = bake(chart, play, load_pad(chart.steps_type), fps=fps, section=_seconds(section, chart))
+    end = float(play.rows.second[-1]) + AFTER
+    motion = bake(chart, play, pad, fps=fps, section=_seconds(section, chart, end))
     write_motion(target, motion)
     click.echo(f"{target}: {len(motion.times)} frames, {motion.times[-1] - motion.times[0]:.1f} s, {chart.label}")
     if report_to is not None:
@@ -97,12 +99,12 @@ def _check_target(path: Path) -> None:
         raise FileError(path, "its folder does not exist")
 
 
-def _seconds(section: str | None, chart: Chart) -> tuple[float, float] | None:
+def _seconds(section: str | None, chart: Chart, end: float) -> tuple[float, float] | None:
     if section is None:
         return None
     from dancetutor_cli.chart.section import parse_section
 
-    return parse_section(section, chart.timing)
+    return parse_section(section, chart.timing, end)
 
 
 def _print_report(report: Report, target: str) -> None:

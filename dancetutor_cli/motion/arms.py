@@ -20,6 +20,7 @@ from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_po
 
 Array = NDArray[np.float64]
 FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
+SLAP = 0.8  # metres per second with which a palm meets the floor at least
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
@@ -130,7 +131,9 @@ def _press(
     sink = (1.0 - np.cos(np.pi / 2 * going)) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
     free = wrists[near, side]
     goal = free + across[:, None] * (wrist - free)
-    goal[:, 1] = wrist[1] + (1.0 - sink) * (free[:, 1] - wrist[1])
+    ahead = np.maximum(press.start - t, 0.0)
+    slap = SLAP * ahead * np.exp(-((ahead / 0.1) ** 2))
+    goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
     wrists[near, side] = goal
     turn[near, side] = hand
     pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.banded import BandedLeastSquares, differences
 from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.paths import cubic
 from dancetutor_cli.motion.qp import Limits, solve
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 
 Array = NDArray[np.float64]
+NODE_RATE = 80.0  # nodes per second
 UNIT = 0.03  # metres; scales the programme
 HALF_WIDTH = 0.036  # of the part of a sole that may carry the whole weight
 FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
@@ -30,16 +32,25 @@ def balanced_path(feet: tuple[FootPath, FootPath], lever: Array, times: Array, s
     lever : (n,) y / (y'' + g), seconds squared; ignored in flight
     settings : of the body, and how the weight sways while both feet stand
     """
-    body, rate = settings.body, 1.0 / float(times[1] - times[0])
+    body, rate = settings.body, NODE_RATE
+    nodes = np.arange(times[0], times[-1] + 1.0 / rate, 1.0 / rate)
+    feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
+    lever = np.interp(nodes, times, lever)
     low, high, middle = _support(feet)
-    middle = middle + _sway(feet, times, settings.layers)
+    middle = middle + _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
     flight = ~down.any(axis=0)
     weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
-    out = np.empty((len(lever), 2))
+    out = np.empty((len(nodes), 2))
     for axis in (0, 1):
         out[:, axis] = _axis(middle[:, axis], low[:, axis], high[:, axis], weight, flight, lever, rate, body)
-    return out
+    return cubic(nodes, out, times)
+
+
+def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
+    """A foot at the sampled times nearest to other ones: standing and swinging are not mixed."""
+    i = np.clip(np.round((nodes - times[0]) / (times[1] - times[0])).astype(np.int64), 0, len(times) - 1)
+    return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
 
 
 def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
@@ -60,7 +71,7 @@ def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
 
 
 def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) -> Array:
-    """(n, 2): how far the weight wanders from foot to foot; where one foot stands alone this is drowned by its weight."""
+    """(n, 2): how far the weight wanders from foot to foot while both stand."""
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
     both = feet[0].down & feet[1].down

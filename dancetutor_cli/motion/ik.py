@@ -97,8 +97,8 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
     root = np.array(targets.pelvis, dtype=np.float64)
     _solve(
         skeleton.offsets, joints, hinges, reach, follow, root, targets.pelvis_turn, targets.chest_turn,
-        targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned, targets.elbows, targets.ankles, targets.feet_turn,
-        targets.toes_turn, targets.knees, rotations,
+        targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned, targets.elbows, targets.ankles,
+        targets.feet_turn, targets.toes_turn, targets.knees, rotations,
     )  # fmt: skip
     return rotations, root
 
@@ -190,8 +190,8 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 @njit(cache=True)
 def _solve(
     offsets: Array, joints: Array, hinges: Array, reach: float, follow: float, root: Array, pelvis_turn: Array,
-    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, ankles: Array, feet_turn: Array,
-    toes_turn: Array, knees: Array, rotations: Array,
+    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, ankles: Array,
+    feet_turn: Array, toes_turn: Array, knees: Array, rotations: Array,
 ) -> None:  # fmt: skip
     hips = (_vec(offsets[joints[_LEG]]), _vec(offsets[joints[_LEG + 4]]))
     arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))

@@ -50,7 +50,7 @@ def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: 
 
 
 def eyelids(times: Array, every: float) -> Array:
-    """How far the lids are closed (f,), 0 to 1: a blink about `every` seconds, at moments that depend on nothing else."""
+    """How far the lids are closed (f,), 0 to 1: a blink about `every` seconds, always at the same ones."""
     cell = np.floor(times / every).astype(np.int64)
     out = np.zeros_like(times)
     for c in np.unique(cell):

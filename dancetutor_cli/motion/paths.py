@@ -46,6 +46,16 @@ def sample_path(path: Array, times: Array, at: Array) -> Array:
     return np.asarray((1.0 - w) * path[i] + w * path[i + 1])
 
 
+def cubic(times: Array, values: Array, at: Array) -> Array:
+    """Piecewise cubic through uneven samples (n, d) at other times (f,), slopes from the neighbours, ends held."""
+    slopes = np.gradient(values, times, axis=0)
+    i = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
+    h = (times[i + 1] - times[i])[:, None]
+    s = np.clip((at - times[i])[:, None] / h, 0.0, 1.0)
+    a, b, u, v = values[i], values[i + 1], slopes[i] * h, slopes[i + 1] * h
+    return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
+
+
 def leaning(tilt: Array, yaw: Array) -> Array:
     """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
     angle = np.linalg.norm(tilt, axis=1)

@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.paths import cubic
 from dancetutor_cli.motion.settings import HairSettings
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -51,7 +52,7 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
         1.0 / settings.rate, int(SETTLE * settings.rate), settings.gravity, settings.damping, settings.stiffness,
         settings.head_radius, settings.back_radius,
     )  # fmt: skip
-    at = _interpolated(fixed, points.reshape(steps, -1), times).reshape(len(times), len(bones) + 1, 3)
+    at = cubic(fixed, points.reshape(steps, -1), times).reshape(len(times), len(bones) + 1, 3)
     parent = world[:, skeleton.index("skullbase")]
     for k, name in enumerate(JOINTS):
         direction = at[:, k + 1] - at[:, k]
@@ -63,23 +64,13 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
 def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, fixed: Array) -> Anchors:
     def placed(joint: str, offset: tuple[float, float, float]) -> Array:
         j = skeleton.index(joint)
-        return _interpolated(times, positions[:, j] + quat.rotate(world[:, j], np.array(offset)), fixed)
+        return cubic(times, positions[:, j] + quat.rotate(world[:, j], np.array(offset)), fixed)
 
-    turn = _interpolated(times, quat.continuous(world[:, skeleton.index("skullbase")]), fixed)
+    turn = cubic(times, quat.continuous(world[:, skeleton.index("skullbase")]), fixed)
     return Anchors(
         placed("braid1", (0.0, 0.0, 0.0)), quat.normalize(turn), placed("skullbase", HEAD),
         placed("vt10", BACK[0]), placed("vt4", BACK[1]),
     )  # fmt: skip
-
-
-def _interpolated(times: Array, values: Array, at: Array) -> Array:
-    """Cubic through uneven samples (n, d), slopes from the neighbours: no kinks that would shake the hair."""
-    slopes = np.gradient(values, times, axis=0)
-    i = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
-    h = (times[i + 1] - times[i])[:, None]
-    s = np.clip((at - times[i])[:, None] / h, 0.0, 1.0)
-    a, b, u, v = values[i], values[i + 1], slopes[i] * h, slopes[i + 1] * h
-    return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
 @njit(cache=True)

@@ -15,6 +15,7 @@ from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
 from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
+from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import smoothness_figures
 from dancetutor_cli.motion.model import Motion
 
@@ -32,11 +33,13 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
     contacts, errors = contact_figures(motion)
     body = body_of(motion)
     ground, notes = ground_figures(motion, body, mines)
+    shape, shape_notes = shape_figures(body, motion.skeleton)
     figures = (
         *contacts,
         *ground,
         *flight_figures(body),
         *smoothness_figures(body, motion.skeleton),
         *balance_figures(body),
+        *shape,
     )
-    return Report(figures, errors, notes)
+    return Report(figures, errors, (*notes, *shape_notes))

@@ -1,0 +1,111 @@
+"""Moves as JSON: what moves when, from where to where, for games and other tools that have their own dancer.
+
+One object, schema 1, UTF-8; metres, seconds of the music, degrees; places are [x, z] on the ground, the pad's centre the
+origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
+
+    {"schema": 1, "title": "...", "chart": "dance-single Hard 8",
+     "start": {"left_foot": {"at": [0.1, 0.05], "yaw": 9.0}, "right_foot": {...}},
+     "moves": [{"limb": "left_foot", "kind": "step", "start": 1.2, "end": 1.5, "from": [..], "to": [..], "yaw": 12.0,
+                "height": 0.05}],
+     "turns": [{"start": 1.2, "end": 1.5, "yaw": 20.0}],
+     "contacts": [{"limb": "left_foot", "kind": "tap", "part": null, "column": 0, "start": 1.5, "end": 2.1,
+                   "panel": [..]}]}
+
+`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, evade, pivot or press.
+A reader must survive added keys.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.motion.track import FootTrack, Plan
+from dancetutor_cli.play.model import Limb, Part, StepKind
+
+SCHEMA = 1
+_FEET = ("left_foot", "right_foot")
+
+
+def write_moves(path: Path, plan: Plan, title: str, chart: str, start: float, end: float) -> None:
+    """Write the moves of a plan that begin between `start` and `end`, seconds. Raises FileError."""
+    data = moves_data(plan, title, chart, start, end)
+    write_bytes(path, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+
+
+def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> dict[str, Any]:
+    """The object described above, as plain data."""
+    moves = [m for side, track in enumerate(plan.feet) for m in _foot_moves(track, _FEET[side])]
+    moves += [
+        {
+            "limb": ("left_hand", "right_hand")[p.side],
+            "kind": "press",
+            "start": _round(p.start),
+            "end": _round(p.end),
+            "to": _place(p.target),
+        }
+        for p in plan.presses
+    ]
+    moves.sort(key=lambda m: (m["start"], m["limb"]))
+    return {
+        "schema": SCHEMA,
+        "title": title,
+        "chart": chart,
+        "start": {
+            name: {"at": _place(track.start), "yaw": _degrees(track.start_yaw)}
+            for name, track in zip(_FEET, plan.feet, strict=True)
+        },
+        "moves": [m for m in moves if start <= m["start"] <= end],
+        "turns": [
+            {"start": _round(t.start), "end": _round(t.end), "yaw": _degrees(t.yaw)}
+            for t in plan.turns
+            if start <= t.start <= end
+        ],
+        "contacts": [
+            {
+                "limb": Limb(c.limb).name.lower(),
+                "kind": StepKind(c.kind).name.lower(),
+                "part": None if c.part == Part.WHOLE else Part(c.part).name.lower(),
+                "column": c.column,
+                "start": _round(c.start),
+                "end": _round(c.end),
+                "panel": _place(c.panel),
+            }
+            for c in plan.contacts
+            if start <= c.start <= end
+        ],
+    }
+
+
+def _foot_moves(track: FootTrack, limb: str) -> list[dict[str, Any]]:
+    out, place = [], track.start
+    for s in track.swings:
+        out.append(
+            {
+                "limb": limb,
+                "kind": s.kind,
+                "start": _round(s.lift),
+                "end": _round(s.land),
+                "from": _place(place),
+                "to": _place(s.target),
+                "yaw": _degrees(s.yaw),
+                "height": _round(s.height + s.tuck),
+            }
+        )
+        place = s.target
+    return out
+
+
+def _round(value: float) -> float:
+    return round(value, 6)
+
+
+def _place(p: tuple[float, float]) -> list[float]:
+    return [_round(p[0]), _round(p[1])]
+
+
+def _degrees(yaw: float) -> float:
+    return round(math.degrees(yaw), 3)
