@@ -51,13 +51,13 @@ L R D U
 LR . DU .           # jumps
 L( . . L)           # hold
 R( D . R)           # hold, the free foot taps
-L . U R
+R . L R
 LR . LR .           # jumps on the same panels
-L D R .             # crossover: the left foot goes to the right panel
-L U R .             # crossover in front
+L D R D             # crossover behind: the left foot goes to the right panel
+L U R U             # crossover in front
 L R L R
 L L R R             # jacks
-L . . D*            # mine beside the feet
+L R . D*            # mine between the feet
 D U L R
 L< . . L)           # roll
 R . L R
@@ -73,9 +73,9 @@ L . R . L . R .
 L D U R L . R .
 D . U . L . R .
 LR . . . DU . LR .              # jumps
-L( . D . U . L) .               # hold, the free foot taps
-R( . U . D . R) .               # hold, the free foot taps
-L . R . U D L .
+L( . D . U . . L)               # hold, the free foot taps: a forced doublestep
+L R( . U . D . R)               # hold, the free foot taps: a forced doublestep
+R . L . U D R .
 LR . UR . LR . . .              # jumps
 L . D . R . D .                 # crossover behind
 L . U . R . U .                 # crossover in front
@@ -85,7 +85,7 @@ L . R . L* . . .                # mine: lift the left foot
 U . D . L . R .
 L< . . . . . L) .               # roll
 R . L . R . L .
-D . U . D . U .                 # candles
+U L D L U L D L                 # candles
 LR . DU . LR . DU .             # jumps
 L . R . L D U R
 LR . . . . . . .                # jump, the end
@@ -97,19 +97,19 @@ L R L R D U L R
 L D U R L U D R
 L R L D U R L R
 LR . DU . L . R .                               # jumps
-L( D U D U D L) R                               # hold, the free foot taps: forced doublesteps
-R( . U . D . R) .                               # hold, the free foot taps: forced doublesteps
-L R D U L D U R
+L( D U D U D . L)                               # hold, the free foot taps: forced doublesteps
+L R( . U . D . R)                               # hold, the free foot taps: a forced doublestep
+R L D U R L U D
 LR . UR . LR . LD .                             # jumps
-L D R D L U R U                                 # crossovers: half, behind and in front
-L D R . L U R .                                 # crossovers again
-L U R D L . R .                                 # spin
+L D R D L U R U                                 # crossovers, behind and in front
+L R D U L R L R
+L U R D L . LR .                                # spin
 L R U L R L R L                                 # doublestep: without it all that follows is crossed
 R L R L R L R .
 L . R . L* . . .                                # mine: lift the left foot
 L . . . DU . . . L R . . . . . .                # gallop: two feet a 16th apart
 L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
-D U D U D U L R                                 # candles
+U L D L U L D L                                 # candles
 L( . . . R( . . . U . . . LR) . . .             # hand: both feet hold, a hand taps up
 L R L R D U L R
 LR . . . . . . .                                # jump, the end
@@ -121,19 +121,19 @@ L R D U L D U R L R L R D U L R                 # stream
 L D U R L U D R L R U D L R D U                 # stream
 L R D U L D U R L . . . R . . .
 LR . . . DU . . . L . R . LR . . .              # jumps
-L( . D . U . D . U . D . L) . R .               # hold, the free foot taps: forced doublesteps
-R( U . D . U . . R) . L . D . U .               # hold, the free foot taps: forced doublesteps
-L . L . R . R . D . D . U . U .                 # jacks
+L( . D . U . D . U . D . . . L) .               # hold, the free foot taps: forced doublesteps
+L . R( . U . D . U . D . R) . . .               # hold, the free foot taps: forced doublesteps
+R . R . L . L . U . U . D . D .                 # jacks
 LR . DU . LR . DU . LR . . . . . . .            # jumps in a row
-L D R D L U R U L D R D L U R .                 # crossovers: half, behind and in front
-L U R D L . . . R U L D R . . .                 # spins, to the left and to the right
+L D R D L U R U L D R D L U R U                 # crossovers, behind and in front
+L U R D L . R U L D R . L . R .                 # spins, to the left and to the right
 L . R . U . L . R . L . R . L .                 # doublestep: without it all that follows is crossed
 R . L . R . L . R . L . R . . .
 L . R . LR* . . . D . U . . . . .               # mines under both feet: a hop to the centre
 L R . . D U . . L R . . D U . .                 # gallops
 L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
 LDR . . . . . . . LUR . . . . . . .             # hands: three panels at once
-D U D U L R L R D U D U L R L R                 # candles and drills
+U L D L U L D L R L R L R L R L                 # candles, then a drill
 L( . . . R( . . . U . D . LR) . . .             # hands: both feet hold
 L R D U L D U R L D U R L U D R                 # stream
 LR . . .                                        # jump, the end
@@ -142,24 +142,24 @@ LR . . .                                        # jump, the end
 DOUBLE = """
 . . . . . . . .                                 # count-in
 r L r L r L r L
-l u r . L U R .                                 # over to the right pad
-R U L . r u l .                                 # and back
-lr . uL . LR . rL .                             # jumps
-l( d u d u d l) r                               # hold, the free foot taps: forced doublesteps
-R( . U . D . R) .                               # hold, the free foot taps: forced doublesteps
-l d r . L D R .
-rL . uU . dD . rL .                             # jumps across both pads
+l d u r d L r U                                 # run to the right pad
+L R D U L R L R
+LR . DU . rL . du .                             # jumps
+l( d u d u d . l)                               # hold, the free foot taps: forced doublesteps
+l r( . u . d . r)                               # hold, the free foot taps: a forced doublestep
+r u L r U L R .                                 # run to the right pad
+LR . DU . rL . du .                             # jumps
 l d r d l u r u                                 # crossovers on the left pad
-L D R . L U R .                                 # crossovers on the right pad
-r u L D R . L .                                 # run through the middle
-r L u r L r L r                                 # doublestep: without it all that follows is crossed
-L r L r L r L .
-r . L . r* . . .                                # mine: lift the left foot
-r . . . uU . . . r L . . . . . .                # gallop: two feet a 16th apart
-r< . . . . . . . L . . . r) . . .               # roll, a tap beside it
-u U u U d D d D
-r( . . . L( . . . U . . . rL) . . .             # hand: both feet hold, a hand taps up
-l u r L U R . .                                 # run through all panels
+l d u r d L r U                                 # run to the right pad
+L D R D L U R U                                 # crossovers on the right pad
+L U R D L . LR .                                # spin
+L R U L R L R L                                 # doublestep: without it all that follows is crossed
+R L R L R L R .
+L . R . L* . . .                                # mine: lift the left foot
+L . . . DU . . . L R . . . . . .                # gallop: two feet a 16th apart
+L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
+L( . . . R( . . . U . . . LR) . . .             # hand: both feet hold, a hand taps up
+L R U D L U r L                                 # run to the left pad
 rL . . . . . . .                                # jump, the end
 """
 
