@@ -99,7 +99,10 @@ class _Reader:
             raise self.container.fail(f"its skeleton has more than {2 * MAX_JOINTS} nodes")
         if not used:
             raise self.container.fail("has no skeleton; export the character with its skin")
-        return {node: j for j, node in enumerate(n for n in self.nodes.order if n in used)}
+        order = sorted(used)  # as the file lists them, if there parents come first
+        if any(self.nodes.parents[n] > n for n in order):
+            order = [n for n in self.nodes.order if n in used]
+        return {node: j for j, node in enumerate(order)}
 
     def _skeleton(self) -> Skeleton:
         order = list(self.joint_of)

@@ -120,9 +120,9 @@ def _print_report(report: Report, target: str) -> None:
         table.add_row(f.name, f"{f.value:.4g}{unit}", goal, {None: "", True: "yes", False: "NO"}[f.met])
     Console().print(table)
     if target != _TABLE:
-        from dancetutor_cli.formats.atomic import write_bytes
+        from dancetutor_cli.files import write_atomic
 
-        write_bytes(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
+        write_atomic(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
         click.echo(f"{target}: the report")
 
 

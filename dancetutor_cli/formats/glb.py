@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.model import Character, Mesh
 from dancetutor_cli.character.reader import linear_from_srgb, read_character
-from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.model import Motion
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
@@ -47,7 +47,7 @@ def write_glb(path: Path, character: Character, motion: Motion | None = None) ->
     writer.character(character)
     if motion is not None:
         writer.animation(motion)
-    write_bytes(path, writer.whole())
+    write_atomic(path, writer.whole())
 
 
 class _Writer:

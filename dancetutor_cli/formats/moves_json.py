@@ -22,7 +22,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.track import FootTrack, Plan
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
@@ -33,7 +33,7 @@ _FEET = ("left_foot", "right_foot")
 def write_moves(path: Path, plan: Plan, title: str, chart: str, start: float, end: float) -> None:
     """Write the moves of a plan that begin between `start` and `end`, seconds. Raises FileError."""
     data = moves_data(plan, title, chart, start, end)
-    write_bytes(path, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+    write_atomic(path, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
 
 
 def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.model import Contact, Motion
 from dancetutor_cli.rig.skeleton import Skeleton
 
@@ -57,7 +57,7 @@ def write_npz(path: Path, motion: Motion) -> None:
     for name in _CONTACTS:
         values = np.array([getattr(c, name) for c in motion.contacts], dtype=_CONTACT_TYPES.get(name, "f8"))
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
-    write_bytes(path, _zipped(arrays))
+    write_atomic(path, _zipped(arrays))
 
 
 def read_npz(path: Path) -> Motion:

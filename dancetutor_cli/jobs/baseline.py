@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.formats.atomic import write_bytes
+from dancetutor_cli.files import write_atomic
 from dancetutor_cli.lint.model import Finding
 
 SCHEMA = 1
@@ -61,7 +61,7 @@ class Baseline:
         entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.known.items())]
         body = ",\n  ".join(entries)
         text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
-        write_bytes(self.path, text.encode("utf-8", "replace"))
+        write_atomic(self.path, text.encode("utf-8", "replace"))
 
     def _relative(self, file: str) -> str:
         return Path(os.path.relpath(Path(file).absolute(), self.path.absolute().parent)).as_posix()

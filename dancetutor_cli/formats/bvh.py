@@ -1,0 +1,271 @@
+"""BVH out and in: motion capture files as Motion, and Motion as a file other animation programs read.
+
+Source: Biovision BVH as described by J. Lander, Game Developer, January 1998. Where a joint has position channels, they
+take the place of its OFFSET, as Blender and MotionBuilder have it: adding both would lift captured dancers off the
+floor.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.files import write_atomic
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+
+MAX_FILE = 100_000_000  # bytes
+MAX_JOINTS = 1024
+UNITS = (1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45)  # metres: metre, centimetre, inch, millimetre, CMU's unit
+_HUMAN = 1.65  # metres from toe to crown joint, to tell the unit by
+_CHANNELS = {f"{axis}{kind}": (kind, "XYZ".index(axis)) for axis in "XYZ" for kind in ("position", "rotation")}
+_LEAF = 0.05  # metres: the length given to a leaf's End Site
+
+
+@dataclass(slots=True)
+class _Joint:
+    name: str
+    parent: int
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    channels: list[str] = field(default_factory=list)
+    end: tuple[float, float, float] | None = None
+
+
+def read_bvh(path: Path, scale: float | None = None) -> Motion:
+    """The motion in a BVH file.
+
+    Parameters
+    ----------
+    path : the file
+    scale : metres per unit of the file; None takes the unit of `UNITS` that makes the skeleton most like a human
+
+    Returns
+    -------
+    Motion with the file's own skeleton (without End Sites), time 0 at the first frame, no contacts
+
+    Raises
+    ------
+    FileError for a file that is no BVH, cut off or too large, with the line; or in which a joint other than the root
+    changes its distance to its parent
+    """
+    lines = _lines(path)
+    joints, at = _hierarchy(path, lines)
+    values, frame_time = _frames(path, lines, at, sum(len(j.channels) for j in joints))
+    scale = _scale(joints) if scale is None else scale
+    offsets = np.array([j.offset for j in joints])
+    rotations = np.tile([1.0, 0.0, 0.0, 0.0], (len(values), len(joints), 1))
+    root = np.tile(offsets[0], (len(values), 1))
+    column = 0
+    for j, joint in enumerate(joints):
+        own = values[:, column : column + len(joint.channels)]
+        column += len(joint.channels)
+        rotations[:, j] = _turns(joint.channels, own)
+        moved = _places(joint, own)
+        if j == 0:
+            root = moved
+        elif np.ptp(moved, axis=0).max() > 1e-3 * max(1.0, float(np.abs(offsets).max())):
+            raise FileError(path, f"joint {joint.name!r} moves away from its parent; only the root may")
+        else:
+            offsets[j] = moved[0]
+    parents = np.array([j.parent for j in joints], dtype=np.int32)
+    skeleton = Skeleton(tuple(j.name for j in joints), parents, offsets * scale)
+    times = np.arange(len(values), dtype=np.float64) * frame_time
+    return Motion(
+        skeleton, 1.0 / frame_time, times, quat.continuous(rotations), np.asarray(root * scale, dtype=np.float64), ()
+    )
+
+
+def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_metre: float = 100.0) -> None:
+    """Write a motion as BVH, in centimetres by default, atomically.
+
+    BVH has one frame time, so the motion is sampled at `fps` (its own if None), from its first key on. Angles are given
+    with 6 digits: a round trip is exact to a millionth of a degree at the frames.
+
+    Raises FileError when the file cannot be written.
+    """
+    fps = motion.fps if fps is None else fps
+    count = max(1, math.floor((motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
+    rotations, root = sample(motion, motion.times[0] + np.arange(count) / fps) if len(motion.times) > 1 else (
+        motion.rotations, motion.root)  # fmt: skip
+    skeleton = motion.skeleton
+    order = _depth_first(skeleton)
+    text = ["HIERARCHY", *_written(skeleton, order[0], 0, units_per_metre), "MOTION"]
+    text += [f"Frames: {count}", f"Frame Time: {1 / fps:.9f}"]
+    angles = _zxy(rotations[:, order])
+    table = np.concatenate([root * units_per_metre, angles.reshape(count, -1)], axis=1)
+    text += [" ".join(f"{x:.6f}" for x in row) for row in (table + 0.0).tolist()]
+    write_atomic(path, ("\n".join(text) + "\n").encode("utf-8"))
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        if path.stat().st_size >= MAX_FILE:
+            raise FileError(path, "is too large for a BVH file; the limit is 100 MB")
+        return path.read_text("utf-8", errors="replace").splitlines()
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}") from error
+
+
+def _hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:
+    """The joints, parents first, and the index of the line after MOTION."""
+    joints: list[_Joint] = []
+    open_: list[int | None] = []  # joint of each open brace, None for an End Site
+    coming: int | None = None
+    for number, line in enumerate(lines):
+        words = line.split()
+        if not words:
+            continue
+        head = words[0].upper()
+        try:
+            if head == "MOTION":
+                if not joints or open_:
+                    raise FileError(path, "MOTION comes before the hierarchy is closed", number + 1)
+                return joints, number + 1
+            if head in ("ROOT", "JOINT"):
+                parent = next((j for j in reversed(open_) if j is not None), -1)
+                if (head == "ROOT") != (not joints) or len(joints) >= MAX_JOINTS:
+                    raise FileError(path, f"{head} is not allowed here; one root, {MAX_JOINTS} joints", number + 1)
+                joints.append(_Joint(" ".join(words[1:]) or f"joint{len(joints)}", parent))
+                coming = len(joints) - 1
+            elif head == "END":
+                coming = None
+            elif head == "{":
+                open_.append(coming)
+            elif head == "}":
+                open_.pop()
+            elif head == "OFFSET":
+                _offset(joints, open_, words)
+            elif head == "CHANNELS":
+                joints[open_[-1] or 0].channels = _channels(words)
+            elif head != "HIERARCHY":
+                raise FileError(path, f"{words[0][:40]!r} is no word of a BVH hierarchy", number + 1)
+        except (ValueError, IndexError, KeyError) as error:
+            raise FileError(path, f"{line.strip()[:60]!r} cannot be understood", number + 1) from error
+    raise FileError(path, "has no MOTION section; it is no BVH file or cut off")
+
+
+def _offset(joints: list[_Joint], open_: list[int | None], words: list[str]) -> None:
+    x, y, z = (float(w) for w in words[1:4])
+    if not all(math.isfinite(v) for v in (x, y, z)):
+        raise ValueError
+    here = open_[-1]
+    if here is None:
+        joints[next(j for j in reversed(open_) if j is not None)].end = (x, y, z)
+    else:
+        joints[here].offset = (x, y, z)
+
+
+def _channels(words: list[str]) -> list[str]:
+    names = [w[:1].upper() + w[1:].lower() for w in words[2:]]
+    if int(words[1]) != len(names) or len(names) > 6 or not all(name in _CHANNELS for name in names):
+        raise ValueError
+    return names
+
+
+def _frames(path: Path, lines: list[str], at: int, width: int) -> tuple[Array, float]:
+    """Values (frames, channels) and the seconds from frame to frame."""
+    try:
+        count = int(lines[at].split(":")[1])
+        frame_time = float(lines[at + 1].split(":")[1])
+    except (IndexError, ValueError) as error:
+        raise FileError(path, "'Frames:' and 'Frame Time:' must follow MOTION", at + 1) from error
+    if not 0 < frame_time < 60 or not 0 < count <= len(lines):
+        raise FileError(path, "the number of frames or the frame time is out of range", at + 1)
+    rows = [(n, line) for n, line in enumerate(lines[at + 2 :], at + 3) if line.strip()][:count]
+    if len(rows) < count:
+        raise FileError(path, f"has {len(rows)} of {count} frames; it is cut off", len(lines))
+    out = np.empty((count, width))
+    for i, (number, line) in enumerate(rows):
+        try:
+            out[i] = np.array(line.split(), dtype=np.float64)
+        except ValueError as error:
+            raise FileError(path, f"a frame does not have the {width} numbers of its channels", number) from error
+    if not np.isfinite(out).all():
+        raise FileError(path, "a frame holds values that are not numbers", at + 3)
+    return out, frame_time
+
+
+def _turns(channels: list[str], values: Array) -> Array:
+    """Local rotations (f, 4): the product of the axis turns in the order of the channels."""
+    out = np.tile([1.0, 0.0, 0.0, 0.0], (len(values), 1))
+    for k, name in enumerate(channels):
+        kind, axis = _CHANNELS[name]
+        if kind == "rotation":
+            out = quat.multiply(out, quat.from_axis_angle(np.eye(3)[axis], np.radians(values[:, k])))
+    return out
+
+
+def _places(joint: _Joint, values: Array) -> Array:
+    """Place (f, 3) relative to the parent."""
+    out = np.tile(np.array(joint.offset), (len(values), 1))
+    for k, name in enumerate(joint.channels):
+        kind, axis = _CHANNELS[name]
+        if kind == "position":
+            out[:, axis] = values[:, k]
+    return out
+
+
+def _scale(joints: list[_Joint]) -> float:
+    """The unit that makes the skeleton at rest most like a human in height."""
+    rest: list[Array] = []
+    ends: list[Array] = []
+    for joint in joints:
+        above = rest[joint.parent] if joint.parent >= 0 else np.zeros(3)
+        rest.append(above + joint.offset)
+        ends.append(rest[-1] + (joint.end or (0.0, 0.0, 0.0)))
+    height = float(np.ptp(np.array(rest + ends), axis=0).max())
+    return min(UNITS, key=lambda unit: abs(math.log(max(height, 1e-9) * unit / _HUMAN)))
+
+
+def _depth_first(skeleton: Skeleton) -> list[int]:
+    """Joints in the order a BVH file lists them."""
+    children: dict[int, list[int]] = {}
+    for j, p in enumerate(skeleton.parents.tolist()):
+        children.setdefault(p, []).append(j)
+    order: list[int] = []
+    waiting = [0]
+    while waiting:
+        j = waiting.pop()
+        order.append(j)
+        waiting += reversed(children.get(j, []))
+    return order
+
+
+def _written(skeleton: Skeleton, joint: int, depth: int, units: float) -> list[str]:
+    tab, inner = "\t" * depth, "\t" * (depth + 1)
+    offset = np.zeros(3) if depth == 0 else skeleton.offsets[joint] * units
+    turns = "Zrotation Xrotation Yrotation"
+    place = f"6 Xposition Yposition Zposition {turns}" if depth == 0 else f"3 {turns}"
+    name = "_".join(skeleton.names[joint].split()) or f"joint{joint}"
+    out = [f"{tab}{'JOINT' if depth else 'ROOT'} {name}", f"{tab}{{", f"{inner}OFFSET {_numbers(offset)}"]
+    out.append(f"{inner}CHANNELS {place}")
+    children = np.flatnonzero(skeleton.parents == joint)
+    for child in children.tolist():
+        out += _written(skeleton, child, depth + 1, units)
+    if not len(children):
+        way = skeleton.offsets[joint] / max(float(np.linalg.norm(skeleton.offsets[joint])), 1e-9)
+        out += [f"{inner}End Site", f"{inner}{{", f"{inner}\tOFFSET {_numbers(way * _LEAF * units)}", f"{inner}}}"]
+    return [*out, f"{tab}}}"]
+
+
+def _numbers(values: Array) -> str:
+    return " ".join(f"{x:.6f}" for x in (values + 0.0).tolist())
+
+
+def _zxy(q: Array) -> Array:
+    """Angles (..., 3) in degrees of the turns about z, x, y whose product in this order is q (..., 4)."""
+    m = quat.to_matrix(q)
+    x = np.arcsin(np.clip(m[..., 2, 1], -1.0, 1.0))
+    flat = np.abs(m[..., 2, 1]) < 1.0 - 1e-12
+    z = np.where(flat, np.arctan2(-m[..., 0, 1], m[..., 1, 1]), np.arctan2(m[..., 1, 0], m[..., 0, 0]))
+    y = np.where(flat, np.arctan2(-m[..., 2, 0], m[..., 2, 2]), 0.0)
+    return np.asarray(np.degrees(np.stack([z, x, y], axis=-1)))
