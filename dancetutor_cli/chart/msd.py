@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 _TOKEN = re.compile(rb"//[^\n]*|\\.?|[#:;]", re.DOTALL)
-_COMMENT = re.compile(rb"//[^\n]*")
+_COMMENT_OR_ESCAPE = re.compile(rb"//[^\n]*|\\(.?)", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,62 +21,64 @@ class Tag:
 def scan(data: bytes) -> list[Tag]:
     """All tags of a file in order. A missing `;` is made up for where the games do; text between tags is dropped."""
     tags: list[Tag] = []
-    begin = -1  # offset of the '#' of the open tag, -1 between tags
     params: list[tuple[int, int]] = []
-    start = 0
-
-    def close(end: int) -> None:
-        params.append((start, end))
-        (a, b), *values = params
-        name = decode(without_comments(data[a:b])).strip().upper()
-        tags.append(Tag(name, begin, tuple(values)))
-        params.clear()
-
+    begin = -1  # offset of the '#' of the open tag, -1 between tags
+    start = 0  # where the open value starts
     for match in _TOKEN.finditer(data):
-        at, token = match.start(), data[match.start()]
-        if token in b"/\\":
-            continue
-        if begin < 0:
-            if token == 35:  # '#'
+        at = match.start()
+        token = data[at]
+        if token == 35:  # '#'
+            if begin < 0:
                 begin, start = at, at + 1
-        elif token == 35:
-            if _first_on_line(data, start, at):
-                close(at)
-                begin, start = at, at + 1
-        else:
-            if token == 59:  # ';'
-                close(at)
-                begin = -1
-            else:
+            elif _first_on_line(data, start, at):
                 params.append((start, at))
-                start = at + 1
+                tags.append(_tag(data, begin, params))
+                params, begin, start = [], at, at + 1
+        elif begin >= 0 and token in b":;":
+            params.append((start, at))
+            start = at + 1
+            if token == 59:  # ';'
+                tags.append(_tag(data, begin, params))
+                params, begin = [], -1
     if begin >= 0:
-        close(len(data))
+        params.append((start, len(data)))
+        tags.append(_tag(data, begin, params))
     return tags
 
 
+def _tag(data: bytes, begin: int, params: list[tuple[int, int]]) -> Tag:
+    (a, b), *values = params
+    return Tag(plain(data[a:b]).decode("latin-1").strip().upper(), begin, tuple(values))
+
+
 def _first_on_line(data: bytes, start: int, at: int) -> bool:
+    """Whether only blanks stand between the `#` at an offset and the start of its line or of the open value."""
     j = at
     while j > start and data[j - 1] in b" \t":
         j -= 1
     return j == start or data[j - 1] in b"\r\n"
 
 
-def without_comments(value: bytes) -> bytes:
-    """The value with `//` comments dropped (their LF stays) and `\\` escapes resolved."""
-    if b"//" in value:
-        value = _COMMENT.sub(b"", value)
-    return re.sub(rb"\\(.)", rb"\1", value, flags=re.DOTALL) if b"\\" in value else value
+def plain(value: bytes) -> bytes:
+    """The value as the games see it: `//` comments dropped (their LF stays), `\\` escapes resolved."""
+    if b"//" in value or b"\\" in value:
+        return _COMMENT_OR_ESCAPE.sub(lambda match: match[1] or b"", value)
+    return value
 
 
-def decode(text: bytes) -> str:
-    """Text for display: UTF-8 if it is, else the legacy encoding that fits; control characters are left out."""
-    for encoding in ("utf-8", "cp932", "cp949", "cp1252"):
-        try:
-            decoded = text.decode(encoding)
-            break
-        except UnicodeDecodeError:
-            continue
-    else:
-        decoded = text.decode("latin-1")
-    return "".join(c for c in decoded if c.isprintable() or c in "\n\t").strip("\ufeff")
+def blanked(value: bytes) -> tuple[bytes, frozenset[int]]:
+    """The value at its length: comments and escaping `\\` as blanks; and the offsets of those `\\`.
+
+    A `\\` is no character of its row: whoever looks at single characters must leave out these offsets.
+    """
+    if b"//" not in value and b"\\" not in value:
+        return value, frozenset()
+    escapes: list[int] = []
+
+    def blank(match: re.Match[bytes]) -> bytes:
+        if match[0][:1] == b"/":
+            return b" " * len(match[0])
+        escapes.append(match.start())
+        return b" " + match[1]
+
+    return _COMMENT_OR_ESCAPE.sub(blank, value), frozenset(escapes)

@@ -10,21 +10,55 @@ COLUMNS = {
     "maniax-single": 4, "maniax-double": 8, "techno-single4": 4, "techno-single5": 5, "techno-single8": 8,
     "techno-double4": 8, "techno-double5": 10, "techno-double8": 16, "pnm-five": 5, "pnm-nine": 9, "lights-cabinet": 6,
     "kickbox-human": 4, "kickbox-quadarm": 4, "kickbox-insect": 6, "kickbox-arachnid": 8,
+    # of StepManiaX and SMEditor; the other games know them as unknown
+    "smx-beginner": 3, "smx-single": 5, "smx-double6": 6, "smx-double10": 10, "smx-team": 10,
+    "dance-solodouble": 12, "dance-threedouble": 6,
 }  # fmt: skip
 
-DIFFICULTIES = {
-    "beginner": "Beginner",
-    "easy": "Easy", "basic": "Easy", "light": "Easy",
-    "medium": "Medium", "another": "Medium", "trick": "Medium", "standard": "Medium", "difficult": "Medium",
-    "hard": "Hard", "ssr": "Hard", "maniac": "Hard", "heavy": "Hard",
-    "challenge": "Challenge", "expert": "Challenge", "oni": "Challenge", "smaniac": "Challenge",
-    "edit": "Edit",
+_OLD_STEPS_TYPES = {"para": "para-single", "ez2-single-hard": "ez2-single"}
+
+DIFFICULTIES = ("Beginner", "Easy", "Medium", "Hard", "Challenge", "Edit")
+
+_BY_NAME = {name.lower(): name for name in DIFFICULTIES}
+
+_OLD_DIFFICULTIES = _BY_NAME | {
+    "basic": "Easy", "light": "Easy",
+    "another": "Medium", "trick": "Medium", "standard": "Medium", "difficult": "Medium",
+    "ssr": "Hard", "maniac": "Hard", "heavy": "Hard",
+    "expert": "Challenge", "oni": "Challenge", "smaniac": "Challenge",
 }  # fmt: skip
 
 
-def difficulty(text: str, description: str) -> str:
-    """The difficulty as the games show it; an unknown one is an Edit. Old files say Challenge in the description."""
-    name = DIFFICULTIES.get(text.strip().lower(), "Edit")
-    if name == "Hard" and description.strip().lower() in ("smaniac", "challenge"):
-        return "Challenge"
-    return name
+def steps_type(text: str) -> str:
+    """The steps type in lower case, old names brought to those of today."""
+    name = text.strip().lower()
+    return _OLD_STEPS_TYPES.get(name, name)
+
+
+def is_routine(steps_type: str) -> bool:
+    """Whether `&` splits the note data between players."""
+    return steps_type.endswith("-routine")
+
+
+def is_lights(steps_type: str) -> bool:
+    """Whether the chart is for the lights of a cabinet, not for feet."""
+    return steps_type.startswith("lights")
+
+
+def difficulty(text: str, description: str, meter: int, old: bool) -> tuple[str, bool]:
+    """The difficulty as StepMania 5 and ITGmania show it, and whether the tag itself says so.
+
+    With `old` (.sm) the names of old files are known ("Basic", "Oni", ...), and a Hard described as "smaniac" or
+    "challenge" is Challenge. A name that is none is looked for in the description, then made up from the meter.
+    """
+    described = description.strip().lower()
+    name = (_OLD_DIFFICULTIES if old else _BY_NAME).get(text.strip().lower())
+    if name == "Hard" and old and described in ("smaniac", "challenge"):
+        name = "Challenge"
+    if name:
+        return name, True
+    if described in _BY_NAME:
+        return _BY_NAME[described], False
+    if meter == 1:
+        return "Beginner", False
+    return "Easy" if meter <= 3 else "Medium" if meter <= 6 else "Hard", False

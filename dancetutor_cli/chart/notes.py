@@ -1,44 +1,37 @@
-"""Note data: measures, rows and cells with their byte positions, holds joined with their tails.
+"""Note data: bytes -> measures, rows and cells with their positions.
 
-The regular case (rows as wide as the pad, nothing odd) is read with numpy at once; odd rows go one by one.
+Whole charts are read with numpy at once; only rows with unknown characters or keysounds go one by one.
 """
 
 from __future__ import annotations
 
 import itertools
-import re
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import (
-    TICKS_PER_MEASURE,
-    Kind,
-    MeasureTable,
-    NoteTable,
-    ReadWarning,
-    RowTable,
-)
+from dancetutor_cli.chart.holds import TAIL, Cells, joined, report
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
+from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.timing import Timing
 
-_COMMENT = re.compile(rb"//[^\n]*")
-_ODD_CELL = re.compile(rb"\[([^\]]*)\]?|.", re.DOTALL)
-_TAIL, _UNKNOWN = 100, 101
-_SPACE = np.zeros(256, dtype=bool)
-_SPACE[[9, 10, 11, 12, 13, 32]] = True
-_CELL = np.full(256, _UNKNOWN, dtype=np.uint8)
-for _letters, _kind in (
-    (b"0", Kind.EMPTY), (b"1", Kind.TAP), (b"2", Kind.HOLD), (b"4", Kind.ROLL), (b"3", _TAIL), (b"Mm", Kind.MINE),
-    (b"Ll", Kind.LIFT), (b"Ff", Kind.FAKE), (b"Kk", Kind.KEYSOUND),
-):  # fmt: skip
-    for _letter in _letters:
-        _CELL[_letter] = _kind
+_LF, _COMMA, _AMPERSAND, _BRACKET = 10, 44, 38, 91
+_UNKNOWN = 101
+_PLAYERS = 2
+_TOO_SHORT = "the row has fewer than {} columns; missing ones are read as empty"
+_TOO_LONG = "the row is longer than {} columns; the rest is ignored"
+_BLANK = np.zeros(256, dtype=bool)
+_BLANK[[9, 10, 13, 32]] = True
+_KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
+_KIND[list(b"01234MLFK")] = (
+    Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class NoteData:
-    """What a note data value holds."""
+    """What a note data value holds. Rows and measures are those of the first player."""
 
     notes: NoteTable
     rows: RowTable
@@ -50,7 +43,7 @@ class LineIndex:
     """Byte offset -> 1-based line of a file."""
 
     def __init__(self, data: bytes) -> None:
-        self._breaks = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == 10)
+        self._breaks = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == _LF)
 
     def __call__(self, offset: int) -> int:
         return int(np.searchsorted(self._breaks, offset, side="left")) + 1
@@ -59,130 +52,125 @@ class LineIndex:
         return (np.searchsorted(self._breaks, offsets, side="left") + 1).astype(np.int32)
 
 
-def first_row(data: bytes, span: tuple[int, int]) -> bytes:
-    """The first row of a note data value: its length tells the columns of an unknown steps type."""
-    text = _COMMENT.sub(b"", data[span[0] : span[1]]).split(b",")[0]
-    rows = [row.strip() for row in text.split(b"\n") if row.strip()]
-    return rows[0] if rows else b""
+def width_of_first_row(data: bytes, span: tuple[int, int]) -> int:
+    """How many columns an unknown steps type has: the characters of its first row, at least 1."""
+    value, _ = blanked(data[span[0] : span[1]])
+    text = value.split(b",", 1)[0].strip(b"\r\n\t ")
+    return min(max(len(text.split(b"\n", 1)[0].strip(b"\r\n\t ")), 1), 64)
 
 
-def read_notes(data: bytes, span: tuple[int, int], columns: int, timing: Timing, lines: LineIndex) -> NoteData:
-    """Read the note data in `data[start:end]` of a chart with so many columns."""
+def read_notes(
+    data: bytes, span: tuple[int, int], columns: int, timing: Timing, lines: LineIndex, *, routine: bool, trimmed: bool
+) -> NoteData:
+    """Read the note data in `data[start:end]` of a chart with so many columns.
+
+    Parameters
+    ----------
+    routine : `&` splits it between two players (elsewhere it is an unknown character)
+    trimmed : blank lines before a first `,` are no measure (as the games have it in .sm files)
+    """
     start, end = span
-    value = data[start:end]
-    if b"//" in value:
-        value = _COMMENT.sub(lambda m: b" " * len(m[0]), value)
-    if value.endswith(b"\\"):  # a lone escape at the end of the file
-        value = value[:-1] + b" "
+    value, escapes = blanked(data[start:end])
+    view = np.frombuffer(value, dtype=np.uint8)
+    begin = len(value) - len(value.lstrip(b"\r\n\t ")) if trimmed else 0
     parts = [(0, len(value))]
-    if b"&" in value:  # routine charts: one grid for each player
-        cuts = [-1, *(m.start() for m in re.finditer(rb"&", value)), len(value)]
-        parts = [(a + 1, b) for a, b in itertools.pairwise(cuts)]
-    grids = [_Grid(value, part, start, columns, lines) for part in parts]
-    warnings = [w for grid in grids for w in grid.warnings]
+    if routine:
+        cuts = [-1, *np.flatnonzero(view == _AMPERSAND).tolist(), len(value)]
+        parts = [(a + 1, b) for a, b in itertools.pairwise(cuts)][:_PLAYERS]
+    warnings: list[ReadWarning] = []
+    grids = [_Grid(view, part, start, lines, begin) for part in parts]
     if len(parts) > 1:
-        warnings.append(
-            ReadWarning("several-players", "the chart is for several players ('&'); read as one", lines(start))
-        )
-    tick, column, code, line, order = (np.concatenate([g.cells[i] for g in grids]) for i in range(5))
-    notes = _notes(tick, column, code, line, order, timing, warnings)
-    return NoteData(notes, grids[0].row_table(), grids[0].measure_table(), tuple(warnings))
+        text = "the chart is for several players ('&'); their notes are read as one"
+        warnings.append(ReadWarning("several-players", text, lines(start)))
+    players = [joined(grid.cells(value, escapes, columns, warnings), warnings) for grid in grids]
+    return NoteData(_table(players, timing), grids[0].row_table(), grids[0].measure_table(), tuple(warnings))
+
+
+def _table(players: list[Cells], timing: Timing) -> NoteTable:
+    cells = players[0]
+    if len(players) > 1:
+        both = (np.concatenate([getattr(p, name) for p in players]) for name in Cells.__slots__)
+        cells = Cells(*both)
+    cells = cells[np.lexsort((cells.column, cells.tick))]
+    if len(players) > 1 and len(cells.tick) > 1:
+        same = (np.diff(cells.tick) == 0) & (np.diff(cells.column) == 0)
+        cells = cells[np.append(~same, True)]
+    judged = timing.judged(cells.tick) & (cells.kind != Kind.FAKE) & (cells.kind != Kind.KEYSOUND)
+    return NoteTable(
+        cells.tick, cells.column.astype(np.int16), cells.kind.astype(np.uint8), cells.end,
+        cells.line.astype(np.int32), judged,
+    )  # fmt: skip
 
 
 class _Grid:
-    """The measures and rows of one player."""
+    """The measures and rows of one player; `first` and `last` are the spans of the trimmed rows in the value."""
 
-    def __init__(self, value: bytes, part: tuple[int, int], base: int, columns: int, lines: LineIndex) -> None:
-        self.base, self.columns, self.lines = base, columns, lines
-        self.warnings: list[ReadWarning] = []
-        view = np.frombuffer(value, dtype=np.uint8)
+    def __init__(self, view: NDArray[np.uint8], part: tuple[int, int], base: int, lines: LineIndex, begin: int) -> None:
+        self.view, self.base, self.lines = view, base, lines
         lo, hi = part
-        cut = np.flatnonzero((view[lo:hi] == 10) | (view[lo:hi] == 44)) + lo
-        begins = np.concatenate([[lo], cut + 1]).astype(np.int64)
-        ends = np.concatenate([cut, [hi]]).astype(np.int64)
-        solid = np.flatnonzero(~_SPACE[view[lo:hi]]) + lo
-        solid = solid[view[solid] != 44]
-        i, j = np.searchsorted(solid, begins), np.searchsorted(solid, ends)
-        keep = j > i
-        self.first = solid[i[keep]].astype(np.int64) if keep.any() else np.zeros(0, np.int64)
-        self.last = solid[j[keep] - 1].astype(np.int64) + 1 if keep.any() else np.zeros(0, np.int64)
-        self._measures(view, lo, hi)
-        self._cells(value, view)
-
-    def _measures(self, view: NDArray[np.uint8], lo: int, hi: int) -> None:
-        commas = np.flatnonzero(view[lo:hi] == 44) + lo
-        opens = np.concatenate([[lo], commas + 1]).astype(np.int64)
-        closes = np.concatenate([commas, [hi]]).astype(np.int64)
+        here = view[lo:hi]
+        commas = np.flatnonzero(here == _COMMA) + lo
+        cuts = np.flatnonzero((here == _LF) | (here == _COMMA)) + lo
+        solid = np.flatnonzero(~_BLANK[here]) + lo
+        solid = solid[view[solid] != _COMMA]
+        i = np.searchsorted(solid, np.concatenate([[lo], cuts]))
+        j = np.append(i[1:], len(solid))
+        rows = j > i
+        self.first, self.last = solid[i[rows]], solid[j[rows] - 1] + 1
+        opens, closes = np.append(lo, commas + 1), np.append(commas, hi)
         real = closes > opens  # zero bytes between two commas are no measure
+        real[0] &= closes[0] > begin
         self.anchor = opens[real]
         self.row_first = np.searchsorted(self.first, self.anchor)
         self.row_count = np.searchsorted(self.first, closes[real]) - self.row_first
         self.measure = np.repeat(np.arange(len(self.anchor)), self.row_count)
-        if len(self.first) == 0:
-            self.tick = np.zeros(0, np.int64)
-            return
-        n = self.row_count[self.measure]
+        count = self.row_count[self.measure]
         scaled = TICKS_PER_MEASURE * (np.arange(len(self.first)) - self.row_first[self.measure])
-        whole, rest = scaled // n, scaled % n
-        up = (2 * rest > n) | ((2 * rest == n) & (whole % 2 == 1))
-        self.tick = self.measure * TICKS_PER_MEASURE + whole + up
-        self.line = self.lines.many(self.first + self.base)
+        whole, rest = np.divmod(scaled, np.maximum(count, 1))
+        up = (2 * rest > count) | ((2 * rest == count) & (whole % 2 == 1))  # halves to even
+        self.tick = (self.measure * TICKS_PER_MEASURE + whole + up).astype(np.int64)
+        self.line = lines.many(self.first + base)
 
-    def _cells(self, value: bytes, view: NDArray[np.uint8]) -> None:
-        found: list[tuple[NDArray[np.int64], ...]] = []
+    def cells(self, value: bytes, escapes: frozenset[int], columns: int, warnings: list[ReadWarning]) -> Cells:
+        """The non-empty cells, in file order."""
         width = self.last - self.first
-        regular = width == self.columns
-        if regular.any():
-            rows = np.flatnonzero(regular)
-            grid = view[self.first[rows][:, None] + np.arange(self.columns)]
-            code = _CELL[grid]
-            odd = (code == _UNKNOWN).any(axis=1)
-            regular[rows[odd]] = False
-            rows, code = rows[~odd], code[~odd]
-            r, c = np.nonzero(code)
-            found.append((rows[r], c, code[r, c].astype(np.int64)))
-        odd_rows = np.flatnonzero(~regular)
-        for n, row in enumerate(odd_rows):
-            cells = self._odd_row(value[self.first[row] : self.last[row]], int(self.line[row]), quiet=n >= 20)
-            full = [(int(row), c, k) for c, k in enumerate(cells) if k]
-            if full:
-                found.append(tuple(np.array(full, dtype=np.int64).T))
-        if len(odd_rows) > 20:
-            more = f"{len(odd_rows) - 20} more odd rows"
-            self.warnings.append(ReadWarning("odd-row", more, int(self.line[odd_rows[20]])))
-        empty = np.zeros(0, np.int64)
-        rows, column, code = (np.concatenate([f[i] for f in found] or [empty]) for i in range(3))
-        ticks = self.tick[rows] if len(rows) else empty
-        lines = self.line[rows].astype(np.int64) if len(rows) else empty
-        self.cells = (ticks, column, code, lines, rows)
+        index = self.first[:, None] + np.arange(columns)
+        short, long = width < columns, width > columns
+        if short.any():
+            index = np.minimum(index, len(self.view) - 1)
+        kinds = _KIND[self.view[index]] if len(self.first) else np.zeros((0, columns), np.uint8)
+        if short.any():
+            kinds[np.arange(columns) >= width[:, None]] = Kind.EMPTY
+        odd = (kinds == _UNKNOWN).any(axis=1)
+        odd[long] |= self.view[self.first[long] + columns] == _BRACKET
+        if escapes:
+            odd |= np.isin(np.arange(len(odd)), self._rows_at(sorted(escapes)))
+        findings: dict[tuple[str, str], list[int]] = {}
+        for row in np.flatnonzero(odd).tolist():
+            raw = value[self.first[row] : self.last[row]]
+            if escapes:
+                raw = bytes(c for at, c in enumerate(raw, int(self.first[row])) if at not in escapes)
+            kinds[row], found = _odd_row(raw, columns)
+            for finding in found:
+                findings.setdefault(finding, []).append(int(self.line[row]))
+        for (code, text), found_at in findings.items():
+            report(warnings, code, text, np.array(found_at))
+        for which, code, text in (
+            (short & ~odd, "short-row", _TOO_SHORT.format(columns)),
+            (long & ~odd, "long-row", _TOO_LONG.format(columns)),
+        ):
+            report(warnings, code, text, self.line[which].astype(np.int64))
+        at_row, column = np.nonzero(kinds)
+        end = np.full(len(at_row), -1, dtype=np.int64)
+        kind = kinds[at_row, column].astype(np.int64)
+        return Cells(self.tick[at_row], column, kind, self.line[at_row].astype(np.int64), end)
 
-    def _odd_row(self, text: bytes, line: int, quiet: bool) -> list[int]:
-        cells: list[int] = []
-        codes: dict[str, str] = {}
-        if b"{" in text:
-            codes["compound-note"] = "compound notes in {...} are not supported; read letter by letter, as the games do"
-        for match in _ODD_CELL.finditer(text.replace(b"\\", b"")):
-            token = match[0]
-            if token[:1] == b"[":
-                if match[1] is None or not match[1].strip().isdigit() or len(match[1]) > 9:
-                    codes["odd-keysound"] = "a keysound that is not a small number is ignored"
-            elif len(cells) == self.columns:
-                codes["long-row"] = f"the row is longer than {self.columns} columns; the rest is ignored"
-                break
-            elif _CELL[token[0]] == _UNKNOWN:
-                codes["unknown-note"] = f"{_shown(token)} is no note; the column is read as empty"
-                cells.append(0)
-            else:
-                cells.append(int(_CELL[token[0]]))
-        if len(cells) < self.columns:
-            codes["short-row"] = f"the row has {len(cells)} of {self.columns} columns; missing ones are read as empty"
-        if not quiet:
-            self.warnings.extend(ReadWarning(code, message, line) for code, message in codes.items())
-        return cells
+    def _rows_at(self, offsets: list[int]) -> NDArray[np.intp]:
+        return np.searchsorted(self.first, np.array(offsets), side="right") - 1
 
     def row_table(self) -> RowTable:
-        line = self.line if len(self.first) else np.zeros(0, np.int32)
-        return RowTable(self.first + self.base, self.last + self.base, line, self.tick, self.measure.astype(np.int32))
+        measure = self.measure.astype(np.int32)
+        return RowTable(self.first + self.base, self.last + self.base, self.line, self.tick, measure)
 
     def measure_table(self) -> MeasureTable:
         anchor = self.anchor + self.base
@@ -190,47 +178,33 @@ class _Grid:
         return MeasureTable(anchor, line, self.row_first.astype(np.int32), self.row_count.astype(np.int32))
 
 
-def _shown(token: bytes) -> str:
-    return f"'{chr(token[0])}'" if 32 < token[0] < 127 else f"byte {token[0]:#04x}"
+def _odd_row(text: bytes, columns: int) -> tuple[list[int], list[tuple[str, str]]]:
+    """The cells of one row, character by character, as the games go; and what is odd about it: code, message."""
+    cells: list[int] = []
+    found: dict[tuple[str, str], None] = {}
+    at = 0
+    while at < len(text) and len(cells) < columns:
+        kind = int(_KIND[text[at]])
+        if kind == _UNKNOWN:
+            found[_unknown(text, at)] = None
+            kind = Kind.EMPTY
+        cells.append(kind)
+        at += 1
+        if text[at : at + 1] == b"[":
+            close = text.find(b"]", at)
+            number = text[at + 1 : close if close >= 0 else len(text)].strip()
+            if close < 0 or not number.isdigit() or len(number) > 9:
+                found["odd-keysound", "a keysound that is not a small number in [...] is ignored"] = None
+            at = close + 1 if close >= 0 else len(text)
+    if at < len(text):
+        found["long-row", _TOO_LONG.format(columns)] = None
+    if len(cells) < columns:
+        found["short-row", _TOO_SHORT.format(columns)] = None
+    return cells + [Kind.EMPTY] * (columns - len(cells)), list(found)
 
 
-def _notes(
-    tick: NDArray[np.int64], column: NDArray[np.int64], code: NDArray[np.int64], line: NDArray[np.int64],
-    order: NDArray[np.int64], timing: Timing, warnings: list[ReadWarning],
-) -> NoteTable:  # fmt: skip
-    """Sort the cells, let the last of two on one tick count, join heads with tails, drop what matches nothing."""
-    by = np.lexsort((order, tick, column))
-    tick, column, code, line = tick[by], column[by], code[by], line[by]
-    same = np.zeros(len(tick), dtype=bool)  # replaced by a later cell on the same tick and column
-    if len(tick) > 1:
-        same[:-1] = (tick[1:] == tick[:-1]) & (column[1:] == column[:-1]) & (code[1:] != _TAIL) & (code[:-1] != _TAIL)
-    if same.any():
-        text = f"{int(same.sum())} notes share a 192nd with a later one of their column and are lost"
-        warnings.append(ReadWarning("row-collision", text, int(line[same][0])))
-    tick, column, code, line = tick[~same], column[~same], code[~same], line[~same]
-
-    end = np.full(len(tick), -1, dtype=np.int64)
-    acting = np.flatnonzero(code != Kind.KEYSOUND)
-    head = (code[acting] == Kind.HOLD) | (code[acting] == Kind.ROLL)
-    tail = code[acting] == _TAIL
-    joined = np.zeros(len(acting), dtype=bool)
-    if len(acting) > 1:
-        joined[:-1] = head[:-1] & tail[1:] & (column[acting][1:] == column[acting][:-1])
-    end[acting[joined]] = tick[acting[np.flatnonzero(joined) + 1]]
-    keep = code != _TAIL
-    lost = acting[head & ~joined]
-    keep[lost] = False
-    matched = np.zeros(len(acting), dtype=bool)
-    matched[1:] = joined[:-1]
-    for where, name, text in (
-        (lost, "unmatched-head", "a hold or roll has no end and is dropped"),
-        (acting[tail & ~matched], "unmatched-tail", "the end of a hold or roll has no head and is dropped"),
-    ):
-        warnings.extend(ReadWarning(name, text, int(line[i])) for i in where[:20])
-        if len(where) > 20:
-            warnings.append(ReadWarning(name, f"{len(where) - 20} more like this", int(line[where[20]])))
-    tick, column, code, line, end = tick[keep], column[keep], code[keep], line[keep], end[keep]
-    by = np.lexsort((column, tick))
-    tick, column, code, line, end = tick[by], column[by], code[by], line[by], end[by]
-    judged = timing.judged(tick) & (code != Kind.FAKE) & (code != Kind.KEYSOUND)
-    return NoteTable(tick, column.astype(np.int16), code.astype(np.uint8), end, line.astype(np.int32), judged)
+def _unknown(text: bytes, at: int) -> tuple[str, str]:
+    if b"{" in text[: at + 1]:
+        return "compound-note", "notes in {...} are not supported; the row is read letter by letter"
+    shown = f"'{chr(text[at])}'" if 32 < text[at] < 127 else f"byte {text[at]:#04x}"
+    return "unknown-note", f"{shown} is no note; the column is read as empty"

@@ -1,24 +1,26 @@
-"""From the text of timing tags to segments: exact decimals, junk named in warnings, negative values as warps."""
+"""From the text of timing tags to segments in beats: exact decimals; junk is named in warnings, not guessed."""
 
 from __future__ import annotations
 
 import math
-import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from dancetutor_cli.chart.decimals import beat, number, tick_of
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
+from dancetutor_cli.chart.timing import Segments
 
 FAST_BPM = 9_999_999  # anything faster is a warp, as the games have it
 MAX_BEAT = 2**30 // TICKS_PER_BEAT  # beyond this row numbers overflow in the games
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 
-Pairs = list[tuple[Fraction, Fraction]]
+Pairs = list[tuple[Fraction, Fraction]]  # (beat, value) in file order
+Warn = Callable[[str, str], None]  # code, message
 
 
 @dataclass(slots=True)
 class Raw:
-    """Segments of one song or chart as written, (beat, value) sorted by beat."""
+    """Segments of one song or chart in beats: BPM, seconds, seconds, beats, beats; offset in seconds."""
 
     bpms: Pairs = field(default_factory=list)
     stops: Pairs = field(default_factory=list)
@@ -28,105 +30,93 @@ class Raw:
     offset: Fraction = Fraction(0)
 
 
-def number(text: str) -> Fraction | None:
-    """The decimal at the start of a text, as C's strtof reads it; None for junk and what is not finite."""
-    match = _NUMBER.match(text)
-    if match is None:
-        return None
-    _mantissa, _, exponent = match[1].lower().partition("e")
-    if exponent and abs(int(exponent)) > 60:
-        return None
-    return Fraction(match[1])
+def entries(text: str) -> list[tuple[str, list[str]]]:
+    """The entries of `a=b,a=b`, each with its parts; empty parts do not count, as in the games."""
+    return [(entry, [p for p in entry.split("=") if p]) for entry in text.split(",") if entry.strip()]
 
 
-def tick_of(beat: Fraction) -> int:
-    """Beat to ticks of 1/48, halves to even."""
-    return round(beat * TICKS_PER_BEAT)
-
-
-def pairs(text: str, tag: str, line: int, warnings: list[ReadWarning]) -> Pairs:
-    """The entries of `beat=value,beat=value`; a beat may be given in rows with the suffix `r`."""
+def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
+    """The usable entries of `beat=value,beat=value` in file order. Only with `negative` may value and beat be so."""
     out: Pairs = []
-    for entry in text.split(","):
-        if not entry.strip():
+    for entry, parts in entries(text):
+        if len(parts) != 2:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' has not exactly one '=' and is ignored")
             continue
-        left, equals, right = entry.partition("=")
-        beat, value = number(left), number(right)
-        if not equals or beat is None or value is None or abs(beat) > MAX_BEAT or not math.isfinite(float(value)):
-            shown = " ".join(entry.split())[:40]
-            warnings.append(ReadWarning("odd-timing", f"{tag} entry '{shown}' cannot be used and is ignored", line))
-            continue
-        if left.strip().lower().endswith("r"):
-            beat /= TICKS_PER_BEAT
-        out.append((beat, value))
-    return sorted(out, key=lambda pair: pair[0])
-
-
-def last_of_each_beat(segments: Pairs) -> Pairs:
-    """Of several entries on one tick the last counts."""
-    return list({tick_of(beat): (beat, value) for beat, value in segments}.values())
-
-
-def negative_to_warps(raw: Raw, warnings: list[ReadWarning], line: int) -> Raw:
-    """.sm files: negative or infinite BPMs and negative stops become warps, as StepMania 5 reads them.
-
-    Time is followed through the changes; while it lies behind where it first ran backwards, the beats are a warp.
-    """
-    out = Raw(delays=raw.delays, warps=list(raw.warps), fakes=raw.fakes, offset=raw.offset)
-    out.offset -= sum((value for beat, value in raw.stops if beat < 0), Fraction(0))
-    stops = [(beat, value) for beat, value in raw.stops if beat >= 0]
-    bpm = Fraction(0)
-    bpms = [(beat, value) for beat, value in raw.bpms if beat > 0]
-    for beat, value in raw.bpms:
-        if beat <= 0 and value > 0:
-            bpm = value
-    if bpm == 0 and bpms:
-        bpm = bpms.pop(0)[1]
-    if bpm == 0:
-        bpm = Fraction(60)
-    if 0 < bpm <= FAST_BPM:
-        out.bpms.append((Fraction(0), bpm))
-    changes = sorted([(b, 0, v) for b, v in bpms] + [(b, 1, v) for b, v in stops], key=lambda c: c[:2])
-    warp_start: Fraction | None = None
-    before_warp, behind, previous = bpm, Fraction(0), Fraction(0)
-    if any(v < 0 for _, _, v in changes) or bpm < 0:
-        warnings.append(ReadWarning("negative-timing", "negative BPMs or stops: read as warps", line))
-    if bpm < 0 or bpm > FAST_BPM:
-        warp_start = Fraction(0)
-
-    def end_warp(end: Fraction) -> None:
-        assert warp_start is not None
-        out.warps.append((warp_start, end - warp_start))
-        if 0 < bpm <= FAST_BPM and bpm != before_warp:
-            out.bpms.append((warp_start, bpm))
-
-    for beat, is_stop, value in changes:
-        if abs(bpm) <= FAST_BPM:
-            behind += (beat - previous) * 60 / bpm
-            if warp_start is not None and bpm > 0 and behind > 0:
-                end_warp(beat - behind * bpm / 60)
-                warp_start = None
-        previous = beat
-        if not is_stop:
-            fast = value < 0 or value > FAST_BPM
-            if warp_start is None and fast:
-                warp_start, before_warp, behind = beat, bpm, Fraction(0)
-            elif warp_start is None:
-                out.bpms.append((beat, value))
-            bpm = value
-        elif warp_start is None and value < 0:
-            warp_start, before_warp, behind = beat, bpm, value
-        elif warp_start is None:
-            out.stops.append((beat, value))
+        (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
+        if abs(at) > MAX_BEAT:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' is beyond every song and is ignored")
+        elif (value < 0 or (at < 0 and tag in ("BPMS", "STOPS"))) and not negative:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' is negative and is ignored")
+        elif value == 0:
+            if not clean_value or tag != "STOPS":
+                warn("odd-timing", f"{tag} entry '{shown(entry)}' has no usable value and is ignored")
         else:
-            behind += value
-            if value > 0 and behind > 0:
-                end_warp(beat)
-                out.stops.append((beat, behind))
-                fast = bpm < 0 or bpm > FAST_BPM
-                warp_start, before_warp, behind = (beat, bpm, Fraction(0)) if fast else (None, bpm, Fraction(0))
-    if warp_start is not None:
-        fast = bpm < 0 or bpm > FAST_BPM
-        end_warp(Fraction(MAX_BEAT) if fast else previous - behind * bpm / 60)
-    out.warps.sort()
+            if not clean or not clean_value:
+                read = f"{float(at):g}={float(value):g}"
+                warn("odd-timing", f"{tag} entry '{shown(entry)}' is no pair of numbers; read as {read}")
+            out.append((at, value))
     return out
+
+
+def shown(text: str) -> str:
+    """The start of a text on one line, for messages."""
+    return " ".join(text.split())[:40]
+
+
+def at_ticks(segments: Pairs) -> Segments:
+    """Beats to ticks; of several entries on one tick the last counts."""
+    return tuple(sorted({tick_of(at): value for at, value in segments}.items()))
+
+
+def lengths_at_ticks(segments: Pairs) -> Segments:
+    """The same for warps and fakes, whose values are lengths: whole ticks too."""
+    found = {tick_of(at): tick_of(length) for at, length in segments}
+    return tuple((at, Fraction(length)) for at, length in sorted(found.items()) if length > 0)
+
+
+def holds_segment(tag: str, text: str) -> bool:
+    """Whether a chart's own timing tag holds a segment, so that the chart leaves the song's timing.
+
+    Source: the games' readers of TIMESIGNATURES, TICKCOUNTS, COMBOS, SPEEDS, SCROLLS and LABELS. The other timing
+    tags are asked through their pairs; an OFFSET alone switches nothing.
+    """
+    least = {"TIMESIGNATURES": 3, "TICKCOUNTS": 2, "COMBOS": 2, "SPEEDS": 3, "SCROLLS": 2, "LABELS": 2}[tag]
+    for _, parts in entries(text):
+        if len(parts) < least or (tag in ("TICKCOUNTS", "LABELS") and len(parts) != 2):
+            continue
+        numbers = [number(p)[0] for p in parts]
+        if tag == "TIMESIGNATURES" and (numbers[1] < 1 or numbers[2] < 1):
+            continue
+        if numbers[0] >= 0 or tag in ("TICKCOUNTS", "COMBOS"):
+            return True
+    return False
+
+
+def odd_signatures(text: str) -> list[str]:
+    """Entries of TIMESIGNATURES that the games ignore."""
+    out = []
+    for entry, parts in entries(text):
+        numbers = [math.trunc(number(p)[0]) for p in parts[:3]]
+        if len(numbers) < 3 or numbers[0] < 0 or numbers[1] < 1 or numbers[2] < 1:
+            out.append(shown(entry))
+    return out
+
+
+def warner(into: list[ReadWarning], line: int) -> Warn:
+    """A function that adds warnings about one line; of more than 20 with one code the rest is only counted."""
+    seen: dict[str, int] = {}
+
+    def warn(code: str, message: str) -> None:
+        seen[code] = seen.get(code, 0) + 1
+        if seen[code] <= 20:
+            into.append(ReadWarning(code, message, line))
+        elif seen[code] == 21:
+            into.append(ReadWarning(code, "more like these on this line", line))
+
+    return warn
+
+
+def overlaps(warps: Sequence[tuple[Fraction, Fraction]]) -> list[Fraction]:
+    """Beats at which a warp starts inside the one before."""
+    order = sorted(warps)
+    return [order[i + 1][0] for i in range(len(order) - 1) if order[i + 1][0] < sum(order[i])]

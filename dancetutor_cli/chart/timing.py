@@ -1,12 +1,14 @@
-"""Beat to second and back, as StepMania 5 and ITGmania count: BPMs, stops, delays, warps, fake segments, offset.
+"""Beats and seconds of a chart: BPMs, stops, delays, warps and fakes as StepMania 5 and ITGmania run them.
 
-Everything is kept as exact fractions of the decimals in the file; floats are made from them once.
+Segments are kept as exact fractions of the decimals in the file; floats are made from them once.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from bisect import bisect_right
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,25 +16,19 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 
 Segments = tuple[tuple[int, Fraction], ...]  # (tick, value), sorted, one per tick
+_FIXED = 1 << 80  # sums of seconds are kept in these parts of a second: no float noise, no endless fractions
+_LONGEST = 1 << 2000  # sums of fractions with longer denominators are cut to _FIXED: thousands of changes in one gap
 _FAR = 1 << 40  # a tick beyond every chart
-
-
-@dataclass(frozen=True, slots=True)
-class _Knots:
-    """Piecewise linear time. Knot i: tick, second there (of notes, after all of it), seconds per tick from there on."""
-
-    tick: NDArray[np.int64]
-    note: NDArray[np.float64]
-    after: NDArray[np.float64]
-    rate: NDArray[np.float64]
-    exact: tuple[tuple[Fraction, Fraction, Fraction], ...]  # delay at the knot, stop at the knot, rate
 
 
 @dataclass(frozen=True)
 class Timing:
-    """The timing of a song or of a chart of its own. Segments are (tick, value); values in BPM, seconds or ticks.
+    """The timing of a song or of a chart of its own. Segments are (tick, value), sorted, one per tick.
 
-    bpms : never empty, the first at tick 0, all positive; offset : seconds, as in the file (beat 0 is at -offset)
+    bpms : BPM, never empty, the first at tick 0, all positive
+    stops, delays : seconds
+    warps, fakes : length in ticks
+    offset : seconds as in the file; beat 0 is at second -offset
     """
 
     bpms: Segments
@@ -41,90 +37,154 @@ class Timing:
     warps: Segments = ()
     fakes: Segments = ()
     offset: Fraction = Fraction(0)
-    _knots: _Knots = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not self.bpms or any(value <= 0 for _, value in self.bpms):
             raise ValueError("BPMs must be there and positive")
-        object.__setattr__(self, "_knots", _walk(self))
 
     def seconds(self, ticks: NDArray[np.int64]) -> NDArray[np.float64]:
         """Second of a note on each tick, from the start of the music: after a delay, before a stop on it."""
-        ticks = np.asarray(ticks, dtype=np.int64)
-        k = self._knots
-        i = np.clip(np.searchsorted(k.tick, ticks, side="right") - 1, 0, None)
-        moved = k.after[i] + (ticks - k.tick[i]) * k.rate[i]
-        return np.where(ticks == k.tick[i], k.note[i], moved)
+        return self._knots.seconds(np.asarray(ticks, dtype=np.int64))
 
     def seconds_of_beats(self, beats: NDArray[np.float64]) -> NDArray[np.float64]:
         """Second of each beat, not rounded to ticks; a beat on a stop is the note's second."""
-        t = np.asarray(beats, dtype=np.float64) * TICKS_PER_BEAT
-        k = self._knots
-        i = np.clip(np.searchsorted(k.tick, t, side="right") - 1, 0, None)
-        moved = k.after[i] + (t - k.tick[i]) * k.rate[i]
-        return np.where(t == k.tick[i], k.note[i], moved)
+        return self._knots.seconds(np.asarray(beats, dtype=np.float64) * TICKS_PER_BEAT)
 
     def beats(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Beat at each second; it rests during stops and delays, and jumps over warps."""
-        s = np.asarray(seconds, dtype=np.float64)
-        k = self._knots
-        i = np.clip(np.searchsorted(k.after, s, side="right") - 1, 0, None)
-        rate = np.where(k.rate[i] > 0, k.rate[i], np.inf)
-        t = k.tick[i] + (s - k.after[i]) / rate
-        limit = np.append(k.tick[1:], _FAR)[i]
-        out: NDArray[np.float64] = np.minimum(t, limit) / TICKS_PER_BEAT
-        return out
+        return self._knots.ticks(np.asarray(seconds, dtype=np.float64)) / TICKS_PER_BEAT
 
     def bpm_at(self, tick: int) -> float:
-        """BPM in force at a tick; a change on the tick counts."""
-        value = self.bpms[0][1]
-        for at, bpm in self.bpms:
-            if at > tick:
-                break
-            value = bpm
-        return float(value)
+        """BPM in force at a tick; a change on the tick counts, the first BPM reaches back before beat 0."""
+        starts, values = self._bpm_values
+        return values[max(bisect_right(starts, tick) - 1, 0)]
 
     def judged(self, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
         """False where the games judge nothing: in a warp (but not on a stop or delay in it) and in a fake segment."""
         ticks = np.asarray(ticks, dtype=np.int64)
-        stopped = np.array([t for t, v in (*self.stops, *self.delays) if v != 0], dtype=np.int64)
+        if not self.warps and not self.fakes:
+            return np.ones(ticks.shape, dtype=bool)
+        stopped = np.array([tick for tick, _ in (*self.stops, *self.delays)], dtype=np.int64)
         return ~((_inside(self.warps, ticks) & ~np.isin(ticks, stopped)) | _inside(self.fakes, ticks))
 
     def milliseconds(self, ticks: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Time since the previous of the given ascending ticks, exact, rounded half up to milliseconds; first 0."""
+        """Time since the previous of the given ascending ticks, rounded half up to milliseconds; the first is 0.
+
+        The time is that of the exact decimals in the file: where floats could round the wrong way, fractions decide.
+        """
         ticks = np.asarray(ticks, dtype=np.int64)
-        out = np.zeros(len(ticks), dtype=np.int64)
+        out = np.zeros(ticks.shape, dtype=np.int64)
         if len(ticks) < 2:
             return out
-        k = self._knots
-        at = np.clip(np.searchsorted(k.tick, ticks, side="right") - 1, 0, None)
-        cache: dict[tuple[int, int], int] = {}
-        on_knot = ticks == k.tick[at]
-        for n in range(1, len(ticks)):
-            i, j = int(at[n - 1]), int(at[n])
-            if i == j and not on_knot[n - 1]:
-                key = (i, int(ticks[n] - ticks[n - 1]))
-                if key not in cache:
-                    cache[key] = _half_up(key[1] * k.exact[i][2] * 1000)
-                out[n] = cache[key]
-            else:
-                out[n] = _half_up(self._between(int(ticks[n - 1]), i, int(ticks[n]), j) * 1000)
+        seconds = self.seconds(ticks)
+        halves = np.diff(seconds) * 1000 + 0.5
+        out[1:] = np.floor(halves)
+        doubt = np.abs(halves - np.rint(halves)) < 1e-6 + 4e-12 * np.abs(seconds).max()
+        for n, exact in self._exact_milliseconds(ticks, np.flatnonzero(doubt) + 1):
+            out[n] = exact
         return out
 
-    def _between(self, a: int, i: int, b: int, j: int) -> Fraction:
-        k = self._knots
-        total = Fraction(0)
+    def _exact_milliseconds(self, ticks: NDArray[np.int64], which: NDArray[np.intp]) -> list[tuple[int, int]]:
+        """Exact milliseconds from tick n - 1 to tick n for each n; those within one steady piece of time share work."""
+        knots = self._knots
+        at = np.searchsorted(knots.tick, ticks, side="right") - 1
+        steady: dict[tuple[int, int], int] = {}
+        out = []
+        for n in which.tolist():
+            a, b, i, j = int(ticks[n - 1]), int(ticks[n]), int(at[n - 1]), int(at[n])
+            if i == j and i >= 0 and a != int(knots.tick[i]):
+                if (i, b - a) not in steady:
+                    steady[i, b - a] = _half_up((b - a) * knots.exact[i][2] * 1000)
+                out.append((n, steady[i, b - a]))
+            else:
+                out.append((n, _half_up(knots.between(a, i, b, j) * 1000)))
+        return out
+
+    @cached_property
+    def _knots(self) -> _Knots:
+        return _Knots(self)
+
+    @cached_property
+    def _bpm_values(self) -> tuple[list[int], list[float]]:
+        return [tick for tick, _ in self.bpms], [float(value) for _, value in self.bpms]
+
+
+class _Knots:
+    """Time as straight pieces between the ticks at which something changes.
+
+    tick : int64, ascending; before, note, after : float64, the second there before everything, of a note, after
+    everything (delay, note, stop); rate : float64, seconds per tick from there on, 0 in a warp; first_rate : that
+    before the first knot; exact : per knot the delay, the stop and the rate as fractions.
+    """
+
+    def __init__(self, timing: Timing) -> None:
+        bpms, stops, delays, warps = (dict(s) for s in (timing.bpms, timing.stops, timing.delays, timing.warps))
+        ends = {tick + int(length) for tick, length in timing.warps}
+        order = sorted({0, *bpms, *stops, *delays, *warps, *ends})
+        none = Fraction(0)
+        self.exact_first_rate = rate = moving = Fraction(60) / timing.bpms[0][1] / TICKS_PER_BEAT
+        previous, end_of_warp = 0, -_FAR
+        now = _fixed(-timing.offset)
+        if order[0] < 0:  # whatever comes before beat 0 shifts the rest; beat 0 itself stays at the offset without it
+            now += _fixed(order[0] * moving)
+            previous = order[0]
+        self.exact: list[tuple[Fraction, Fraction, Fraction]] = []
+        times: list[tuple[int, int, int]] = []
+        for tick in order:
+            now += _fixed((tick - previous) * rate)
+            previous = tick
+            if tick in bpms:
+                moving = Fraction(60) / bpms[tick] / TICKS_PER_BEAT
+            delay, stop = delays.get(tick, none), stops.get(tick, none)
+            before, note = now, now + _fixed(delay)
+            now = note + _fixed(stop)
+            if tick in warps:
+                end_of_warp = max(end_of_warp, tick + int(warps[tick]))
+            rate = none if tick < end_of_warp else moving
+            times.append((before, note, now))
+            self.exact.append((delay, stop, rate))
+        self.tick = np.array(order, dtype=np.int64)
+        self.before, self.note, self.after = (np.array([t[i] / _FIXED for t in times]) for i in range(3))
+        self.rate = np.array([float(r) for _, _, r in self.exact])
+        self.first_rate = float(self.exact_first_rate)
+
+    def seconds(self, ticks: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
+        i = np.searchsorted(self.tick, ticks, side="right") - 1
+        k = np.maximum(i, 0)
+        away = ticks - self.tick[k]
+        later = np.where(away == 0, self.note[k], self.after[k] + away * self.rate[k])
+        out: NDArray[np.float64] = np.where(i < 0, self.before[0] + away * self.first_rate, later)
+        return out
+
+    def ticks(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        i = np.searchsorted(self.after, seconds, side="right") - 1
+        k = np.maximum(i, 0)
+        rate = np.where(self.rate[k] > 0, self.rate[k], np.inf)
+        later = np.minimum(self.tick[k] + (seconds - self.after[k]) / rate, np.append(self.tick[1:], _FAR)[k])
+        sooner = np.minimum(self.tick[0] + (seconds - self.before[0]) / self.first_rate, self.tick[0])
+        out: NDArray[np.float64] = np.where(i < 0, sooner, later)
+        return out
+
+    def between(self, a: int, i: int, b: int, j: int) -> Fraction:
+        """Exact seconds from the note on tick a to that on tick b; i and j are the knots at or before them."""
         if a == b:
-            return total
-        if a == k.tick[i]:
-            total += k.exact[i][1]
-        here = a
+            return Fraction(0)
+        here, rate = a, self.exact[i][2] if i >= 0 else self.exact_first_rate
+        total = self.exact[i][1] if i >= 0 and a == int(self.tick[i]) else Fraction(0)
         for knot in range(i + 1, j + 1):
-            total += (int(k.tick[knot]) - here) * k.exact[knot - 1][2] + k.exact[knot][0]
-            here = int(k.tick[knot])
-            if knot < j or b != here:
-                total += k.exact[knot][1]
-        return total + (b - here) * k.exact[j][2]
+            tick = int(self.tick[knot])
+            delay, stop, after = self.exact[knot]
+            total += (tick - here) * rate + delay
+            if tick != b:
+                total += stop
+            if total.denominator > _LONGEST:
+                total = Fraction(_fixed(total), _FIXED)
+            here, rate = tick, after
+        return total + (b - here) * rate
+
+
+def _fixed(seconds: Fraction) -> int:
+    return (seconds.numerator * _FIXED + seconds.denominator // 2) // seconds.denominator
 
 
 def _half_up(value: Fraction) -> int:
@@ -135,39 +195,8 @@ def _inside(segments: Segments, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether each tick lies in the last segment that starts at or before it; values are lengths in ticks."""
     if not segments:
         return np.zeros(ticks.shape, dtype=bool)
-    starts = np.array([t for t, _ in segments], dtype=np.int64)
-    ends = np.array([float(t + length) for t, length in segments])
+    starts = np.array([tick for tick, _ in segments], dtype=np.int64)
+    ends = starts + np.array([int(length) for _, length in segments], dtype=np.int64)
     i = np.searchsorted(starts, ticks, side="right") - 1
-    return (i >= 0) & (ticks < ends[np.clip(i, 0, None)])
-
-
-def _walk(timing: Timing) -> _Knots:
-    """Follow the song once through all changes, in the games' order: warp end, BPM, delay, note, stop, warp start."""
-    bpms, stops, delays, warps = (dict(s) for s in (timing.bpms, timing.stops, timing.delays, timing.warps))
-    rows = set(bpms) | set(stops) | set(delays) | set(warps)
-    rows |= {round(t + length) for t, length in timing.warps if length > 0}
-    order = sorted(rows | {0})
-    now, rate = -timing.offset, Fraction(60) / timing.bpms[0][1] / TICKS_PER_BEAT
-    previous, destination = order[0], None
-    now += order[0] * rate  # changes before beat 0 run at the first BPM
-    ticks, notes, afters, rates, exact = [], [], [], [], []
-    for row in order:
-        if destination is None:
-            now += (row - previous) * rate
-        previous = row
-        if destination is not None and row >= destination:
-            destination = None
-        if row in bpms:
-            rate = Fraction(60) / bpms[row] / TICKS_PER_BEAT
-        delay, stop = delays.get(row, Fraction(0)), stops.get(row, Fraction(0))
-        now += delay
-        notes.append(float(now))
-        now += stop
-        if row in warps and warps[row] > 0:
-            end = round(row + warps[row])
-            destination = end if destination is None else max(destination, end)
-        ticks.append(row)
-        afters.append(float(now))
-        rates.append(0.0 if destination is not None else float(rate))
-        exact.append((delay, stop, Fraction(0) if destination is not None else rate))
-    return _Knots(np.array(ticks), np.array(notes), np.array(afters), np.array(rates), tuple(exact))
+    found: NDArray[np.bool_] = (i >= 0) & (ticks < ends[np.maximum(i, 0)])
+    return found

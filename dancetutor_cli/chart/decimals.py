@@ -1,0 +1,49 @@
+"""Numbers as the games read them (C's strtof and atoi), but exact."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
+
+_NUMBER = re.compile(r"\s*([+-]?)(?:(\d+)(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?\d+))?(.*)", re.DOTALL | re.ASCII)
+_LARGEST = 3.5e38  # beyond it the games' floats are infinite, which they read as 0
+_DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
+
+
+def number(text: str) -> tuple[Fraction, bool]:
+    """The decimal at the start of a text, and whether the text is nothing else. Junk and the not finite are 0."""
+    match = _NUMBER.match(text)
+    if match is None:
+        return Fraction(0), False
+    sign, whole, decimals, only_decimals, exponent, rest = match.groups()
+    decimals = (decimals or only_decimals or "")[:_DIGITS]
+    whole = (whole or "").lstrip("0")
+    power = int(exponent) if exponent and len(exponent) < 6 else 0 if not exponent else 10**6
+    if exponent and exponent.startswith("-") and power == 10**6:
+        power = -power
+    clean = not rest.strip()
+    if len(whole) + power > 39 or len(whole) > 2 * _DIGITS:
+        return Fraction(0), False
+    if power < -_DIGITS - 39:
+        return Fraction(0), clean
+    digits = int(whole + decimals or "0")
+    power -= len(decimals)
+    value = Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
+    if value > _LARGEST:
+        return Fraction(0), False
+    return (-value if sign == "-" else value), clean
+
+
+def beat(text: str) -> tuple[Fraction, bool]:
+    """A beat; with the suffix `r` it is given in rows of 1/48 beat."""
+    stripped = text.strip()
+    bare = stripped.strip("rR")
+    value, clean = number(bare)
+    return (value / TICKS_PER_BEAT if bare != stripped else value), clean
+
+
+def tick_of(beat: Fraction) -> int:
+    """Beat to ticks of 1/48, halves to even."""
+    return round(beat * TICKS_PER_BEAT)
