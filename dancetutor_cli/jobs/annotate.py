@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,10 @@ from dancetutor_cli.files import back_up, remove_leftovers, write_atomic
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
-    from dancetutor_cli.markers.model import Change
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.markers.beside import Planned
+    from dancetutor_cli.markers.model import Change, Lack
+    from dancetutor_cli.markers.plan import Plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,65 +62,156 @@ class Outcome:
 def annotate_song(items: Sequence[Item], order: Order) -> list[Outcome]:
     """Annotate the files of one song, or take the markers out. Never raises for what is wrong with a file.
 
+    Of a .sm and a .ssc only the .ssc speaks for the song in `data.sme` and in .edit files.
     `UsageError` (no such preset) is raised: it is not about a file.
     """
     if order.write:
         for folder in sorted({item.target.parent for item in items}):
             remove_leftovers(folder)
-    return [_attempt(item, order) for item in items]
+    ssc = any(item.source.suffix.lower() == ".ssc" for item in items)
+    return [_attempt(item, order, ssc and item.source.suffix.lower() != ".ssc") for item in items]
 
 
-def _attempt(item: Item, order: Order) -> Outcome:
+def _attempt(item: Item, order: Order, second: bool) -> Outcome:
     try:
-        return _annotate(item, order)
+        return _annotate(item, order, second)
     except FileError as error:
         return Outcome(item.source, error=str(error))
     except OSError as error:
         return Outcome(item.source, error=str(FileError(item.source, error.strerror or str(error))))
 
 
-def _annotate(item: Item, order: Order) -> Outcome:
+def _annotate(item: Item, order: Order, second: bool) -> Outcome:
     from dancetutor_cli import chart as reader
-    from dancetutor_cli.markers import plan as planning
-    from dancetutor_cli.markers.model import Change
+    from dancetutor_cli.markers.model import EDIT, SMEDITOR
 
     song = reader.load(item.source)
-    charts = order.selection.charts(song)
-    notes: list[str] = []
+    styles = [style for style in order.styles if not (second and style in (EDIT, SMEDITOR))]
+    if order.into_file and EDIT in order.styles and EDIT not in styles:
+        styles.append(EDIT)
+    work = _Work(item, order, song, tuple(styles))
     if order.strip:
-        plan = planning.unmark(song, charts, order.styles, order.force)
+        work.strip()
     else:
+        work.write()
+    return work.outcome()
+
+
+class _Work:
+    """One file on its way: what would change, then the changes themselves."""
+
+    def __init__(self, item: Item, order: Order, song: Song, styles: tuple[str, ...]) -> None:
+        self.item, self.order, self.song, self.styles = item, order, song, styles
+        self.changes: list[Change] = []
+        self.lacks: list[Lack] = []
+        self.notes: list[str] = []
+        self.errors: list[str] = []
+        self.counts: Counter[str] = Counter()
+
+    def write(self) -> None:
+        """Plan all styles that are asked for."""
+        from dancetutor_cli.markers import beside
+        from dancetutor_cli.markers import plan as planning
+        from dancetutor_cli.markers.model import BESIDE, EDIT
         from dancetutor_cli.play import load_preset
 
-        feet = list(planning.solve_charts(song, charts, load_preset(order.preset), notes))
-        plan = planning.mark(song, feet, order.styles, order.force)
-    planning.checked(song, plan)
-    changes = [Change(item.target, song.data, plan.data)]
-    if order.write:
-        for change in changes:
-            _write(item, change, order)
-    return Outcome(
-        item.source,
-        notes=(*notes, *plan.notes),
-        lacks=tuple(lack.at(item.source) for lack in plan.lacks),
-        counts=tuple(sorted(plan.counts.items())),
-        changed=tuple(change.path for change in changes if change.needed),
-        diff=tuple(_diff(changes)) if order.diff else (),
-    )
+        preset = load_preset(self.order.preset)
+        added = EDIT in self.styles and self.order.into_file
+        base = self._without_added() if added else self.song
+        feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes))
+        plan = planning.mark(base, feet, self.styles, self.order.force)
+        if added:
+            planning.add_charts(base, self.song, plan, feet)
+        planning.checked(base, plan)
+        self._take(plan)
+        for style in self.styles:
+            if style not in BESIDE or (style == EDIT and added):
+                continue
+            try:
+                for planned in beside.write(style, self.song, self.item.target.parent, feet):
+                    self._add(planned)
+            except FileError as error:
+                self.errors.append(str(error))
 
+    def strip(self) -> None:
+        """Plan the removal of all styles that are asked for."""
+        from dancetutor_cli.markers import beside
+        from dancetutor_cli.markers import plan as planning
+        from dancetutor_cli.markers.model import BESIDE, EDIT, Lack
 
-def _write(item: Item, change: Change, order: Order) -> None:
-    """Bring one change to the disk; with -o also what is the same as before, so that the copy is whole."""
-    in_place = item.source == item.target
-    if in_place and not change.needed:
-        return
-    change.path.parent.mkdir(parents=True, exist_ok=True)
-    if order.backup and change.path.exists():
-        back_up(change.path)
-    if change.new is not None:
-        write_atomic(change.path, change.new, expect=change.old if in_place else None)
-    elif in_place:
-        change.path.unlink(missing_ok=True)
+        base = self._without_added() if EDIT in self.styles else self.song
+        charts = self._charts(base)
+        plan = planning.unmark(base, charts, self.styles, self.order.force)
+        planning.checked(base, plan)
+        self._take(plan)
+        if base is not self.song:
+            self.lacks.append(Lack("has charts for two pads to take out"))
+        for style in self.styles:
+            if style in BESIDE and self._in_place:
+                for planned in beside.strip(style, self.song, charts):
+                    self._add(planned)
+
+    def outcome(self) -> Outcome:
+        """Bring the changes to the disk if that is wanted, and say what became of the file."""
+        if self.order.write:
+            for change in self.changes:
+                self._bring(change)
+        return Outcome(
+            self.item.source,
+            error="; ".join(self.errors) or None,
+            notes=tuple(self.notes),
+            lacks=tuple(lack.at(self.item.source) for lack in self.lacks),
+            counts=tuple(sorted(self.counts.items())),
+            changed=tuple(change.path for change in self.changes if change.needed),
+            diff=tuple(_diff(self.changes)) if self.order.diff else (),
+        )
+
+    @property
+    def _in_place(self) -> bool:
+        return self.item.source == self.item.target
+
+    def _charts(self, song: Song) -> list[Chart]:
+        """The charts that are meant; those that we added ourselves have no feet to write."""
+        from dancetutor_cli.markers import edit
+
+        return [chart for chart in self.order.selection.charts(song) if not edit.ours(chart)]
+
+    def _without_added(self) -> Song:
+        """The song without the charts that an earlier run has added for the charts that are meant."""
+        from dancetutor_cli import chart as reader
+        from dancetutor_cli.markers import edit
+        from dancetutor_cli.markers.splice import apply
+
+        splices = edit.without_added(self.song, self._charts(self.song))
+        return reader.parse(apply(self.song.data, splices), self.song.path) if splices else self.song
+
+    def _take(self, plan: Plan) -> None:
+        from dancetutor_cli.markers.model import Change
+
+        self.changes.append(Change(self.item.target, self.song.data, plan.data))
+        self.lacks += plan.lacks
+        self.notes += plan.notes
+        self.counts += plan.counts
+
+    def _add(self, planned: Planned | FileError) -> None:
+        if isinstance(planned, FileError):
+            self.errors.append(str(planned))
+            return
+        change, lacks = planned
+        self.changes.append(change)
+        self.lacks += lacks
+
+    def _bring(self, change: Change) -> None:
+        """Bring one change to the disk; with -o also what is the same as before, so that the copy is whole."""
+        if self._in_place and not change.needed:
+            return
+        change.path.parent.mkdir(parents=True, exist_ok=True)
+        if self.order.backup and change.path.exists():
+            back_up(change.path)
+        if change.new is not None:
+            write_atomic(change.path, change.new, expect=change.old if self._in_place else None)
+        else:
+            change.path.unlink(missing_ok=True)
 
 
 def _diff(changes: Sequence[Change]) -> Iterator[str]:

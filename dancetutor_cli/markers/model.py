@@ -10,6 +10,7 @@ from dancetutor_cli.feet.measures import StepRows
 from dancetutor_cli.play.model import Play
 
 MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT = "measure", "rows", "sidecar", "smeditor", "edit"
+BESIDE = (SIDECAR, SMEDITOR, EDIT)  # styles that write files beside the chart file
 STYLES = (MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT)
 
 

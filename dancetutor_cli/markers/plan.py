@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.markers import measure, rows
+from dancetutor_cli.markers import edit, lanes, measure, rows
 from dancetutor_cli.markers.letters import row_letters
 from dancetutor_cli.markers.measure import MeasureState, State
 from dancetutor_cli.markers.model import MEASURE, ROWS, ChartFeet, Lack
@@ -73,6 +74,23 @@ def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bo
     return plan
 
 
+def add_charts(song: Song, before: Song, plan: Plan, feet: Sequence[ChartFeet]) -> None:
+    """Add the lane-split charts to the plan.
+
+    song : without them, as `plan` was made from; before : the song as it was read, perhaps with older ones
+    """
+    added = edit.added_charts(song, feet)
+    singles = [one.chart for one in feet if one.chart.steps_type == lanes.SOURCE]
+    plan.data += added
+    removed = len(before.data) - len(song.data)
+    if not before.data.endswith(added) or removed != len(added):
+        plan.lacks += (Lack(f"{c.label}: its chart for two pads is missing or stale", c.line) for c in singles)
+    made = [chart for chart in parse(plan.data, song.path).charts if edit.ours(chart)][-len(singles) :]
+    for chart, source in zip(made, singles, strict=True):
+        if len(chart.notes) != len(source.notes) or chart.timing != source.timing:
+            raise edit.EditError(song.path, f"{source.label}: cannot be added as a chart for two pads; nothing written")
+
+
 def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bool) -> Plan:
     """Take the styles that live inside note data out."""
     plan = Plan(song.data)
@@ -94,7 +112,7 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
 def checked(song: Song, plan: Plan) -> Plan:
     """The plan, if its bytes read like the song they were made from; raises `verify.HarmError` if not."""
     if plan.data != song.data:
-        unchanged(song, plan.data)
+        unchanged(song, plan.data, edit.ours)
     return plan
 
 

@@ -1,0 +1,81 @@
+"""The styles that write beside a chart file: the sidecar, SMEditor's `data.sme` and `.edit` files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.feet import sme
+from dancetutor_cli.markers import edit, sidecar, smeditor
+from dancetutor_cli.markers.model import EDIT, SIDECAR, SMEDITOR, Change, ChartFeet, Lack
+
+Planned = tuple[Change, list[Lack]]
+
+
+def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[Planned | FileError]:
+    """The files that a style puts beside a song. folder : where they go; what is merged lies there or by the song.
+
+    Yields an error in place of a file that there cannot be; the others come nevertheless.
+    """
+    if style == SIDECAR:
+        path = folder / sidecar.path_for(song.path).name
+        old = _present(path, song)
+        new = sidecar.write(path, old, song, feet)
+        why = [(one.chart, sidecar.lack(path, old, song, one.chart, new)) for one in feet]
+        yield Change(path, old, new), [Lack(text, chart.line) for chart, text in why if text]
+    elif style == SMEDITOR:
+        path = folder / sme.FILE_NAME
+        _one_song(song, path)
+        old = _present(path, song)
+        merged = smeditor.write(path, old, song, feet)
+        lacks = [] if merged == old else [Lack(f"{path.name} has not the feet that the solver finds")]
+        yield Change(path, old, merged), lacks
+    elif style == EDIT:
+        for where, data in edit.edit_files(song, feet):
+            if isinstance(data, FileError):
+                yield data
+                continue
+            path = folder / where.name
+            old = _present(path, song)
+            lacks = [] if old == data else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
+            yield Change(path, old, data), lacks
+
+
+def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
+    """What taking a style out again does to the files beside a song."""
+    if style == SIDECAR:
+        path = sidecar.path_for(song.path)
+        old = _read(path)
+        yield _removed(path, old, sidecar.strip(path, old, song, charts))
+    elif style == SMEDITOR:
+        path = song.path.parent / sme.FILE_NAME
+        old = _read(path)
+        yield _removed(path, old, smeditor.strip(path, old, song, charts))
+    elif style == EDIT:
+        for path in edit.edit_paths(song, charts):
+            yield _removed(path, path.read_bytes(), None)
+
+
+def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
+    return Change(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
+
+
+def _one_song(song: Song, path: Path) -> None:
+    """`data.sme` knows charts only by their place, so it can only serve one song."""
+    if len(stems := sme.song_stems(song.path.parent)) > 1:
+        raise FileError(path, f"its folder has {len(stems)} songs, and data.sme can only tell one; it is not written")
+
+
+def _present(path: Path, song: Song) -> bytes | None:
+    """The file as it is, or for a file that goes elsewhere the one that lies by the song."""
+    found = _read(path)
+    return _read(song.path.with_name(path.name)) if found is None else found
+
+
+def _read(path: Path) -> bytes | None:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        return None

@@ -1,0 +1,145 @@
+"""The style `edit`: the lane-split chart as a `.edit` file for an unmodified game, or added to the chart file."""
+
+from __future__ import annotations
+
+import glob
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.markers import lanes
+from dancetutor_cli.markers.model import ChartFeet
+from dancetutor_cli.markers.splice import Splice
+
+LIMIT = 60 * 1024  # bytes of a .edit file that the games still read
+MARK = b"//{dt1 edit}"
+_NAME = "dancetutor feet"
+_SPECIAL = re.compile(r"([\\:;#/])")
+_TIMING = ("OFFSET", "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "SCROLLS", "SPEEDS")
+
+
+class EditError(FileError):
+    """A lane-split chart cannot be made in this form; the other styles are not concerned."""
+
+
+def ours(chart: Chart) -> bool:
+    """Whether a chart is one that this style has added."""
+    made = chart.steps_type == lanes.TARGET and chart.difficulty == "Edit"
+    return made and chart.description.startswith(_NAME)
+
+
+def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, bytes | EditError]]:
+    """For each single: the path of its .edit file, and its bytes or why there cannot be one."""
+    names = _names(song)
+    for one in feet:
+        if one.chart.steps_type != lanes.SOURCE:
+            continue
+        yield _path(song, names[one.chart.index]), _edit_file(song, one, names[one.chart.index])
+
+
+def _path(song: Song, name: str) -> Path:
+    return song.path.with_name(f"{song.path.stem} {name}.edit")
+
+
+def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
+    chart = one.chart
+    if chart.timing != song.timing:
+        return EditError(song.path, f"{chart.label}: has timing of its own, which .edit cannot; use --into-file")
+    folder = song.path.resolve().parent
+    head = f"#SONG:{_value(folder.parent.name)}/{_value(folder.name)};\n".encode("utf-8", "surrogateescape")
+    data = head + _sm_chart(chart, name, lanes.note_data(chart, one.play, b"\n"), b"\n")
+    if len(data) > LIMIT:
+        text = f"{chart.label}: as .edit it would have {len(data):,} bytes; games read {LIMIT:,}; use --into-file"
+        return EditError(song.path, text)
+    return _read_back(song, one, data)
+
+
+def _read_back(song: Song, one: ChartFeet, data: bytes) -> bytes | EditError:
+    """The file, if our own reader finds as many notes in it as in the chart it was made from."""
+    chart = parse(data, song.path.with_suffix(".sm")).charts[0]
+    if len(chart.notes) != len(one.chart.notes):
+        return EditError(song.path, f"{one.chart.label}: the .edit file would lose notes; nothing was written")
+    return data
+
+
+def edit_paths(song: Song, charts: Sequence[Chart]) -> list[Path]:
+    """The .edit files of our own that belong to charts of a song, and those whose chart the song no longer has."""
+    names = _names(song)
+    others = {_path(song, names[c.index]) for c in song.charts if c not in charts and c.index in names}
+    mark = f"{_NAME} ".encode()
+    found = sorted(song.path.parent.glob(f"{glob.escape(song.path.stem)} {_NAME}*.edit"))
+    return [path for path in found if path not in others and mark in path.read_bytes()[:4096]]
+
+
+def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
+    """What to append to a chart file: a block for each single. It starts on the file's last line."""
+    eol = b"\r\n" if b"\r\n" in song.data else b"\n"
+    names = _names(song)
+    if song.data.endswith(b"\\"):
+        raise EditError(song.path, "ends with a lone '\\', behind which nothing can be added")
+    blocks = []
+    for one in feet:
+        if one.chart.steps_type != lanes.SOURCE:
+            continue
+        notes = lanes.note_data(one.chart, one.play, eol)
+        name = names[one.chart.index]
+        ssc = song.format == "ssc"
+        made = _ssc_chart(song, one.chart, name, notes, eol) if ssc else _sm_chart(one.chart, name, notes, eol)
+        blocks.append(MARK + eol + made)
+    return b"".join(blocks)
+
+
+def without_added(song: Song, charts: Sequence[Chart]) -> list[Splice]:
+    """Replacements that take out of a file what was added for these charts, or for charts that it no longer has."""
+    names = _names(song)
+    kept = {names[c.index] for c in song.charts if c.index in names and c not in charts}
+    return [_block(song, chart) for chart in song.charts if ours(chart) and chart.description not in kept]
+
+
+def _block(song: Song, chart: Chart) -> Splice:
+    tag = rb"#NOTES\b" if song.format == "sm" else rb"#NOTEDATA\b"
+    before = song.data[: chart.notes_span[0]]
+    start = [match.start() for match in re.finditer(tag, before, re.IGNORECASE)][-1]
+    mark = re.compile(re.escape(MARK) + rb"\r?\n\Z")
+    if match := mark.search(song.data, max(start - len(MARK) - 2, 0), start):
+        start = match.start()
+    end = re.compile(rb";?(?:\r?\n)?").match(song.data, chart.notes_span[1])
+    assert end is not None
+    return Splice(start, end.end(), b"")
+
+
+def _names(song: Song) -> dict[int, str]:
+    """A name for each single, which tells those of one difficulty and meter apart."""
+    names: dict[int, str] = {}
+    for chart in song.charts:
+        if chart.steps_type == lanes.SOURCE:
+            name = f"{_NAME} {chart.difficulty} {chart.meter}"
+            twins = sum(1 for other in names.values() if other == name or other.startswith(f"{name} ("))
+            names[chart.index] = f"{name} ({twins + 1})" if twins else name
+    return names
+
+
+def _value(text: str) -> str:
+    """Text as a part of a value: what would end it is escaped."""
+    return _SPECIAL.sub(r"\\\1", text)
+
+
+def _sm_chart(chart: Chart, name: str, notes: bytes, eol: bytes) -> bytes:
+    fields = (lanes.TARGET, name, "Edit", str(chart.meter), "0,0,0,0,0")
+    head = b"#NOTES:" + eol + b"".join(f"     {field}:".encode() + eol for field in fields)
+    return head + notes + b";" + eol
+
+
+def _ssc_chart(song: Song, chart: Chart, name: str, notes: bytes, eol: bytes) -> bytes:
+    tags = {
+        "NOTEDATA": "", "CHARTNAME": name, "STEPSTYPE": lanes.TARGET, "DESCRIPTION": name, "CHARTSTYLE": "",
+        "DIFFICULTY": "Edit", "METER": str(chart.meter), "RADARVALUES": "0,0,0,0,0", "CREDIT": "dancetutor",
+    }  # fmt: skip
+    if chart.timing != song.timing:  # one timing tag of its own switches a chart to its own timing: all or none
+        tags |= {key: " ".join(chart.tags[key].split()) for key in _TIMING if key in chart.tags}
+        tags.setdefault("BPMS", f"0.000={float(chart.timing.bpms[0][1]):.3f}")
+    head = b"".join(f"#{key}:{value};".encode("ascii", "ignore") + eol for key, value in tags.items())
+    return head + b"#NOTES:" + eol + notes + b";" + eol

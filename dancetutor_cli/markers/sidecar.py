@@ -1,0 +1,126 @@
+"""The style `sidecar`: `SONG.dancetutor.json` beside the file; the form that no editor throws away when it saves."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.markers.letters import limbs_of
+from dancetutor_cli.markers.model import ChartFeet
+from dancetutor_cli.play.model import Limb, Part
+
+SUFFIX = ".dancetutor.json"
+_SCHEMA = 1
+
+
+def path_for(song: Path) -> Path:
+    """The sidecar of a chart file; the .sm and the .ssc of one song share theirs."""
+    return song.with_name(song.stem + SUFFIX)
+
+
+def write(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
+    """The new content of a sidecar; what it says about other files and other charts stays."""
+    files = _files(path, old)
+    before = files.get(song.path.name, {}).get("charts", [])
+    indices = {one.chart.index for one in feet}
+    kept = [entry for entry in before if entry.get("index") not in indices and _still_there(entry, song)]
+    charts = sorted([*kept, *(_entry(one) for one in feet)], key=lambda entry: int(entry["index"]))
+    files[song.path.name] = {"charts": charts}
+    return _dump(files)
+
+
+def strip(path: Path, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
+    """The sidecar without what it says about some charts of a file; None if nothing is left of it."""
+    if old is None:
+        return None
+    files = _files(path, old)
+    gone = {chart.index for chart in charts}
+    before = files.pop(song.path.name, {}).get("charts", [])
+    if kept := [entry for entry in before if entry.get("index") not in gone]:
+        files[song.path.name] = {"charts": kept}
+    return _dump(files) if files else None
+
+
+def lack(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) -> str | None:
+    """Why a chart's entry is not what it should be, for `--check`; None if it is."""
+    entry, wanted = (_find(_files(path, data), song, chart) for data in (old, new))
+    if entry == wanted:
+        return None
+    if entry is None:
+        return f"{chart.label}: {path.name} has no feet of it"
+    if entry.get("notes_sha256") != notes_hash(chart):
+        return f"{chart.label}: its notes have changed since {path.name} was written"
+    return f"{chart.label}: {path.name} has feet other than the solver finds"
+
+
+def notes_hash(chart: Chart) -> str:
+    """SHA-256 of the notes: a line "tick,column,kind,end" for each, ticks of 1/48 beat, `kind` as in `chart.model`."""
+    notes = chart.notes
+    rows = zip(notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist(), strict=True)
+    text = "".join(f"{tick},{column},{kind},{end}\n" for tick, column, kind, end in rows)
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
+def _still_there(entry: Any, song: Song) -> bool:
+    index = entry.get("index")
+    return isinstance(index, int) and 0 <= index < len(song.charts)
+
+
+def _entry(one: ChartFeet) -> dict[str, Any]:
+    chart = one.chart
+    return {
+        "index": chart.index,
+        "steps_type": chart.steps_type,
+        "difficulty": chart.difficulty,
+        "meter": chart.meter,
+        "description": chart.description,
+        "preset": one.play.preset,
+        "notes_sha256": notes_hash(chart),
+        "steps": list(_steps(one)),
+    }
+
+
+def _steps(one: ChartFeet) -> list[list[Any]]:
+    """[beat, column, limb] of each step, and which part of the foot in a bracket; limb null: nobody is left for it."""
+    limb, part = limbs_of(one.chart, one.rows, one.play)
+    row, column = one.rows.steps.nonzero()
+    ticks = one.chart.rows.tick[one.rows.row[row]].tolist()
+    steps = []
+    cells = zip(ticks, column.tolist(), limb[row, column].tolist(), part[row, column].tolist(), strict=True)
+    for tick, at, who, which in cells:
+        step: list[Any] = [round(tick / TICKS_PER_BEAT, 6), at, None if who < 0 else Limb(who).name.lower()]
+        steps.append([*step, Part(which).name.lower()] if which else step)
+    return steps
+
+
+def _files(path: Path, old: bytes | None) -> dict[str, Any]:
+    if old is None:
+        return {}
+    try:
+        data = json.loads(old.decode("utf-8"))
+        files = data["files"]
+        if data["program"] == "dancetutor" and all(isinstance(f["charts"], list) for f in files.values()):
+            return dict(files)
+    except (ValueError, KeyError, TypeError, AttributeError):
+        pass
+    raise FileError(path, "is not a sidecar of dancetutor's; move it away or choose another style")
+
+
+def _find(files: dict[str, Any], song: Song, chart: Chart) -> Any:
+    charts = files.get(song.path.name, {}).get("charts", [])
+    return next((entry for entry in charts if entry.get("index") == chart.index), None)
+
+
+def _dump(files: dict[str, Any]) -> bytes:
+    """One line for each chart, so that version control shows which have changed."""
+    blocks = []
+    for name in sorted(files):
+        lines = ",\n".join("   " + json.dumps(entry, ensure_ascii=False) for entry in files[name]["charts"])
+        blocks.append(f'  {json.dumps(name, ensure_ascii=False)}: {{"charts": [\n{lines}]}}')
+    head = f'{{"schema": {_SCHEMA}, "program": "dancetutor", "files": {{\n'
+    return (head + ",\n".join(blocks) + "}}\n").encode("utf-8", "surrogateescape")
