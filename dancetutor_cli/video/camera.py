@@ -30,6 +30,7 @@ class Camera:
     focal : focal length in picture heights; centre : where the line of sight meets the picture, 0..1 of its width and
     height; pan : shift of the whole picture to the right, in picture widths; pan_range : least and greatest `pan` that
     will be asked for (the standing part of the picture is drawn that much wider, once)
+    feet_only : of the dancer only her feet are drawn: seen from above her head would hide them
     """
 
     position: tuple[float, float, float]
@@ -38,6 +39,7 @@ class Camera:
     centre: tuple[float, float] = (0.5, 0.5)
     pan: float = 0.0
     pan_range: tuple[float, float] = (0.0, 0.0)
+    feet_only: bool = False
 
     def axes(self) -> Array:
         """Rows: right, up and forward in the world, (3, 3)."""
@@ -102,7 +104,7 @@ def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: 
         raise UsageError(f"no camera '{name}'; there are: {', '.join(look.cameras)}, or POSITION/TARGET as x,y,z/x,y,z")
     settings = look.cameras[name]
     box = _box(extent, settings)
-    target = (box[0] + box[-1]) / 2
+    target = (box.min(0) + box.max(0)) / 2
     azimuth, elevation = math.radians(settings.azimuth), math.radians(settings.elevation)
     away = np.array(
         [
@@ -118,7 +120,7 @@ def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: 
         fits, _ = _fit(box, target, target + middle * away, focal, size, region)
         near, far = (near, middle) if fits else (middle, far)
     _, camera = _fit(box, target, target + far * away, focal, size, region)
-    return camera
+    return replace(camera, feet_only=settings.feet_only)
 
 
 def free(
@@ -159,13 +161,20 @@ def with_pan_range(camera: Camera, low: float, high: float) -> Camera:
 
 
 def _box(extent: tuple[Array, Array], settings: CameraLook) -> Array:
-    """The corners (8, 3) of what must be seen: the pad and the room above it that the dancer may use."""
-    low, high = extent[0].copy(), extent[1].copy()
-    low[[0, 2]] -= settings.margin
-    high[[0, 2]] += settings.margin
-    high[1] = settings.height
-    grid = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=np.float64)
-    return np.asarray(low + grid * (high - low))
+    """Points (n, 3) of what must be seen: the pad, arms stretched sideways over it, and hands up in the middle."""
+    low, high = extent
+    middle = (low[2] + high[2]) / 2
+    shoulder = min(1.45, settings.height)
+    layers = (
+        (0.0, settings.margin, low[2] - settings.margin, high[2] + settings.margin),
+        (shoulder, settings.arms, middle - 0.2, middle + 0.2),
+        (settings.height, -0.1, middle - 0.2, middle + 0.2),
+    )
+    points = []
+    for y, wider, near, far in layers:
+        for x in (low[0] - wider, high[0] + wider):
+            points += [(x, y, near), (x, y, far)]
+    return np.array(points, dtype=np.float64)
 
 
 def _fit(

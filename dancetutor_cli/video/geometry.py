@@ -11,6 +11,7 @@ from dancetutor_cli.character.model import Character, Mesh
 from dancetutor_cli.errors import UsageError
 
 F32 = NDArray[np.float32]
+FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +21,8 @@ class Packed:
     positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
     outline, drawn by moving vertices along it, has no gaps where a texture is cut
     uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
-    triangles : int32 (t, 3), counter-clockwise seen from outside; material : int32 (v,)
+    triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
+    material : int32 (v,)
     patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
     texels : float32 (n, 3), sRGB 0..1 of all textures, row by row; textures : int32 (m, 3), first texel, width, height
     """
@@ -32,6 +34,7 @@ class Packed:
     joints: NDArray[np.int32]
     weights: F32
     triangles: NDArray[np.int32]
+    feet: int
     material: NDArray[np.int32]
     patch: NDArray[np.int32]
     texels: F32
@@ -49,19 +52,31 @@ def pack(character: Character) -> Packed:
     normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
     material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
     triangles = np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32)
+    joints = np.concatenate([m.joints for m in meshes]).astype(np.int32)
+    weights = np.concatenate([m.weights for m in meshes]).astype(np.float32)
+    of_feet = _feet(character, joints, weights)[triangles].all(axis=1)
+    triangles = np.concatenate([triangles[of_feet], triangles[~of_feet]])
     return Packed(
         positions=positions,
         normals=normals,
         hull=_welded(positions, normals, material),
         uv=np.concatenate([m.uv for m in meshes]).astype(np.float32),
-        joints=np.concatenate([m.joints for m in meshes]).astype(np.int32),
-        weights=np.concatenate([m.weights for m in meshes]).astype(np.float32),
+        joints=joints,
+        weights=weights,
         triangles=triangles,
+        feet=int(of_feet.sum()),
         material=material,
         patch=_patches(triangles, len(positions)),
         texels=texels,
         textures=textures,
     )
+
+
+def _feet(character: Character, joints: NDArray[np.int32], weights: F32) -> NDArray[np.bool_]:
+    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes."""
+    names = character.skeleton.names
+    ours = [names.index(name) for side in "lr" for part in FOOT if (name := f"{side}_{part}") in names]
+    return np.asarray((weights * np.isin(joints, ours)).sum(axis=1) > 0.5)
 
 
 def _textures(meshes: list[Mesh]) -> tuple[F32, NDArray[np.int32]]:

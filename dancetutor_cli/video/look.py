@@ -22,6 +22,8 @@ class CameraLook:
     field: float
     height: float
     margin: float
+    arms: float
+    feet_only: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,22 +30,44 @@ class Cast:
     scale: float
 
 
-def skin_matrices(scene: Scene, state: FrameState) -> Array:
+class Shown(Enum):
+    """How much of the dancer a frame shows."""
+
+    NOTHING = 0
+    FEET = 1
+    ALL = 2
+
+
+def shown(state: FrameState) -> Shown:
+    """How much of the dancer this frame shows."""
+    if state.joints is None:
+        return Shown.NOTHING
+    return Shown.FEET if state.camera.feet_only else Shown.ALL
+
+
+def joints_of(scene: Scene, state: FrameState) -> Array:
+    """The joints' world matrices; those of the binding pose where the dancer is not shown."""
+    if state.joints is not None:
+        return state.joints
+    return np.asarray(np.linalg.inv(scene.character.inverse_bind), dtype=np.float64)
+
+
+def skin_matrices(scene: Scene, joints: Array) -> Array:
     """Binding pose to world, (j, 3, 4), in a fixed order of additions: matrix libraries differ in the last bit."""
-    joints, inverse = state.joints, scene.character.inverse_bind
+    inverse = scene.character.inverse_bind
     out = joints[:, :3, 0, None] * inverse[:, None, 0, :]
     for k in (1, 2, 3):
         out = out + joints[:, :3, k, None] * inverse[:, None, k, :]
     return np.ascontiguousarray(out)
 
 
-def place_cast(scene: Scene, state: FrameState, texels: int) -> Cast:
+def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast:
     """The shadow map around the dancer, on the texel grid of the world: its edge must not crawl as she moves."""
-    axes = shadow_axes(light_direction(scene.look, state.camera))
+    axes = shadow_axes(light_direction(scene.look, camera))
     if texels == 0:
         return Cast(axes, np.zeros(2), 0.0)
     scale = texels / SHADOW_REACH
-    root = state.joints[0, :3, 3]
+    root = joints[0, :3, 3]
     corner = [np.floor((axes[k] * root).sum() * scale) / scale - SHADOW_REACH / 2 for k in (0, 1)]
     return Cast(axes, np.array(corner), scale)
 
@@ -52,8 +75,10 @@ def place_cast(scene: Scene, state: FrameState, texels: int) -> Cast:
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
     """Rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue), (2, 9)."""
     out = np.zeros((2, 9))
+    out[:, 5] = NO_FOOT
+    if state.joints is None:
+        return out
     for row, mark, colour in zip(out, foot_marks(scene, state.joints), scene.colours.by_limb[:2], strict=True):
-        row[5] = NO_FOOT
         if mark is not None:
             near = max(0.0, 1.0 - mark.height / scene.look.light.contact_height)
             row[:] = (*mark.heel, *mark.toe, mark.ground, near, *colour)

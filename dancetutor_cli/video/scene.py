@@ -55,12 +55,13 @@ class Scene:
 class FrameState:
     """One frame.
 
-    joints : float64 (j, 4, 4), world matrices of the character's joints, see `rig.kinematics.joint_matrices`
+    joints : float64 (j, 4, 4), world matrices of the character's joints, see `rig.kinematics.joint_matrices`; None for
+    the room without her
     camera : where it is seen from; frames from one camera (but for its pan) are quick, a moved camera redraws the stage
     lit : float (panels,), 0 dark to 1 fully lit; lit_by : int (panels,), `play.model.Limb` whose colour a panel has
     """
 
-    joints: Array
+    joints: Array | None
     camera: Camera
     lit: NDArray[np.floating]
     lit_by: NDArray[np.integer]
@@ -79,11 +80,11 @@ class FootMark:
 def check_state(scene: Scene, state: FrameState) -> None:
     """UsageError if the arrays do not fit the scene."""
     joints = len(scene.character.skeleton.names)
-    if state.joints.shape != (joints, 4, 4):
+    if state.joints is not None and state.joints.shape != (joints, 4, 4):
         raise UsageError(f"frame: joints have shape {state.joints.shape}, the character needs ({joints}, 4, 4)")
     if len(state.lit) != scene.panels or len(state.lit_by) != scene.panels:
         raise UsageError(f"frame: lit and lit_by need one entry for each of the pad's {scene.panels} panels")
-    if not np.isfinite(state.joints).all():
+    if state.joints is not None and not np.isfinite(state.joints).all():
         raise UsageError("frame: the joints have places that are not numbers; bake the motion again")
 
 

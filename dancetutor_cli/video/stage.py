@@ -24,11 +24,15 @@ _FLOOR_REACH = 40.0
 
 
 class PadLike(Protocol):
-    """What the stage needs of a pad: panels as (x, y) in panel widths, x to the right, y to the screen."""
+    """What the picture needs of a `pads.Pad`, in panel widths, x to the right, y to the screen."""
 
     @property
-    def panels(self) -> tuple[tuple[float, float], ...]:
-        """Centre of each panel, in column order."""
+    def panels(self) -> Array:
+        """Centre of each panel, (c, 2), in column order."""
+
+    @property
+    def arrows(self) -> Array:
+        """Where the arrow on each panel points, (c, 2); (0, 0): it has none."""
 
     @property
     def centre(self) -> tuple[float, float]:
@@ -72,23 +76,23 @@ class Stage:
 
 
 def tiles_of(pad: PadLike) -> Tiles:
-    """The grid of 3 by 3 tiles for each four panels (or whatever the pad has), with the panels' places in it."""
+    """The grid of tiles under the panels: squares of 3 by 3, as many as hold all panels, the first around (0, 0)."""
     panels = np.asarray(pad.panels, dtype=np.float64)
-    low, high = np.floor(panels.min(0) + 0.5), np.floor(panels.max(0) + 0.5)
-    blocks = max(1, math.ceil((high[0] - low[0] + 1) / 3))
-    across, deep = int(max(3 * blocks, high[0] - low[0] + 1)), int(max(3, high[1] - low[1] + 1))
+    first = 3 * np.floor((np.round(panels.min(0)) + 1) / 3) - 1
+    squares = np.floor((np.round(panels.max(0)) + 1 - (first + 1)) / 3) + 1
+    across, deep = (int(3 * n) for n in squares)
     panel = np.full((across, deep), -1, dtype=np.int32)
     arrow = np.zeros((across, deep, 2))
-    angles = getattr(pad, "arrows", None)
-    for column, (x, y) in enumerate(panels):
-        a, b = round(x - low[0]), round(y - low[1])
+    for column, ((x, y), (right, ahead)) in enumerate(
+        zip(panels, np.asarray(pad.arrows, dtype=np.float64), strict=True)
+    ):
+        a, b = round(x - first[0]), round(y - first[1])
         panel[a, b] = column
-        direction = np.array([a % 3 - 1.0, b % 3 - 1.0]) if angles is None else np.asarray(angles[column], float)
-        length = float(np.hypot(*direction))
+        length = math.hypot(right, ahead)
         if length > 0:
-            arrow[a, b] = np.array([-direction[0], direction[1]]) / length
-    corner = (-PANEL * (low[0] - 0.5 - pad.centre[0]), PANEL * (low[1] - 0.5 - pad.centre[1]))
-    return Tiles((float(corner[0]), float(corner[1])), panel, arrow)
+            arrow[a, b] = (-right / length, ahead / length)
+    x, z = (-PANEL * (first[0] - 0.5 - pad.centre[0]), PANEL * (first[1] - 0.5 - pad.centre[1]))
+    return Tiles((float(x), float(z)), panel, arrow)
 
 
 def build_stage(pad: PadLike, look: StageLook) -> Stage:

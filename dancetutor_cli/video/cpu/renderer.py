@@ -27,10 +27,13 @@ from dancetutor_cli.video.prepare import (
     SAMPLES,
     SHADOW_MAP,
     Cast,
+    Shown,
     feet_on_floor,
     ground_box,
+    joints_of,
     panel_lights,
     place_cast,
+    shown,
     skin_matrices,
 )
 from dancetutor_cli.video.renderer import Quality
@@ -69,12 +72,15 @@ class CpuRenderer:
         shift = background.left - camera.pan_pixels(self._size[0])
         np.copyto(self._out, background.picture[:, shift : shift + self._size[0]])
         mesh = self._mesh
-        matrices = skin_matrices(self._scene, state)
+        joints = joints_of(self._scene, state)
+        matrices = skin_matrices(self._scene, joints)
         skin(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights, matrices, self._world)
-        cast = place_cast(self._scene, state, self._map)
-        self._draw_shadow(cast)
+        cast = place_cast(self._scene, camera, joints, self._map)
+        count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
+        triangles = mesh.triangles[:count]
+        self._draw_shadow(triangles, cast)
         self._draw_ground(state, background, shift, cast)
-        self._draw_dancer(camera, cast)
+        self._draw_dancer(triangles, camera, cast)
         return self._out
 
     def close(self) -> None:
@@ -88,12 +94,12 @@ class CpuRenderer:
             self._background = (key, drawn)
         return self._background[1]
 
-    def _draw_shadow(self, cast: Cast) -> None:
+    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast) -> None:
         if not self._map:
             return
         self._shadow[:] = 0.0
         project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
-        fill_depth(self._light_points, self._mesh.triangles, self._shadow)
+        fill_depth(self._light_points, triangles, self._shadow)
         occupied(self._shadow, self._mask)
         radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
         blur(self._mask, radius, self._spare)
@@ -111,7 +117,7 @@ class CpuRenderer:
             look.light.shadow if cast.scale else 0.0, lit, lit_colour, feet_on_floor(self._scene, state), numbers,
         )  # fmt: skip
 
-    def _draw_dancer(self, camera: Camera, cast: Cast) -> None:
+    def _draw_dancer(self, triangles: NDArray[np.int32], camera: Camera, cast: Cast) -> None:
         samples, mesh = self._samples, self._mesh
         matrix = camera.matrix(self._size)
         focal = camera.focal * self._size[1]
@@ -119,14 +125,14 @@ class CpuRenderer:
         project(self._world, matrix, float(samples), NEAR, self._points)
         project_hull(self._world, matrix, float(samples), NEAR, outline, focal, self._hull)
         clear(self._depth, self._ids, self._spans)
-        count = len(mesh.triangles)
-        fill(self._points, mesh.triangles, FRONT, 0, self._depth, self._ids, self._spans)
-        fill(self._hull, mesh.triangles, BACK, count, self._depth, self._ids, self._spans)
+        count = len(triangles)
+        fill(self._points, triangles, FRONT, 0, self._depth, self._ids, self._spans)
+        fill(self._hull, triangles, BACK, count, self._depth, self._ids, self._spans)
         light_vertices(
             self._world, self._points, mesh.uv, mesh.material, np.array(camera.position), cast.axes, cast.origin,
             cast.scale, self._vertex,
         )  # fmt: skip
         resolve(
-            self._out, samples, self._ids, self._depth, self._spans, count, mesh.triangles, mesh.patch, self._vertex,
+            self._out, samples, self._ids, self._depth, self._spans, count, triangles, mesh.patch, self._vertex,
             mesh.texels, mesh.textures, self._shadow, self._toon,
         )  # fmt: skip

@@ -14,6 +14,7 @@ from OpenGL import GL
 from pyrender.primitive import Primitive
 
 from dancetutor_cli.video.geometry import Packed
+from dancetutor_cli.video.prepare import Shown
 
 _FLOAT = 4  # bytes
 
@@ -21,9 +22,11 @@ _FLOAT = 4  # bytes
 class SkinnedPrimitive(Primitive):  # type: ignore[misc]
     """All triangles of one material; attributes in the order of shaders/skinned.vert."""
 
-    def __init__(self, mesh: Packed, triangles: NDArray[np.int32]) -> None:
+    def __init__(self, mesh: Packed, material: int) -> None:
         super().__init__(mesh.positions, normals=mesh.normals, texcoord_0=mesh.uv)
-        self._triangles = np.ascontiguousarray(triangles, dtype=np.uint32)
+        ours = mesh.material[mesh.triangles[:, 0]] == material
+        self._triangles = np.ascontiguousarray(mesh.triangles[ours], dtype=np.uint32)
+        self._feet = int(ours[: mesh.feet].sum())
         self._columns: tuple[NDArray[Any], ...] = (
             mesh.positions,
             mesh.normals,
@@ -52,7 +55,8 @@ class SkinnedPrimitive(Primitive):  # type: ignore[misc]
         GL.glBufferData(GL.GL_ELEMENT_ARRAY_BUFFER, self._triangles.nbytes, self._triangles, GL.GL_STATIC_DRAW)
         GL.glBindVertexArray(0)
 
-    def draw(self) -> None:
-        """Draw it with the current program."""
+    def draw(self, part: Shown) -> None:
+        """Draw it, or the part of it that is shown, with the current program."""
         self._bind()
-        GL.glDrawElements(GL.GL_TRIANGLES, self._triangles.size, GL.GL_UNSIGNED_INT, ctypes.c_void_p(0))
+        count = {Shown.NOTHING: 0, Shown.FEET: 3 * self._feet, Shown.ALL: self._triangles.size}[part]
+        GL.glDrawElements(GL.GL_TRIANGLES, count, GL.GL_UNSIGNED_INT, ctypes.c_void_p(0))

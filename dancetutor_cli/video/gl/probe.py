@@ -56,7 +56,7 @@ def _library(name: str) -> ctypes.CDLL | None:
         return None
 
 
-def _function(egl: ctypes.CDLL, name: bytes, result: type) -> ctypes._FuncPointer | None:  # type: ignore[name-defined]
+def _function(egl: ctypes.CDLL, name: bytes, result: type) -> ctypes._FuncPointer | None:
     """A function of an EGL extension; they are not exported by name."""
     egl.eglGetProcAddress.restype = ctypes.c_void_p
     egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]

@@ -28,11 +28,14 @@ from dancetutor_cli.video.prepare import (
     SHADOW_MAP,
     SHADOW_REACH,
     Cast,
+    Shown,
     feet_on_floor,
     ground_box,
+    joints_of,
     panel_lights,
     pixel_box,
     place_cast,
+    shown,
     skin_matrices,
 )
 from dancetutor_cli.video.renderer import Quality
@@ -69,7 +72,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         mesh = pack(scene.character)
         self._primitives: list[tuple[SkinnedPrimitive, int]] = []
         for number, (first, width, height) in enumerate(mesh.textures):
-            primitive = SkinnedPrimitive(mesh, mesh.triangles[mesh.material[mesh.triangles[:, 0]] == number])
+            primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
             image = mesh.texels[first : first + width * height].reshape(height, width, 3)
             skin = np.round(image * 255).astype(np.uint8)
@@ -93,19 +96,20 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         camera = state.camera
         standing = self._stage(camera)
         shift = standing.left - camera.pan_pixels(self._size[0])
-        cast = place_cast(self._scene, state, SHADOW_MAP[self._quality])
-        bounds = _bounds(state, self._reach)
+        joints, part = joints_of(self._scene, state), shown(state)
+        cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
+        bounds = _bounds(joints, self._reach)
         matrices = np.zeros((_MOST_JOINTS, 3, 4), np.float32)
-        matrices[: len(state.joints)] = skin_matrices(self._scene, state)
+        matrices[: len(joints)] = skin_matrices(self._scene, joints)
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
         GL.glBufferSubData(GL.GL_UNIFORM_BUFFER, 0, matrices.nbytes, matrices)
         GL.glBindBufferBase(GL.GL_UNIFORM_BUFFER, 0, self._joints)
         _set_state()
         light = _light_matrix(cast)
-        self._draw_shadow(light, cast)
+        self._draw_shadow(light, cast, part)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
         self._draw_ground(state, standing, shift, cast, light, bounds)
-        self._draw_dancer(camera, cast, light, bounds)
+        self._draw_dancer(part, camera, cast, light, bounds)
         return self._read()
 
     def close(self) -> None:
@@ -126,7 +130,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._standing = (key, Standing(self._scene, key, self._size, max(2, SAMPLES[self._quality])))
         return self._standing[1]
 
-    def _draw_shadow(self, light: Array, cast: Cast) -> None:
+    def _draw_shadow(self, light: Array, cast: Cast, part: Shown) -> None:
         self._map.bind()
         GL.glDisable(GL.GL_SCISSOR_TEST)
         GL.glClear(GL.GL_DEPTH_BUFFER_BIT)
@@ -134,7 +138,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._use_skinned("depth.frag", light, cast, to_map=1.0)
             GL.glCullFace(GL.GL_BACK)
             for primitive, _ in self._primitives:
-                primitive.draw()
+                primitive.draw(part)
 
     def _use_skinned(self, fragment: str, light: Array, cast: Cast, **more: Any) -> Program:
         program: Program = self._program_cache.program("skinned.vert", fragment)
@@ -173,7 +177,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         _scissor(ground_box(self._scene, state.camera, self._size, bounds, cast))
         _cover(program)
 
-    def _draw_dancer(self, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]) -> None:
+    def _draw_dancer(self, part: Shown, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]) -> None:
         corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
         box = pixel_box(camera, bounds[0] + corners * (bounds[1] - bounds[0]), self._size)
         if box[0] >= box[2] or box[1] >= box[3]:
@@ -206,7 +210,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             GL.glCullFace(culled)
             for primitive, skin in self._primitives:
                 _bind_texture(_SKIN_UNIT, skin)
-                primitive.draw()
+                primitive.draw(part)
         x0, y0, x1, y1 = (int(v) for v in box)
         self._resolved.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))
         self._picture.bind()
@@ -314,10 +318,10 @@ def _reach(scene: Scene, positions: NDArray[Any], joints: NDArray[Any], weights:
     return out
 
 
-def _bounds(state: FrameState, reach: Array) -> tuple[Array, Array]:
+def _bounds(joints: Array, reach: Array) -> tuple[Array, Array]:
     """Least and greatest corner (3,) of a box that holds the dancer."""
     held = reach > 0
-    places, reach = state.joints[held, :3, 3], reach[held, None]
+    places, reach = joints[held, :3, 3], reach[held, None]
     return (places - reach).min(0), (places + reach).max(0)
 
 
