@@ -15,9 +15,10 @@ from dancetutor_cli.errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.film_request import Request, Subject
+    from dancetutor_cli.jobs.film_request import Practice, Request, Subject
     from dancetutor_cli.video.clock import Clock
     from dancetutor_cli.video.encoder import Target
+    from dancetutor_cli.video.layout import Layout
 
 QUALITIES = ("draft", "good", "best")
 RENDERERS = ("auto", "cpu", "gl")
@@ -60,6 +61,11 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.option("--quality", type=click.Choice(QUALITIES), default="good", show_default=True)
 @click.option("--renderer", type=click.Choice(RENDERERS), default="auto", show_default=True)
 @click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
+@click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, as 0.5,0.75,1; the pitch stays.")
+@click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate].")
+@click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run.")
+@click.option("--assist-tick", is_flag=True, help="A clap on each step.")
+@click.option("--metronome", is_flag=True, help="A tick on each beat.")
 @click.option(
     "--sync-offset", type=float, default=0.0, metavar="MS", help="Play the music this much later (ITG charts: 9)."
 )
@@ -128,7 +134,18 @@ def _request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         section=options["section"],
         sync=options["sync_offset"] / 1000,
         mute=options["mute"],
+        practice=_practice(options, layout),
     )
+
+
+def _practice(options: dict[str, Any], layout: Layout) -> Practice:
+    from dancetutor_cli.jobs.film_request import Practice, parse_rates
+    from dancetutor_cli.video.layout import PracticePart
+
+    usual = layout.practice or PracticePart()
+    rates = parse_rates(options["rate"]) if options["rate"] else usual.rates
+    count_in = usual.count_in if options["count_in"] is None else options["count_in"]
+    return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"])
 
 
 def _default_size(size: tuple[int, int], kind: Target) -> tuple[int, int]:

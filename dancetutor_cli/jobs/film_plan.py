@@ -11,14 +11,15 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import Request, Subject, whole_song
+from dancetutor_cli.play.model import StepKind
+from dancetutor_cli.video.diagram import StepRows
 from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.video.overlay import SongShape, Words
 from dancetutor_cli.video.scroll import ScrollSegments, parse_segments
-from dancetutor_cli.video.sound import SoundPlan
+from dancetutor_cli.video.sound import Click, SoundPlan
 from dancetutor_cli.video.sprites import quantisation
-from dancetutor_cli.video.stage import PadLike, tiles_of
 from dancetutor_cli.video.text import Typeface, clean
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play
+
+
+CLAP, TICK, ACCENT = 1150.0, 1600.0, 2200.0  # Hz
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +50,9 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     from dancetutor_cli.play import load_preset, solve_chart
 
     song, chart, clock = subject.song, subject.chart, subject.clock
-    play = solve_chart(chart, load_preset(request.preset))
-    if play is None:
+    play, pad = solve_chart(chart, load_preset(request.preset)), load_pad(chart.steps_type)
+    if play is None or pad is None:
         raise UsageError(f"{request.path}: no pad is known for steps type '{chart.steps_type}'")
-    pad = load_pad(chart.steps_type)
     scrolls = parse_segments(timing_tag(song, chart, "SCROLLS"))
     track = note_track(chart, play, scrolls)
     presses = presses_of(track)
@@ -69,9 +72,10 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         directions=directions_of(pad),
         motion=_motion(request, chart, play, pad, (start, end)),
         pad=pad,
+        rows=step_rows(play),
     )
     fade = 0.0 if request.section else 1.0
-    sound = None if subject.music is None else SoundPlan(subject.music, request.sync, fade_out=fade)
+    sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)
     return Prepared(plan, sound, (*subject.warnings, *title_warnings(song, plan.words, request.look)))
 
 
@@ -102,6 +106,15 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> Note
     return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
 
 
+def step_rows(play: Play) -> StepRows:
+    """The rows with steps that a person sees; the virtual taps of rolls are not among them."""
+    shown = play.rows.steps != StepKind.NONE
+    shown &= play.rows.steps != StepKind.ROLL_TAP
+    keep = shown.any(axis=1)
+    limb = np.where(shown, play.limb, np.int8(-1))
+    return StepRows(play.rows.second[keep], limb[keep], play.feet[keep])
+
+
 def presses_of(track: NoteTrack) -> Presses:
     """Every press of a panel: taps, lifts, and holds and rolls from head to tail."""
     step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
@@ -129,14 +142,9 @@ def timing_tag(song: Song, chart: Chart, name: str) -> str:
     return (chart.tags if own else song.tags).get(name, "")
 
 
-def directions_of(pad: PadLike) -> tuple[float | None, ...]:
+def directions_of(pad: Pad) -> tuple[float | None, ...]:
     """Where each panel's arrow points, degrees clockwise from up, None for a middle panel; as drawn on the pad."""
-    tiles = tiles_of(pad)
-    out: list[float | None] = [None] * len(pad.panels)
-    for panel, (x, z) in zip(tiles.panel.ravel(), tiles.arrow.reshape(-1, 2), strict=True):
-        if panel >= 0 and (x or z):
-            out[panel] = math.degrees(math.atan2(-x, z)) % 360  # world +X is her left
-    return tuple(out)
+    return tuple(math.degrees(math.atan2(x, y)) % 360 if x or y else None for x, y in pad.arrows.tolist())
 
 
 def words_of(song: Song, chart: Chart, look: FilmLook) -> Words:
@@ -171,6 +179,22 @@ def title_warnings(song: Song, words: Words, look: FilmLook) -> tuple[str, ...]:
         return ()
     font = "the built-in font" if look.font is None else str(look.font)
     return (f"{font} has no letters for {missing[:12]!r} in title or artist; give another with --font FILE",)
+
+
+def clicks_of(request: Request, subject: Subject, presses: Presses) -> tuple[Click, ...]:
+    """Claps on steps (always where the music is missing), ticks on beats, and the count before each run."""
+    practice, chart = request.practice, subject.chart
+    out: list[Click] = []
+    if practice.claps or subject.music is None:
+        out += [Click(float(second), CLAP, 0.55) for second in np.unique(presses.start)]
+    one = subject.clock.passes[0]
+    until = one.end if practice.metronome else one.sound_from
+    if practice.metronome or practice.count_in:
+        span = chart.timing.beats(np.array([one.start, max(one.start, until)]))
+        beats = np.arange(math.ceil(span[0] - 1e-6), math.ceil(span[1] - 1e-6))
+        seconds = chart.timing.seconds_of_beats(beats.astype(np.float64))
+        out += [Click(float(s), ACCENT if b % 4 == 0 else TICK, 0.4) for b, s in zip(beats, seconds, strict=True)]
+    return tuple(out)
 
 
 def bpm_shares(chart: Chart) -> list[tuple[float, float]]:

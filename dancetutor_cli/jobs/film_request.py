@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.errors import DancetutorError, MissingFileError
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film_look import FilmLook
@@ -17,6 +19,20 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+
+
+@dataclass(frozen=True, slots=True)
+class Practice:
+    """What helps to learn. rates : speeds of the runs in turn; loop : number of runs (0: one for each rate)
+
+    count_in : beats counted before each run; claps : a clap on each step; metronome : a tick on each beat
+    """
+
+    rates: tuple[float, ...] = (1.0,)
+    loop: int = 0
+    count_in: int = 0
+    claps: bool = False
+    metronome: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +52,7 @@ class Request:
     section: str | None = None
     sync: float = 0.0
     mute: bool = False
+    practice: Practice = Practice()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +74,29 @@ def look_up(request: Request) -> Subject:
     chart = request.selection.one(song)
     music, warnings = (None, ()) if request.mute else find_music(song)
     start, end = _section(request, chart)
-    return Subject(song, chart, Clock((Pass(start, end),), request.fps), music, warnings)
+    return Subject(song, chart, Clock(passes_of(chart, request.practice, start, end), request.fps), music, warnings)
+
+
+def parse_rates(text: str) -> tuple[float, ...]:
+    """ "0.5,0.75,1.0" to numbers; UsageError outside 0.25 to 2."""
+    try:
+        rates = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        rates = ()
+    if not rates or not all(0.25 <= rate <= 2 for rate in rates):
+        raise UsageError(f"rate '{text}': give speeds from 0.25 to 2, separated by commas, as 0.5,0.75,1")
+    return rates
+
+
+def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
+    """The runs through a section, slower ones first as asked for, each with its count-in."""
+    lead = 0.0
+    if practice.count_in:
+        beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
+        lead = practice.count_in * beat
+    count = practice.loop or len(practice.rates)
+    rates = (practice.rates[i % len(practice.rates)] for i in range(count))
+    return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
 
 
 def whole_song(chart: Chart) -> tuple[float, float]:
@@ -86,4 +125,4 @@ def find_music(song: Song) -> tuple[Path | None, tuple[str, ...]]:
     try:
         return music_file(song), ()
     except MissingFileError as error:
-        return None, (f"{error}; the film is silent",)
+        return None, (f"{error}; the film has claps on the steps instead",)

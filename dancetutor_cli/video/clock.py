@@ -12,13 +12,14 @@ from dancetutor_cli.errors import UsageError
 class Pass:
     """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
 
-    sound_from : the music is silent before this second (a count-in runs ahead of it)
+    sound_from : the music is silent before this second, while `count` beats are counted in
     """
 
     start: float
     end: float
     rate: float = 1.0
     sound_from: float = -math.inf
+    count: int = 0
 
     @property
     def seconds(self) -> float:
@@ -47,14 +48,14 @@ class Clock:
         """Number of frames: enough to cover the film."""
         return max(1, math.ceil(self.seconds * self.fps - 1e-6))
 
-    def at(self, frame: int) -> tuple[float, Pass]:
-        """Second of the music that a frame shows, and the pass it lies in.
+    def at(self, frame: int) -> tuple[float, int]:
+        """Second of the music that a frame shows, and which pass it lies in.
 
         Frame k is on the screen from k / fps on. What happens at a second T shows in the first frame not before T.
         """
         film = frame / self.fps
-        for one in self.passes:
+        for number, one in enumerate(self.passes):
             if film < one.seconds - 1e-9:
-                return one.start + film * one.rate, one
+                return one.start + film * one.rate, number
             film -= one.seconds
-        return self.passes[-1].end, self.passes[-1]
+        return self.passes[-1].end, len(self.passes) - 1

@@ -12,7 +12,9 @@ from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.blit import Frame
-from dancetutor_cli.video.scene import FrameState, Scene
+from dancetutor_cli.video.diagram import Foot
+from dancetutor_cli.video.scene import FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.video.stage import PANEL
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
@@ -46,6 +48,25 @@ class Dancer:
         """The picture at `second` of the music, uint8 (h, w, 3); overwritten by the next call."""
         lit, by = self._lit(second)
         return self.renderer.frame(FrameState(self._joints(second), self.camera, lit, by))
+
+    def still(self) -> Frame:
+        """The room without the dancer."""
+        joints = self._joints(0.0)
+        joints[:, 1, 3] += 1000.0
+        nobody = np.zeros(self.scene.panels)
+        return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
+
+    def feet(self, second: float) -> tuple[Foot | None, Foot | None]:
+        """Both feet from above, in panel widths of the pad."""
+        left, right = foot_marks(self.scene, self._joints(second))
+        return self._foot(left), self._foot(right)
+
+    def _foot(self, mark: FootMark | None) -> Foot | None:
+        if mark is None:
+            return None
+        cx, cy = self.scene.pad.centre
+        heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
+        return Foot(heel, toe, mark.height)
 
     def _joints(self, second: float) -> NDArray[np.float64]:
         """World matrices of the character's joints, which go by name: its file may order them its own way."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import subprocess
 import tempfile
 from collections.abc import Sequence
@@ -47,8 +48,11 @@ def _options() -> dict[str, object]:
 def _last_words(log: IO[bytes]) -> str:
     log.seek(0)
     lines = [line.strip() for line in log.read().decode("utf-8", "replace").splitlines() if line.strip()]
+    lines = [re.sub(r"\[[^\]]*\]\s*", "", line) for line in lines]
     telling = [line for line in lines if "No space left" in line or "Permission denied" in line]
-    return (telling or lines or ["it gave no message"])[-1]
+    if telling or not lines:
+        return telling[0] if telling else "it gave no message"
+    return lines[0] if lines[0] == lines[-1] else f"{lines[0]}; {lines[-1]}"  # the cause, and what came of it
 
 
 class Process:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.video import overlay
 from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.clock import Clock
+from dancetutor_cli.video.diagram import FeetDiagram, NextRows, PadMap, StepRows
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.highway import Highway, HighwayGeometry
 from dancetutor_cli.video.layout import pixels
@@ -20,12 +21,15 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.sprites import highway_style
+from dancetutor_cli.video.television import Television
 from dancetutor_cli.video.text import Typeface
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.video.dancer import Dancer
     from dancetutor_cli.video.stage import PadLike
+
+BACKGROUND = (11, 12, 22)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +38,7 @@ class FilmPlan:
 
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
-    motion : the dancer's, or None where the layout has none
+    motion : the dancer's, or None where the layout has none; rows : the play's, for the next rows' pads
     """
 
     look: FilmLook
@@ -49,6 +53,7 @@ class FilmPlan:
     directions: tuple[float | None, ...]
     motion: Motion | None
     pad: PadLike | None
+    rows: StepRows | None = None
 
 
 class Film:
@@ -56,23 +61,27 @@ class Film:
 
     def __init__(self, plan: FilmPlan) -> None:
         self.plan = plan
-        look = plan.look
-        width, height = look.size
-        self.face = Typeface(look.font)
-        self.base = np.zeros((height, width, 3), dtype=np.uint8)
-        self.highway = self._highway() if look.layout.highway else None
+        self.layout, self.size = plan.look.layout, plan.look.size
+        self.columns = len(plan.directions)
+        self.scale = self.layout.scale(self.size)
+        self.face = Typeface(plan.look.font)
+        self.style = highway_style()
+        self.lights = PanelLights(plan.presses, self.columns, self.style.panel_seconds)
+        self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
+        self.base[...] = BACKGROUND
+        self.highway = self._highway() if self.layout.highway else None
+        if self.layout.screen:
+            width, height = self.layout.screen.pixels
+            self.screen_base = np.zeros((height, width, 3), dtype=np.uint8)
         if self.highway:
-            self.highway.background(self.base)
-
-    @property
-    def _scale(self) -> float:
-        return self.plan.look.layout.scale(self.plan.look.size)
+            self.highway.background(self.screen_base if self.layout.screen else self.base)
 
     def _highway(self) -> Highway:
-        plan, part = self.plan, self.plan.look.layout.highway
+        plan, part = self.plan, self.layout.highway
         assert part is not None
-        box = plan.look.layout.highway_box(plan.look.size, len(plan.directions))
-        lane = min(part.lane * self._scale, 0.86 * (box[2] - box[0]) / max(1, len(plan.directions)))
+        box = self.layout.highway_box(self.size, self.columns)
+        scale = 1.0 if self.layout.screen else self.scale
+        lane = min(part.lane * scale, 0.86 * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
@@ -81,18 +90,26 @@ class Film:
         return Highway(plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face)
 
     @cached_property
-    def _overlays(self) -> tuple[overlay.Header | None, overlay.Legend | None, overlay.Progress | None]:
-        plan, layout, style = self.plan, self.plan.look.layout, highway_style()
-        size, scale, face = plan.look.size, self._scale, self.face
-        header, legend, progress = layout.header, layout.legend, layout.progress
-        limbs = {int(limb) for limb in np.unique(plan.notes.limb) if limb >= 0}
-        return (
-            overlay.Header(plan.words, pixels(header.box, size), scale * header.text, face, style) if header else None,
-            overlay.Legend(limbs, pixels(legend.box, size), scale * legend.text, face) if legend else None,
-            overlay.Progress(plan.song, pixels(progress.box, size), scale * progress.text, face, style)
-            if progress
-            else None,
-        )
+    def _words(self) -> list[overlay.Header | overlay.Legend]:
+        """What is written and never changes."""
+        out: list[overlay.Header | overlay.Legend] = []
+        if part := self.layout.header:
+            box = pixels(part.box, self.size)
+            out.append(overlay.Header(self.plan.words, box, self.scale * part.text, self.face, self.style))
+        if part := self.layout.legend:
+            limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
+            out.append(overlay.Legend(limbs, pixels(part.box, self.size), self.scale * part.text, self.face))
+        return out
+
+    @cached_property
+    def _moving(self) -> tuple[overlay.Progress | None, overlay.Runs | None]:
+        """What is written and changes."""
+        progress, header = self.layout.progress, self.layout.header
+        runs = overlay.Runs(self.plan.clock, self.size, self.scale * (header.text if header else 1.0), self.face)
+        if not progress:
+            return None, runs
+        box = pixels(progress.box, self.size)
+        return overlay.Progress(self.plan.song, box, self.scale * progress.text, self.face, self.style), runs
 
     @cached_property
     def _dancer(self) -> Dancer:
@@ -100,32 +117,64 @@ class Film:
         from dancetutor_cli.video import dancer
 
         plan, look = self.plan, self.plan.look
-        columns = len(plan.directions)
-        left, top, right, bottom = look.layout.dancer_box(look.size, columns)
-        assert look.layout.dancer is not None and plan.motion is not None and plan.pad is not None
-        lights = PanelLights(plan.presses, columns, highway_style().panel_seconds)
-        camera = look.camera or look.layout.dancer.camera
+        left, top, right, bottom = self.layout.dancer_box(self.size, self.columns)
+        assert self.layout.dancer is not None and plan.motion is not None and plan.pad is not None
+        camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
-        return dancer.Dancer(plan.motion, plan.pad, lights, size, camera, look.quality, look.renderer)
+        return dancer.Dancer(plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer)
+
+    @cached_property
+    def _screen(self) -> Television | None:
+        part = self.layout.screen
+        return None if part is None else Television(part.centre, part.size, self._dancer.camera, self._dancer.still())
+
+    @cached_property
+    def _diagrams(self) -> tuple[FeetDiagram | None, NextRows | None]:
+        plan, feet, after = self.plan, self.layout.feet, self.layout.next
+        if plan.pad is None:
+            return None, None
+        large, small = None, None
+        if feet:
+            pads = PadMap(plan.pad, plan.directions, pixels(feet.box, self.size))
+            large = FeetDiagram(pads, self.lights, self.face)
+        if after and plan.rows is not None:
+            box = pixels(after.box, self.size)
+            small = NextRows(plan.rows, plan.pad, plan.directions, box, after.count, self.face)
+        return large, small
 
     def frame(self, number: int) -> Frame:
         """Frame `number` of the film, uint8 (h, w, 3)."""
-        plan = self.plan
-        second, _ = plan.clock.at(number)
+        second, run = self.plan.clock.at(number)
+        beat = float(self.plan.beats[number])
         picture = self.base.copy()
-        if plan.look.layout.dancer and plan.motion is not None:
-            left, top, right, bottom = plan.look.layout.dancer_box(plan.look.size, len(plan.directions))
-            picture[top:bottom, left:right] = self._dancer.frame(second)
-        if self.highway:
-            self.highway.draw(picture, second, float(plan.beats[number]))
-        header, legend, progress = self._overlays
-        if header:
-            header.draw(picture)
-        if legend:
-            legend.draw(picture)
+        if self.layout.dancer and self.plan.motion is not None:
+            left, top, right, bottom = self.layout.dancer_box(self.size, self.columns)
+            picture[top:bottom, left:right] = self._room(second, beat)
+        if self.highway and not self.layout.screen:
+            self.highway.draw(picture, second, beat)
+        large, small = self._diagrams
+        if large:
+            large.draw(picture, second, self._dancer.feet(second))
+        if small:
+            small.draw(picture, second)
+        for words in self._words:
+            words.draw(picture)
+        progress, runs = self._moving
         if progress:
             progress.draw(picture, second)
+        if runs:
+            runs.draw(picture, second, run)
         return picture
+
+    def _room(self, second: float, beat: float) -> Frame:
+        """The dancer in her room, with the screen if the layout has one."""
+        screen = self._screen
+        frame = self._dancer.frame(second)
+        if screen is not None and self.highway is not None:
+            shown = self.screen_base.copy()
+            self.highway.draw(shown, second, beat)
+            screen.draw(frame, shown)
+        return frame
 
     def frames(self, first: int, last: int) -> Iterator[Frame]:
         """Frames first..last - 1."""

@@ -41,6 +41,31 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
+class ScreenPart:
+    """A screen in the room, which shows the highway. centre : world, metres; size : metres; pixels : its picture."""
+
+    centre: tuple[float, float, float]
+    size: tuple[float, float]
+    pixels: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class NextPart:
+    """Small pads with the next rows. box : share of the picture; count : how many."""
+
+    box: Box
+    count: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class PracticePart:
+    """How a layout runs where nothing else is asked for. rates : speeds in turn; count_in : beats."""
+
+    rates: tuple[float, ...] = (1.0,)
+    count_in: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class WideBoxes:
     """Other boxes for pads of more than five panels."""
 
@@ -58,6 +83,10 @@ class Layout:
     header: Part | None = None
     legend: Part | None = None
     progress: Part | None = None
+    screen: ScreenPart | None = None
+    feet: Part | None = None
+    next: NextPart | None = None
+    practice: PracticePart | None = None
     wide: WideBoxes | None = None
 
     def scale(self, size: tuple[int, int]) -> float:
@@ -71,8 +100,10 @@ class Layout:
         return pixels(other or self.dancer.box, size)
 
     def highway_box(self, size: tuple[int, int], columns: int) -> PixelBox:
-        """The highway's box in pixels."""
+        """The highway's box in pixels: of the picture, or of the screen that it is shown on."""
         assert self.highway is not None
+        if self.screen is not None:
+            return pixels(self.highway.box, self.screen.pixels)
         other = self.wide.highway if self.wide and columns > WIDE_PAD else None
         return pixels(other or self.highway.box, size)
 
@@ -101,7 +132,11 @@ def _checked(path: Path) -> Layout:
     layout = load(path, Layout)
     if layout.dancer is None and layout.highway is None:
         raise FileError(path, "a layout needs a dancer, a highway or both")
-    for name in ("dancer", "highway", "header", "legend", "progress"):
+    if layout.screen is not None and (layout.dancer is None or layout.highway is None):
+        raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
+    if layout.feet is not None and layout.dancer is None:
+        raise FileError(path, "feet need a dancer, whose feet they are")
+    for name in ("dancer", "highway", "header", "legend", "progress", "feet", "next"):
         part = getattr(layout, name)
         if part is not None and not _inside(part.box):
             raise FileError(path, f"{name}.box: left, top, right, bottom must be shares 0 to 1 in rising order")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video import shapes, sprites
 from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle
+from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.sprites import HighwayStyle
 from dancetutor_cli.video.text import Typeface
@@ -102,6 +104,37 @@ class Legend:
         """Lay the legend over the picture."""
         for sprite, x, y in self.lines:
             blit(frame, sprite, x, round(y))
+
+
+class Runs:
+    """Which run of a practice film this is and how fast, at the top right; and the numbers of the count-in."""
+
+    def __init__(self, clock: Clock, size: tuple[int, int], scale: float, face: Typeface) -> None:
+        self.clock, self.size, self.scale = clock, size, scale
+        several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
+        texts = [self._text(number) for number in range(len(clock.passes))] if several else []
+        self.labels = [pill(text, 20 * scale, WHITE, face, scale) for text in texts]
+        counts = range(1, max(one.count for one in clock.passes) + 1)
+        big = 150 * scale
+        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=3 * scale, shadow=5 * scale) for n in counts}
+
+    def _text(self, number: int) -> str:
+        one, count = self.clock.passes[number], len(self.clock.passes)
+        speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
+        return f"{speed} · {number + 1} of {count}" if count > 1 else speed
+
+    def draw(self, frame: Frame, second: float, run: int) -> None:
+        """Draw at `second` of the music in pass `run`."""
+        if self.labels:
+            label = self.labels[run]
+            blit(frame, label, (self.size[0] - label.shape[1]) / 2, round(14 * self.scale))
+        one = self.clock.passes[run]
+        if one.count and second < one.sound_from - 1e-6:
+            left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
+            number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
+            fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
+            x, y = (self.size[0] - number.shape[1]) / 2, (self.size[1] - number.shape[0]) / 2
+            blit(frame, number, x, round(y), fade)
 
 
 @dataclass(frozen=True, slots=True)

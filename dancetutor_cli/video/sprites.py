@@ -69,7 +69,7 @@ def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=64)
-def _distance(canvas: int, size: float, direction: float | None) -> shapes.Field:
+def distance(canvas: int, size: float, direction: float | None) -> shapes.Field:
     """Distance to the note shape on a square canvas; the slow part of a sprite, shared by all its colours."""
     x, y = shapes.grid(canvas, canvas)
     return shapes.polygon(x, y, _outline(size * 0.96, direction)) - 0.02 * size
@@ -78,7 +78,7 @@ def _distance(canvas: int, size: float, direction: float | None) -> shapes.Field
 def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
     """A note: white rim, body in `colour` lit from above, dark edge. `hollow`: a lift, only its rim in colour."""
     p = shapes.Painter(size, size)
-    d = _distance(size, size * 0.95, direction)
+    d = distance(size, size * 0.95, direction)
     unit = size / 64
     base = np.array(colour, dtype=np.float64)
     p.paint(shapes.cover(d - 1.6 * unit), (8, 9, 16), 0.9)
@@ -95,7 +95,7 @@ def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False)
 def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
     """The still target of a lane: a dark body with a bright rim."""
     p = shapes.Painter(size, size)
-    d = _distance(size, size * 0.95, direction)
+    d = distance(size, size * 0.95, direction)
     unit = size / 64
     p.paint(shapes.cover(d - 1.6 * unit), (6, 7, 14), 0.85)
     p.paint(shapes.cover(d), colour, 0.9)
@@ -107,7 +107,7 @@ def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
     """Light around and on a receptor while its panel is pressed; 1.5 times as large as the arrow."""
     full = size * 3 // 2
     p = shapes.Painter(full, full)
-    d = _distance(full, size * 0.95, direction)
+    d = distance(full, size * 0.95, direction)
     halo = np.exp(-np.maximum(d, 0) / (0.085 * size))
     edge = np.clip((full / 2 - np.hypot(p.x, p.y)) / (0.12 * full), 0, 1)
     p.paint(halo * edge, colour, 0.85)

@@ -27,7 +27,7 @@ def test_passes_follow_each_other_at_their_rates() -> None:
     assert clock.at(0)[0] == pytest.approx(4.0)
     assert clock.at(30)[0] == pytest.approx(4.5)  # half speed
     assert clock.at(240)[0] == pytest.approx(4.0)  # the second pass begins
-    assert clock.at(270) == (pytest.approx(5.0), clock.passes[1])
+    assert clock.at(270) == (pytest.approx(5.0), 1)
 
 
 def test_an_empty_section_is_refused() -> None:
