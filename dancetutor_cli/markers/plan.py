@@ -38,11 +38,11 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset: Preset, notes: lis
 
     padless = set()
     for chart in charts:
-        _overrides, _, problems = overrides_for(song, chart)
+        overrides, _, problems = overrides_for(song, chart)
         for problem in problems:
             place = "".join(f":{n}" for n in (problem.line, problem.column) if n is not None)
             notes.append(f"{song.path}{place}: {problem.message}")
-        play = solve_chart(chart, preset)
+        play = solve_chart(chart, preset, overrides)
         if play is None:
             padless.add(chart.steps_type)
             continue
