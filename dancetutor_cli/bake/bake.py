@@ -26,17 +26,20 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.rig.soles import palm_points, place, sole_points
+from dancetutor_cli.rig.soles import BodyPoint, palm_points, place, sole_points
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
+Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
+SHORTEST_GAP = 0.003  # seconds between keys that are not divided further
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
+REFINEMENTS = 2  # rounds of adding keys half-way between others
 KEY_TOLERANCE = 0.0004  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
@@ -88,9 +91,12 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     body = _settled(plan, grid, feet, body, skeleton, settings)
     at = _key_times(plan, fps, start, end)
     rotations, root = _posed(plan, body, at, skeleton, settings)
-    more = (at[1:] + at[:-1]) / 2
-    inserted = _posed(plan, body, more, skeleton, settings)
-    at, rotations, root = _refined(skeleton, (at, rotations, root), (more, *inserted))
+    keys = (at, rotations, root)
+    for _ in range(REFINEMENTS):
+        middles = _doubtful(skeleton, keys)
+        if len(middles):
+            keys = _refined(skeleton, keys, (middles, *_posed(plan, body, middles, skeleton, settings)))
+    at, rotations, root = keys
     look(skeleton, rotations, root, body, at, settings)
     ends = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
@@ -138,22 +144,40 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     return rotations, root
 
 
-def _refined(
-    skeleton: Skeleton, keys: tuple[Array, Array, Array], between: tuple[Array, Array, Array]
-) -> tuple[Array, Array, Array]:
-    """Keys (times, rotations, root) plus those of the frames half-way between them that interpolation would miss.
+def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
+    return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
+
+
+def _doubtful(skeleton: Skeleton, keys: Keys) -> Array:
+    """Times half-way between keys that have a foot or palm near the ground which moves between them."""
+    times, rotations, root = keys
+    transforms = world_transforms(skeleton, rotations, root)
+    doubt = np.zeros(len(times) - 1, dtype=bool)
+    for points in _limb_points(skeleton):
+        places = place(points, *transforms)
+        near = places[..., 1].min(axis=1) < NEAR_GROUND
+        moves = np.abs(np.diff(places, axis=0)).max(axis=(1, 2)) > KEY_TOLERANCE
+        doubt |= (near[1:] | near[:-1]) & moves
+    doubt |= np.abs(np.diff(root[:, 1], n=1)) > 0.004
+    return ((times[1:] + times[:-1]) / 2)[doubt & (np.diff(times) > SHORTEST_GAP)]
+
+
+def _refined(skeleton: Skeleton, keys: Keys, between: Keys) -> Keys:
+    """Keys plus those of the frames `between` them that interpolation would miss.
 
     A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
     it, a landing for example, the frame between becomes a key.
     """
     times, rotations, root = keys
-    guess = quat.slerp(rotations[:-1], rotations[1:], np.full((len(times) - 1, 1), 0.5))
-    seen = world_transforms(skeleton, guess, (root[:-1] + root[1:]) / 2)
+    after = np.searchsorted(times, between[0])
+    share = ((between[0] - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
+    guess = quat.slerp(rotations[after - 1], rotations[after], share)
+    seen = world_transforms(skeleton, guess, root[after - 1] + share * (root[after] - root[after - 1]))
     true = world_transforms(skeleton, between[1], between[2])
-    wanted = np.zeros(len(times) - 1, dtype=bool)
-    for points in (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton))):
+    wanted = np.zeros(len(between[0]), dtype=bool)
+    for points in _limb_points(skeleton):
         right, drawn = place(points, *true), place(points, *seen)
-        low = right[..., 1].min(axis=1) < NEAR_GROUND
+        low = np.minimum(right[..., 1], drawn[..., 1]).min(axis=1) < NEAR_GROUND
         wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
     order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
     merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]

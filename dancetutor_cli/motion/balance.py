@@ -6,6 +6,8 @@ stand; within that the path has the least jerk. In flight nothing pushes sideway
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +38,7 @@ def balanced_path(feet: tuple[FootPath, FootPath], lever: Array, times: Array, s
     nodes = np.arange(times[0], times[-1] + 1.0 / rate, 1.0 / rate)
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     lever = np.interp(nodes, times, lever)
+    feet = _carrying(feet)
     low, high, middle = _support(feet)
     middle = middle + _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
@@ -51,6 +54,16 @@ def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
     """A foot at the sampled times nearest to other ones: standing and swinging are not mixed."""
     i = np.clip(np.round((nodes - times[0]) / (times[1] - times[0])).astype(np.int64), 0, len(times) - 1)
     return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
+
+
+def _carrying(feet: tuple[FootPath, FootPath]) -> tuple[FootPath, FootPath]:
+    """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
+    down = np.stack([f.down for f in feet])
+    firm = down.copy()
+    firm[:, 1:] &= down[:, :-1]
+    firm[:, :-1] &= down[:, 1:]
+    firm = np.where(firm.any(axis=0), firm, down)
+    return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
 
 
 def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:

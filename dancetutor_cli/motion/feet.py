@@ -50,7 +50,8 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     ball = np.column_stack((ground[:, 0], np.where(swinging, _height(track, i, s), 0.0), ground[:, 1]))
     turned = yaw[i] + smooth(s / 0.95) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
-    return FootPath(ball, np.where(swinging, turned, yaw[done]), pitch, ~swinging, s)
+    pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
+    return FootPath(ball, np.where(swinging, turned, yaw[done]), pitch, ~swinging | pivoting, s)
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.clear import detour
 from dancetutor_cli.motion.ease import reduction
 from dancetutor_cli.motion.feet import GRAVITY
 from dancetutor_cli.motion.model import Contact
@@ -20,7 +21,7 @@ from dancetutor_cli.play.model import Limb, Part, Play, StepKind
 Array = NDArray[np.float64]
 LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
 SHORTEST = 0.02  # and at least this part of a second in any case
-HOME_WIDTH = 0.25  # a waiting foot stands so many panels beside the middle
+HOME_OUT = 0.098  # metres; a waiting foot stands so far beside the middle of the pad
 FREE_WINDOW = 0.001
 
 
@@ -33,6 +34,7 @@ class _Foot:
     yaw: float  # without toe-out
     free: float  # the foot may not leave before
     swings: list[Swing] = field(default_factory=list)
+    evading: tuple[float, tuple[Array, float]] | None = None  # time of a mine, and where the foot stood before it
 
     @property
     def outward(self) -> float:
@@ -47,7 +49,7 @@ class Planner:
         toe_out = np.radians(settings.step.toe_out)
         self.feet = []
         for side, x in ((0, 1.0), (1, -1.0)):
-            middle = np.array([x * HOME_WIDTH * stage.PANEL * 1.4, 0.0])
+            middle = np.array([x * HOME_OUT, 0.0])
             self.feet.append(_Foot(side, stage.ball_of(middle, x * toe_out), 0.0, -np.inf))
         self.start = tuple((tuple(f.ball), f.outward * toe_out) for f in self.feet)
         self.normal = 0.0  # unwrapped feet normal, degrees
@@ -103,20 +105,28 @@ class Planner:
     def _step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> None:
         step, foot, other = self.settings.step, self.feet[side], self.feet[1 - side]
         cut = float(reduction(duration, step.fast, step.longest))
+        up = self._resumed(foot, time)
         body = self._body_yaw()
         yaw = self._limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
         target, yaw = self._target(i, columns, foot, yaw, stage.middle_of(other.ball, other.yaw), cut)
         lift = min(time - duration * (1.0 - step.double_support), time - LEAST_SWING)
-        lift = min(max(lift, foot.free), time - SHORTEST)
+        lift = min(max(lift, foot.free), time - SHORTEST) if up is None else up
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         if np.linalg.norm(target - foot.ball) < 0.05:
             height = max(height * step.jack_height, step.height_fast)
         pitches = self._pitches(cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
-        bulge = self._bulge(foot, target, yaw, stage.middle_of(other.ball, other.yaw))
-        self._move(foot, Swing(lift, time, _pair(target), self._toes(foot, yaw), height, pitches, bulge), target, yaw)
+        bulge = self._bulge(foot, target, yaw, other)
+        kind = "step"
+        if up is not None:
+            kind, height = "evade", max(height, self.settings.mines.height)
+        toes = self._toes(foot, yaw)
+        self._move(foot, Swing(lift, time, _pair(target), toes, height, pitches, bulge, kind), target, yaw)
+        self._pivot(other, lift, time)
 
     def _jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
         jump, step = self.settings.jump, self.settings.step
+        for foot in self.feet:
+            self._land_early(foot, time)
         cut = float(reduction(duration, step.fast, step.longest))
         body = self._body_yaw()
         old = [f.ball for f in self.feet]
@@ -181,25 +191,18 @@ class Planner:
         out = np.radians([lift, most * (1.0 - 0.5 * cut), land + 0.3 * rest, rest])
         return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
-    def _bulge(self, foot: _Foot, target: Array, yaw: float, other: Array) -> tuple[float, float]:
+    def _bulge(self, foot: _Foot, target: Array, yaw: float, other: _Foot) -> tuple[float, float]:
         """Sideways detour that keeps the swinging foot clear of the standing one."""
-        a, b = stage.middle_of(foot.ball, foot.yaw), stage.middle_of(target, yaw)
-        path = b - a
-        length = float(np.linalg.norm(path))
-        if length < 0.05:
-            return 0.0, 0.0
-        along = float(np.dot(other - a, path)) / length**2
-        if not 0.1 < along < 0.9:
-            return 0.0, 0.0
-        away = a + along * path - other
-        distance = float(np.linalg.norm(away))
-        clearance = self.settings.step.clearance
-        if distance >= clearance:
-            return 0.0, 0.0
-        aside = np.array([path[1], -path[0]]) / length
-        if float(np.dot(away, aside)) < 0:
-            aside = -aside
-        return _pair(aside * (clearance - distance) / max(np.sin(np.pi * along) ** 2, 0.35))
+        a, b, c = self._toes(foot, foot.yaw), self._toes(foot, yaw), self._toes(other, other.yaw)
+        middles = (stage.middle_of(foot.ball, a), stage.middle_of(target, b), stage.middle_of(other.ball, c))
+        return detour(middles[0], a, middles[1], b, middles[2], c, self.settings.step.apart)
+
+    def _land_early(self, foot: _Foot, time: float) -> None:
+        """Before a jump a foot that hovers over a mine comes down in time to push off."""
+        evading, foot.evading = foot.evading, None
+        if evading is not None and foot.free > time - 0.1:
+            foot.swings.pop()
+            (foot.ball, foot.yaw), foot.free = evading[1], evading[0]
 
     # turning
 
@@ -215,6 +218,30 @@ class Planner:
             rest = 90.0 + (rest - 90.0) * k
         return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
 
+    def _pivot(self, foot: _Foot, start: float, time: float) -> None:
+        """The standing foot turns on its ball when the body turns too far from it."""
+        step = self.settings.step
+        body, limit = self._turned_to(), np.radians(step.pivot_from)
+        if abs(foot.yaw - body) <= limit:
+            return
+        yaw = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        begin = max(start, foot.swings[-1].land + FREE_WINDOW if foot.swings else start)
+        if begin > time - 0.04:
+            return
+        up = float(np.radians(step.pivot_pitch))
+        rest = foot.swings[-1].pitches[3] if foot.swings else 0.0
+        swing = Swing(
+            begin, time, _pair(foot.ball), self._toes(foot, yaw), 0.0, (rest, max(up, rest), rest, rest), kind="pivot"
+        )
+        free = foot.free
+        self._move(foot, swing, foot.ball, yaw)
+        foot.free = max(free, foot.free)
+
+    def _turned_to(self) -> float:
+        """The yaw that the body turns to for the feet as they are now, radians."""
+        mean = (self.feet[0].yaw + self.feet[1].yaw) / 2
+        return mean + self.settings.body.turn_to_feet * (self._body_yaw() - mean)
+
     def _limited(self, yaw: float, body: float) -> float:
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))
@@ -223,27 +250,52 @@ class Planner:
         return float(yaw + foot.outward * np.radians(self.settings.step.toe_out))
 
     def _turn(self, time: float, duration: float) -> None:
-        mean = (self.feet[0].yaw + self.feet[1].yaw) / 2
-        yaw = mean + self.settings.body.turn_to_feet * (self._body_yaw() - mean)
-        self.turns.append(Turn(time - duration, time, yaw))
+        self.turns.append(Turn(time - duration, time, self._turned_to()))
 
     # mines, hands, contacts
 
     def _mines(self, i: int, time: float, pressed: dict[int, list[int]]) -> None:
-        """A foot that the solver sends home was threatened by a mine: it goes up, and down again behind the mine."""
+        """Feet that the solver sends home are threatened by a mine: up they go, and down again behind it."""
         if i == 0:
             return
-        mines = self.settings.mines
-        for foot in self.feet:
-            if self.play.feet[i, foot.side] >= 0 or self.play.feet[i - 1, foot.side] < 0 or foot.side in pressed:
-                continue
-            up = max(time - mines.before - 0.1, foot.free)
-            inner = np.array([0.0, 0.0]) + 0.9 * foot.ball
-            foot.swings.append(
-                Swing(up, time + mines.after + 0.1, _pair(inner), self._toes(foot, foot.yaw), mines.height,
-                      (0.1, 0.2, 0.05, 0.0), kind="evade")
-            )  # fmt: skip
-            foot.ball, foot.free = inner, time + mines.after + 0.1
+        now, before = self.play.feet[i], self.play.feet[i - 1]
+        threatened = [f for f in self.feet if now[f.side] < 0 <= before[f.side] and f.side not in pressed]
+        for foot in threatened:
+            self._evade(foot, time, self.panels[before[foot.side]], hop=len(threatened) == 2)
+
+    def _evade(self, foot: _Foot, time: float, panel: Array, hop: bool) -> None:
+        """Lift a foot over a mine; both at once are a hop to the middle of the pad."""
+        mines, other = self.settings.mines, self.feet[1 - foot.side]
+        if hop:
+            half = mines.hop / 2
+            target = stage.ball_of(np.array([foot.outward * HOME_OUT, 0.0]), foot.yaw)
+            height, tuck, kind = GRAVITY * mines.hop**2 / 8, self.settings.jump.tuck, "jump"
+        else:
+            half = mines.before + mines.rise
+            middle = stage.middle_of(other.ball, other.yaw)
+            step = self.settings.step
+            target = stage.landing_ball(
+                panel, self._toes(foot, foot.yaw), middle, 1.0, step.edge_margin, step.clearance
+            )
+            height, tuck, kind = mines.height, 0.0, "evade"
+        lift = min(max(time - half, foot.free), time - SHORTEST)
+        back = (foot.ball, foot.yaw)
+        swing = Swing(
+            lift, time + half, _pair(target), self._toes(foot, foot.yaw), height, (0.1, 0.2, 0.05, 0.0),
+            kind=kind, tuck=tuck, middle0=_pair(foot.ball), middle1=_pair(target),
+        )  # fmt: skip
+        self._move(foot, swing, target, foot.yaw)
+        if not hop:
+            foot.evading = (time, back)
+
+    def _resumed(self, foot: _Foot, time: float) -> float | None:
+        """A step soon after a mine: the foot stays up and goes straight to it. Returns when it left the ground."""
+        evading, foot.evading = foot.evading, None
+        if evading is None or time - evading[0] > self.settings.step.longest:
+            return None
+        swing = foot.swings.pop()
+        foot.ball, foot.yaw = evading[1]
+        return swing.lift
 
     def _contact(self, i: int, time: float, limb: int, column: int) -> None:
         kind = int(self.play.rows.steps[i, column])
@@ -262,7 +314,7 @@ class Planner:
         """A tap ends when its foot leaves the panel."""
         if contact.end < np.inf:
             return contact
-        lifts = [s.lift for s in self.feet[contact.limb].swings]
+        lifts = [s.lift for s in self.feet[contact.limb].swings if s.kind != "pivot"]
         k = int(np.searchsorted(lifts, contact.start))
         end = lifts[k] if k < len(lifts) else contact.start + self.settings.step.longest
         return Contact(

@@ -34,6 +34,10 @@ class StepSettings:
     foot_turn: float
     crossover_turn: float
     clearance: float
+    apart: float
+    pivot_from: float
+    pivot_to: float
+    pivot_pitch: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +101,8 @@ class MineSettings:
     """How a foot gets out of the way of a mine."""
 
     before: float
-    after: float
+    rise: float
+    hop: float
     height: float
 
 

@@ -20,7 +20,7 @@ class Swing:
     height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
     pitches : heel up, radians, at lift, at most, at landing, then standing
     bulge : (x, z) added at the middle of the path, to go around the other foot
-    kind : "step", "jump", "evade" or "pivot"
+    kind : "step", "jump", "evade" (over a mine) or "pivot" (turning on the ball, which stays down)
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
     """
 
@@ -82,7 +82,7 @@ class Plan:
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
     """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
     out = []
-    left, right = (f.swings for f in feet)
+    left, right = ([s for s in f.swings if s.kind != "pivot"] for f in feet)
     i = j = 0
     while i < len(left) and j < len(right):
         start, end = max(left[i].lift, right[j].lift), min(left[i].land, right[j].land)
