@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -27,8 +28,17 @@ def load(path: Path) -> Song:
     try:
         data = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise FileError(path, getattr(error, "strerror", None) or str(error)) from None
+        raise FileError(path, _why_unreadable(path, error)) from None
     return parse(data, path)
+
+
+def _why_unreadable(path: Path, error: Exception) -> str:
+    if os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
+        readable = os.access(path, os.R_OK | os.X_OK)
+        return "no .sm or .ssc file in this folder or below it" if readable else "the folder cannot be read"
+    if isinstance(error, FileNotFoundError):
+        return "no such file or folder"
+    return getattr(error, "strerror", None) or str(error)
 
 
 def parse(data: bytes, path: Path) -> Song:

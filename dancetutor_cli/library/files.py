@@ -3,48 +3,45 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from dancetutor_cli.errors import FileError
-
 SUFFIXES = (".sm", ".ssc")
+_RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
 
 
 def find_files(paths: Sequence[Path]) -> list[Path]:
     """The chart files that paths name: a file as it is, a folder with every .sm and .ssc below it, sorted; none twice.
 
-    Raises `FileError` for a path that is not there, a folder that cannot be read and a folder without charts.
+    Symbolic links to folders are not followed. What cannot be looked into stands for itself in the list (a path that
+    is not there, a folder that cannot be read or holds no charts): `chart.load` says what is wrong with it, and the
+    other files go on.
     """
-    found: dict[Path, None] = {}
+    found: dict[str, Path] = {}
     for path in paths:
-        if path.is_dir():
-            below = _below(path)
-            if not below:
-                raise FileError(path, "no .sm or .ssc file in this folder or below it")
-            found.update(dict.fromkeys(below))
-        elif path.exists():
-            found[path] = None
-        else:
-            raise FileError(path, "no such file or folder")
-    return list(found)
+        for file in _below(path) if os.path.isdir(path) else (path,):  # noqa: PTH112 (Path.is_dir may raise)
+            found.setdefault(os.path.normcase(os.path.abspath(file)), file)  # noqa: PTH100 (links stay links)
+    return list(found.values())
 
 
-def _below(folder: Path) -> list[Path]:
-    def fail(error: OSError) -> None:
-        raise FileError(Path(error.filename or folder), error.strerror or str(error))
-
-    out: list[Path] = []
-    for root, folders, names in os.walk(folder, onerror=fail):
+def _below(folder: Path) -> Iterable[Path]:
+    closed: list[Path] = []
+    files: list[Path] = []
+    for root, folders, names in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename or folder))):
         folders.sort()
-        out.extend(Path(root) / name for name in sorted(names) if Path(name).suffix.lower() in SUFFIXES)
-    return out
+        files.extend(Path(root) / name for name in sorted(names) if is_chart_name(name))
+    return [*files, *sorted(closed)] or [folder]
+
+
+def is_chart_name(name: str) -> bool:
+    """Whether a file of this name in a song's folder is a chart file."""
+    return name.lower().endswith(SUFFIXES) and not name.startswith(_RESOURCE_FORK)
 
 
 def twin(path: Path) -> Path | None:
     """The .ssc beside a .sm of the same name, or the .sm beside a .ssc; None if there is none. Games load the .ssc."""
     other = ".sm" if path.suffix.lower() == ".ssc" else ".ssc"
     for candidate in (path.with_suffix(other), path.with_suffix(other.upper())):
-        if candidate.is_file():
+        if os.path.isfile(candidate):  # noqa: PTH113 (Path.is_file may raise)
             return candidate
     return None

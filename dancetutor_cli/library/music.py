@@ -2,45 +2,64 @@
 
 from __future__ import annotations
 
+import os
+import unicodedata
 from pathlib import Path
 
-from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.reader import suspicious_music
 from dancetutor_cli.errors import FileError, MissingFileError
 
 SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 
 
-def music_file(song: Song) -> Path:
-    """The music of a song, case-insensitive like the games on Windows; with an empty tag the only audio file there.
+def music_file(song: Song, chart: Chart | None = None) -> Path:
+    """The music of a song, or of one of its charts that names its own.
 
-    Raises `FileError` for a name that leaves the folder (absolute, `..`, a network name, a link), that looks like an
-    option or a protocol, for an unknown kind of file; `MissingFileError` if there is no such file.
+    A name is found in any case, like the games do on Windows; with an empty tag it is the only audio file there.
+
+    Raises
+    ------
+    FileError : the name leaves the song's folder (absolute, `..`, a network name, a link), looks like an option or a
+        protocol, or is no kind of audio file
+    MissingFileError : there is no such file
     """
-    folder = song.path.resolve().parent
-    name = song.music.strip()
+    folder = song.path.parent.resolve()
+    name = ((chart.tags.get("MUSIC") if chart else None) or song.music).strip()
     if not name:
-        audio = sorted(p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.is_file())
-        if len(audio) != 1:
-            raise MissingFileError(song.path, f"the file names no music, and its folder has {len(audio)} audio files")
-        return _inside(song, audio[0], folder)
+        return _only_audio_file(song, folder)
     if suspicious_music(name):
         raise FileError(song.path, f"music '{name[:80]}' is refused: it must be a plain file name in the song's folder")
     current = folder
     for part in name.replace("\\", "/").split("/"):
-        if part in ("", "."):
-            continue
-        current = _entry(current, part)
-    if not current.is_file():
+        if part not in ("", "."):
+            current = _entry(current, part)
+    if not os.path.isfile(current):  # noqa: PTH113 (Path.is_file may raise)
         raise MissingFileError(song.path, f"music '{name[:80]}' is not there; put it into the song's folder")
     return _inside(song, current, folder)
 
 
+def _only_audio_file(song: Song, folder: Path) -> Path:
+    audio = [p for p in _files(folder) if p.suffix.lower() in SUFFIXES and not p.name.startswith("._")]
+    if len(audio) != 1:
+        raise MissingFileError(song.path, f"the file names no music, and its folder has {len(audio)} audio files")
+    return _inside(song, audio[0], folder)
+
+
 def _entry(folder: Path, name: str) -> Path:
     exact = folder / name
-    if exact.exists() or not folder.is_dir():
+    if os.path.exists(exact):  # noqa: PTH110 (Path.exists may raise)
         return exact
-    return next((p for p in sorted(folder.iterdir()) if p.name.lower() == name.lower()), exact)
+    wanted = unicodedata.normalize("NFC", name).casefold()
+    same = (p for p in _files(folder) if unicodedata.normalize("NFC", p.name).casefold() == wanted)
+    return next(same, exact)
+
+
+def _files(folder: Path) -> list[Path]:
+    try:
+        return sorted(folder.iterdir())
+    except OSError:
+        return []
 
 
 def _inside(song: Song, path: Path, folder: Path) -> Path:

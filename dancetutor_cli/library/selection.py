@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from dancetutor_cli.chart import names
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import UsageError
 
@@ -11,13 +12,18 @@ from dancetutor_cli.errors import UsageError
 def select(
     song: Song, steps_types: Sequence[str] = (), difficulties: Sequence[str] = (), index: int | None = None
 ) -> list[Chart]:
-    """The charts of a song that match; nothing given matches all. Names in any case; several of a kind mean either."""
-    types, levels = {t.lower() for t in steps_types}, {d.lower() for d in difficulties}
+    """The charts of a song that match, in file order; nothing given matches all.
+
+    Names in any case, old ones too ("Heavy", "Oni"); several of a kind mean either. Raises `UsageError` for a
+    difficulty that no game has.
+    """
+    types = {names.steps_type(text) for text in steps_types}
+    levels = {_difficulty(text) for text in difficulties}
     return [
         chart
         for chart in song.charts
         if (not types or chart.steps_type in types)
-        and (not levels or chart.difficulty.lower() in levels)
+        and (not levels or chart.difficulty in levels)
         and (index is None or chart.index == index)
     ]
 
@@ -29,7 +35,18 @@ def select_one(
     found = select(song, steps_types, difficulties, index)
     if len(found) == 1:
         return found[0]
-    has = "; ".join(f"{chart.index}: {chart.label}" for chart in (found or song.charts))
     if not found:
-        raise UsageError(f"{song.path}: no such chart; the file has {has}")
-    raise UsageError(f"{song.path}: several charts match; choose with --steps-type, --difficulty or --index: {has}")
+        raise UsageError(f"{song.path}: no such chart; the file has {_listed(song.charts)}")
+    how = "--index" if len({(c.steps_type, c.difficulty) for c in found}) < len(found) else "--steps-type, --difficulty"
+    raise UsageError(f"{song.path}: several charts match; choose one with {how}: {_listed(found)}")
+
+
+def _difficulty(text: str) -> str:
+    name, known = names.difficulty(text, "", 0, old=True)
+    if not known:
+        raise UsageError(f"difficulty '{text}' is none; there are {', '.join(names.DIFFICULTIES)}")
+    return name
+
+
+def _listed(charts: Iterable[Chart]) -> str:
+    return "; ".join(f"{chart.index}: {chart.label}" for chart in charts)
