@@ -68,7 +68,8 @@ def _read_back(song: Song, one: ChartFeet, data: bytes) -> bytes | EditError:
 def edit_paths(song: Song, charts: Sequence[Chart]) -> list[Path]:
     """The .edit files of our own that belong to charts of a song, and those whose chart the song no longer has."""
     names = _names(song)
-    others = {_path(song, names[c.index]) for c in song.charts if c not in charts and c.index in names}
+    meant = {chart.index for chart in charts}
+    others = {_path(song, name) for index, name in names.items() if index not in meant}
     mark = f"{_NAME} ".encode()
     found = sorted(song.path.parent.glob(f"{glob.escape(song.path.stem)} {_NAME}*.edit"))
     return [path for path in found if path not in others and mark in path.read_bytes()[:4096]]
@@ -95,7 +96,8 @@ def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
 def without_added(song: Song, charts: Sequence[Chart]) -> list[Splice]:
     """Replacements that take out of a file what was added for these charts, or for charts that it no longer has."""
     names = _names(song)
-    kept = {names[c.index] for c in song.charts if c.index in names and c not in charts}
+    meant = {chart.index for chart in charts}
+    kept = {name for index, name in names.items() if index not in meant}
     return [_block(song, chart) for chart in song.charts if ours(chart) and chart.description not in kept]
 
 
