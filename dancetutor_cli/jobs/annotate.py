@@ -83,13 +83,12 @@ def _attempt(item: Item, order: Order, second: bool) -> Outcome:
 
 def _annotate(item: Item, order: Order, second: bool) -> Outcome:
     from dancetutor_cli import chart as reader
-    from dancetutor_cli.markers.model import EDIT, SMEDITOR
+    from dancetutor_cli.markers.model import BESIDE, EDIT, SIDECAR
 
-    song = reader.load(item.source)
-    styles = [style for style in order.styles if not (second and style in (EDIT, SMEDITOR))]
-    if order.into_file and EDIT in order.styles and EDIT not in styles:
-        styles.append(EDIT)
-    work = _Work(item, order, song, tuple(styles))
+    beside = [style for style in order.styles if style in BESIDE and (style == SIDECAR or not second)]
+    if order.into_file and not order.strip and EDIT in beside:
+        beside.remove(EDIT)
+    work = _Work(item, order, reader.load(item.source), tuple(beside))
     if order.strip:
         work.strip()
     else:
@@ -100,8 +99,8 @@ def _annotate(item: Item, order: Order, second: bool) -> Outcome:
 class _Work:
     """One file on its way: what would change, then the changes themselves."""
 
-    def __init__(self, item: Item, order: Order, song: Song, styles: tuple[str, ...]) -> None:
-        self.item, self.order, self.song, self.styles = item, order, song, styles
+    def __init__(self, item: Item, order: Order, song: Song, beside: tuple[str, ...]) -> None:
+        self.item, self.order, self.song, self.beside = item, order, song, beside
         self.changes: list[Change] = []
         self.lacks: list[Lack] = []
         self.notes: list[str] = []
@@ -112,21 +111,19 @@ class _Work:
         """Plan all styles that are asked for."""
         from dancetutor_cli.markers import beside
         from dancetutor_cli.markers import plan as planning
-        from dancetutor_cli.markers.model import BESIDE, EDIT
+        from dancetutor_cli.markers.model import EDIT
         from dancetutor_cli.play import load_preset
 
         preset = load_preset(self.order.preset)
-        added = EDIT in self.styles and self.order.into_file
+        added = EDIT in self.order.styles and self.order.into_file
         base = self._without_added() if added else self.song
         feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes))
-        plan = planning.mark(base, feet, self.styles, self.order.force)
+        plan = planning.mark(base, feet, self.order.styles, self.order.force)
         if added:
             planning.add_charts(base, self.song, plan, feet)
         planning.checked(base, plan)
         self._take(plan)
-        for style in self.styles:
-            if style not in BESIDE or (style == EDIT and added):
-                continue
+        for style in self.beside:
             try:
                 for planned in beside.write(style, self.song, self.item.target.parent, feet):
                     self._add(planned)
@@ -137,19 +134,18 @@ class _Work:
         """Plan the removal of all styles that are asked for."""
         from dancetutor_cli.markers import beside
         from dancetutor_cli.markers import plan as planning
-        from dancetutor_cli.markers.model import BESIDE, EDIT, Lack
+        from dancetutor_cli.markers.model import EDIT, Lack
 
-        base = self._without_added() if EDIT in self.styles else self.song
+        base = self._without_added() if EDIT in self.order.styles else self.song
         charts = self._charts(base)
-        plan = planning.unmark(base, charts, self.styles, self.order.force)
+        plan = planning.unmark(base, charts, self.order.styles, self.order.force)
         planning.checked(base, plan)
         self._take(plan)
         if base is not self.song:
             self.lacks.append(Lack("has charts for two pads to take out"))
-        for style in self.styles:
-            if style in BESIDE and self._in_place:
-                for planned in beside.strip(style, self.song, charts):
-                    self._add(planned)
+        for style in self.beside if self._in_place else ():
+            for planned in beside.strip(style, self.song, charts):
+                self._add(planned)
 
     def outcome(self) -> Outcome:
         """Bring the changes to the disk if that is wanted, and say what became of the file."""
