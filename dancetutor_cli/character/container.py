@@ -87,7 +87,7 @@ class Container:
         item = self.item("accessors", index)
         if "sparse" in item or "bufferView" not in item:
             raise self.fail("sparse accessors are not supported; export the character without them")
-        dtype = np.dtype(_DTYPES.get(item.get("componentType", 0), "V1"))
+        dtype = np.dtype(_DTYPES.get(self.integer(item.get("componentType"), 0, 2**16, "componentType"), "V1"))
         width = _WIDTHS.get(str(item.get("type")), 0)
         if dtype.kind == "V" or not width:
             raise self.fail(f"accessor {index} has an unknown type; the file is broken")

@@ -24,6 +24,7 @@ STRETCH = 0.995  # of the leg's length: the knee never locks
 HAND_BLEND = 0.25  # seconds over which a hand leaves its own way for the panel
 _LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
 _LEFT_HAND = 2  # play.model.Limb
+Limb = tuple[str, tuple[str, str, str], Array, Array]  # side, chain, target (f, 3) of its end, weight (f,)
 
 
 def retarget(motion: Motion, character: Character) -> Motion:
@@ -37,14 +38,15 @@ def retarget(motion: Motion, character: Character) -> Motion:
     positions, world = world_transforms(motion.skeleton, motion.rotations, motion.root)
     source = {name: (positions[:, j], world[:, j]) for j, name in enumerate(motion.skeleton.names)}
     turned = _world_rotations(own, source, len(motion.times))
-    ankles = {side: _ankle_target(motion.skeleton, own, source, side) for side in "lr"}
-    root = _root(motion, own, turned, ankles)
-    for side in "lr":
-        turned = _limb(own, turned, root, side, _LEG, ankles[side], source, np.ones(len(motion.times)))
-        weight = _hand_weight(motion, _LEFT_HAND + "lr".index(side))
+    always = np.ones(len(motion.times))
+    limbs = [(side, _LEG, _ankle_target(motion.skeleton, own, source, side), always) for side in "lr"]
+    for number, side in enumerate("lr"):
+        weight = _hand_weight(motion, _LEFT_HAND + number)
         if weight.any():
-            wrist = source[f"{side}_radiocarpal"][0]
-            turned = _limb(own, turned, root, side, _ARM, wrist, source, weight)
+            limbs.append((side, _ARM, source[f"{side}_radiocarpal"][0], weight))
+    root = _root(motion, own, turned, limbs)
+    for limb in limbs:
+        turned = _limb(own, turned, root, limb, source)
     return replace(motion, skeleton=own, rotations=quat.continuous(local_rotations(own, turned)), root=root)
 
 
@@ -75,17 +77,17 @@ def _under_ball(skeleton: Skeleton, side: str) -> Array:
     return np.array([0.0, -ankle[1], ahead])
 
 
-def _root(motion: Motion, own: Skeleton, turned: Array, ankles: dict[str, Array]) -> Array:
-    """Root positions (f, 3): her height in proportion to the legs, pulled to where both feet are in reach."""
+def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Array:
+    """Root positions (f, 3): her height in proportion to the legs, pulled to where every target is in reach."""
     root = motion.root.copy()
     root[:, 1] *= own.rest[0, 1] / motion.skeleton.rest[0, 1]
-    hips = {s: quat.rotate(turned[:, 0], own.rest[own.index(f"{s}_hip")] - own.rest[0]) for s in "lr"}
-    reach = {s: STRETCH * sum(_lengths(own, s, _LEG)) for s in "lr"}
-    for _ in range(12):
-        for side in "lr":
-            way = root + hips[side] - ankles[side]
-            over = np.maximum(np.linalg.norm(way, axis=1) - reach[side], 0.0)
-            root = root - way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9) * over[:, None]
+    places, _ = world_transforms(own, local_rotations(own, turned), np.zeros_like(root))
+    for _ in range(16):
+        for side, chain, target, weight in limbs:
+            way = root + places[:, own.index(f"{side}_{chain[0]}")] - target
+            distance = np.linalg.norm(way, axis=1)
+            over = weight * np.maximum(distance - STRETCH * sum(_lengths(own, side, chain)), 0.0)
+            root = root - way * (over / np.maximum(distance, 1e-9))[:, None]
     return root
 
 
@@ -94,20 +96,12 @@ def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tupl
     return float(np.linalg.norm(b - a)), float(np.linalg.norm(c - b))
 
 
-def _limb(
-    own: Skeleton,
-    turned: Array,
-    root: Array,
-    side: str,
-    chain: tuple[str, str, str],
-    target: Array,
-    source: dict[str, tuple[Array, Array]],
-    weight: Array,
-) -> Array:
+def _limb(own: Skeleton, turned: Array, root: Array, limb: Limb, source: dict[str, tuple[Array, Array]]) -> Array:
     """World rotations with one limb solved: its end at `target` where weight (f,) is 1, its bend as the dancer's.
 
     The cosine law gives the bend; the twist of both bones stays the dancer's. The last joint keeps its world rotation.
     """
+    side, chain, target, weight = limb
     upper, lower, last = (own.index(f"{side}_{name}") for name in chain)
     positions, _ = world_transforms(own, local_rotations(own, turned), root)
     start, end = positions[:, upper], positions[:, last]
@@ -128,7 +122,7 @@ def _limb(
     tip = start + axis * span
     out = turned.copy()
     for joint, tip_joint, line in ((upper, lower, middle - start), (lower, last, tip - middle)):
-        current = quat.rotate(out[:, joint], own.offsets[tip_joint])
+        current = quat.rotate(out[:, joint], own.rest[tip_joint] - own.rest[joint])
         out[:, joint] = quat.multiply(quat.between(current, line), out[:, joint])
     return _carry(own, turned, out, (upper, lower))
 
