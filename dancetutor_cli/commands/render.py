@@ -16,7 +16,6 @@ from dancetutor_cli.errors import FileError, UsageError
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.film_request import Practice, Request, Subject
-    from dancetutor_cli.video.clock import Clock
     from dancetutor_cli.video.encoder import Target
     from dancetutor_cli.video.layout import Layout
 
@@ -83,12 +82,13 @@ def command(file: Path, output: Path | None, frames: Path | None, yes: bool, qui
     from dancetutor_cli.jobs.film_request import look_up
 
     _end_on_term()
-    request = _request(file, options, _kind(output, frames))
+    kind = _kind(output, frames)
+    request = _request(file, options, kind)
     subject = look_up(request)
     target = frames or output or Path(default_name(subject.song, subject.chart))
     _check_target(target, frames is not None)
-    _allow_long(subject.clock, file, yes)
-    _make(request, subject, target, _kind(target, frames), options["jobs"], quiet)
+    _allow_long(subject, file, yes)
+    _make(request, subject, target, kind, options["jobs"], quiet)
 
 
 def _kind(output: Path | None, frames: Path | None) -> Target:
@@ -171,12 +171,14 @@ def _check_target(target: Path, folder: bool) -> None:
         raise FileError(target, "is a folder; give a file name, or --frames for pictures")
 
 
-def _allow_long(clock: Clock, file: Path, yes: bool) -> None:
+def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
     """Ask before hours of work; without a terminal nobody can answer, so refuse."""
-    if yes or clock.seconds <= LONG:
+    clock = subject.clock
+    if yes or max(clock.seconds, subject.written) <= LONG:
         return
-    hours = clock.seconds / 3600
-    what = f"{file}: the film would last {hours:.1f} hours ({clock.frames:,} frames)"
+    what = f"{file}: the film would last {clock.seconds / 60:.0f} minutes ({clock.frames:,} frames)"
+    if clock.seconds <= LONG:
+        what = f"{file}: the chart is {subject.written / 3600:.1f} hours long, though its last note is early"
     if sys.stdin.isatty() and sys.stderr.isatty():
         click.confirm(f"{what}. Render it?", abort=True, err=True)
     else:

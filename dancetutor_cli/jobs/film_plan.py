@@ -37,7 +37,7 @@ CLAP, TICK, ACCENT = 1150.0, 1600.0, 2200.0  # Hz
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A film's plan, its sound (None: silent), and what people should know about it."""
+    """A film's plan, its sound (None: silent), and warnings that the subject had not yet."""
 
     plan: FilmPlan
     sound: SoundPlan | None
@@ -76,7 +76,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)
-    return Prepared(plan, sound, (*subject.warnings, *title_warnings(song, plan.words, request.look)))
+    return Prepared(plan, sound, title_warnings(song, plan.words, request.look))
 
 
 def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> NoteTrack:

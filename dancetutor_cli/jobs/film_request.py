@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.video.clock import Clock, Pass
@@ -57,13 +57,25 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """The chart that a request is about, read and checked. music : the song's file, None for a silent film."""
+    """The chart that a request is about, read and checked.
+
+    music : the song's file, None for a film without; section : whether only a part is wanted
+    """
 
     song: Song
     chart: Chart
     clock: Clock
     music: Path | None
+    section: bool
     warnings: tuple[str, ...]
+
+    @property
+    def written(self) -> float:
+        """Length of the chart as written, empty measures included, unless only a section is wanted; seconds."""
+        if self.section:
+            return 0.0
+        end = np.array([len(self.chart.measures.line) * TICKS_PER_MEASURE], dtype=np.int64)
+        return float(self.chart.timing.seconds(end)[0])
 
 
 def look_up(request: Request) -> Subject:
@@ -74,7 +86,8 @@ def look_up(request: Request) -> Subject:
     chart = request.selection.one(song)
     music, warnings = (None, ()) if request.mute else find_music(song)
     start, end = _section(request, chart)
-    return Subject(song, chart, Clock(passes_of(chart, request.practice, start, end), request.fps), music, warnings)
+    clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
+    return Subject(song, chart, clock, music, request.section is not None, warnings)
 
 
 def parse_rates(text: str) -> tuple[float, ...]:

@@ -44,21 +44,21 @@ class Dancer:
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in names])
         self._theirs = np.array([names.index(skeleton.names[j]) for j in self._ours])
 
-    def frame(self, second: float) -> Frame:
+    def frame(self, second: float, joints: NDArray[np.float64]) -> Frame:
         """The picture at `second` of the music, uint8 (h, w, 3); overwritten by the next call."""
         lit, by = self._lit(second)
-        return self.renderer.frame(FrameState(self._joints(second), self.camera, lit, by))
+        return self.renderer.frame(FrameState(joints, self.camera, lit, by))
 
     def still(self) -> Frame:
         """The room without the dancer."""
-        joints = self._joints(0.0)
+        joints = self.joints(np.zeros(1))[0]
         joints[:, 1, 3] += 1000.0
         nobody = np.zeros(self.scene.panels)
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
 
-    def feet(self, second: float) -> tuple[Foot | None, Foot | None]:
+    def feet(self, joints: NDArray[np.float64]) -> tuple[Foot | None, Foot | None]:
         """Both feet from above, in panel widths of the pad."""
-        left, right = foot_marks(self.scene, self._joints(second))
+        left, right = foot_marks(self.scene, joints)
         return self._foot(left), self._foot(right)
 
     def _foot(self, mark: FootMark | None) -> Foot | None:
@@ -68,15 +68,17 @@ class Dancer:
         heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
         return Foot(heel, toe, mark.height)
 
-    def _joints(self, second: float) -> NDArray[np.float64]:
-        """World matrices of the character's joints, which go by name: its file may order them its own way."""
+    def joints(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """World matrices (f, j, 4, 4) of the character's joints at `seconds` (f,).
+
+        Joints go by name: a character's file may order them its own way.
+        """
         skeleton = self.scene.character.skeleton
-        sampled, root = sample(self.motion, np.array([second]))
-        rotations = np.zeros((1, len(skeleton.names), 4))
+        sampled, root = sample(self.motion, seconds)
+        rotations = np.zeros((len(seconds), len(skeleton.names), 4))
         rotations[..., 0] = 1.0
         rotations[:, self._ours] = sampled[:, self._theirs]
-        matrices: NDArray[np.float64] = joint_matrices(skeleton, rotations, root)[0]
-        return matrices
+        return joint_matrices(skeleton, rotations, root)
 
     def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         levels = [self.lights.at(column, second) for column in range(self.scene.panels)]

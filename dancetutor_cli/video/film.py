@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.stage import PadLike
 
 BACKGROUND = (11, 12, 22)
+BLOCK = 64  # frames whose joints are made at once
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +66,7 @@ class Film:
         self.columns = len(plan.directions)
         self.scale = self.layout.scale(self.size)
         self.face = Typeface(plan.look.font)
+        self._block, self._block_joints = -1, np.zeros((0, 0, 4, 4))
         self.style = highway_style()
         self.lights = PanelLights(plan.presses, self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
@@ -149,12 +151,12 @@ class Film:
         picture = self.base.copy()
         if self.layout.dancer and self.plan.motion is not None:
             left, top, right, bottom = self.layout.dancer_box(self.size, self.columns)
-            picture[top:bottom, left:right] = self._room(second, beat)
+            picture[top:bottom, left:right] = self._room(number, second, beat)
         if self.highway and not self.layout.screen:
             self.highway.draw(picture, second, beat)
         large, small = self._diagrams
         if large:
-            large.draw(picture, second, self._dancer.feet(second))
+            large.draw(picture, second, self._dancer.feet(self._joints(number)))
         if small:
             small.draw(picture, second)
         for words in self._words:
@@ -166,10 +168,23 @@ class Film:
             runs.draw(picture, second, run)
         return picture
 
-    def _room(self, second: float, beat: float) -> Frame:
+    def _joints(self, number: int) -> NDArray[np.float64]:
+        """The dancer's joints in one frame. They are made in blocks, which is quick; always the same blocks, so that
+
+        no bit of a frame depends on which frames were drawn before it.
+        """
+        block = number // BLOCK
+        if block != self._block:
+            frames = range(block * BLOCK, min((block + 1) * BLOCK, self.plan.clock.frames))
+            self._block_joints = self._dancer.joints(np.array([self.plan.clock.at(k)[0] for k in frames]))
+            self._block = block
+        joints: NDArray[np.float64] = self._block_joints[number - block * BLOCK]
+        return joints
+
+    def _room(self, number: int, second: float, beat: float) -> Frame:
         """The dancer in her room, with the screen if the layout has one."""
         screen = self._screen
-        frame = self._dancer.frame(second)
+        frame = self._dancer.frame(second, self._joints(number))
         if screen is not None and self.highway is not None:
             shown = self.screen_base.copy()
             self.highway.draw(shown, second, beat)

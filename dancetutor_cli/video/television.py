@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.camera import Camera
 
 FRAME = (14, 15, 24)
-RIM = (70, 76, 110)
+RIM = (96, 104, 150)
 
 
 @njit(cache=True)
@@ -37,7 +37,7 @@ def _warp(
             if hidden:  # the dancer stands before it
                 continue
             if u < 0 or u >= 1 or v < 0 or v >= 1:
-                edge = 1 if max(-u, u - 1, -v, v - 1) > 0.82 * rim else 0
+                edge = 1 if max(-u, u - 1, -v, v - 1) > 0.7 * rim else 0
                 for k in range(3):
                     frame[y, x, k] = colours[edge, k]
                 continue
