@@ -113,7 +113,8 @@ def _settled(
     """Bake roughly, see where the centre of mass and pinned palms draw the root, and plan the body's path again."""
     coarse = grid[::4]
     deeper = np.zeros(len(plan.presses))
-    for _ in range(SETTLING):
+    rounds = SETTLING if plan.presses else 2
+    for turn in range(rounds):
         targets = _targets(plan, body, coarse, skeleton, settings)
         rotations, root = solve(skeleton, targets, settings.body.reach)
         offset = _mass(skeleton, rotations, root) - root
@@ -122,7 +123,7 @@ def _settled(
         for k, press in enumerate(plan.presses):
             near = (coarse >= press.start - 0.05) & (coarse <= press.end + 0.05)
             deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
-        body = body_path(plan, grid, feet, skeleton, settings, body, above, deeper)
+        body = body_path(plan, grid, feet, skeleton, settings, body, above, deeper, keep=0 < turn < rounds - 1)
     return body
 
 

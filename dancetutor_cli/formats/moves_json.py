@@ -1,7 +1,7 @@
 """Moves as JSON: what moves when, from where to where, for games and other tools that have their own dancer.
 
-One object, schema 1, UTF-8; metres, seconds of the music, degrees; places are [x, z] on the ground, the pad's centre the
-origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
+One object, schema 1, UTF-8; metres, seconds of the music, degrees; places are [x, z] on the ground, the pad's centre
+the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
 
     {"schema": 1, "title": "...", "chart": "dance-single Hard 8",
      "start": {"left_foot": {"at": [0.1, 0.05], "yaw": 9.0}, "right_foot": {...}},

@@ -35,12 +35,8 @@ class BandedLeastSquares:
         """
         if coefficients.shape[1] > REACH:
             raise ValueError(f"a term may touch at most {REACH} nodes")
-        q = coefficients.shape[1]
-        for i in range(q):
-            weighted = weight * coefficients[:, i]
-            np.add.at(self.right, start + i, weighted[:, None] * target)
-            for j in range(i, q):
-                np.add.at(self.bands, (start + i, np.full_like(start, j - i)), weighted * coefficients[:, j])
+        whole = np.ascontiguousarray(target, dtype=np.float64)
+        _accumulate(self.bands, self.right, start, np.ascontiguousarray(coefficients), weight, whole)
 
     def solve(self) -> Array:
         """The minimum, (n, d). The terms must fix every node."""
@@ -73,15 +69,39 @@ def _factor(bands: Array) -> Array:
 
 
 @njit(cache=True)
+def _accumulate(
+    bands: Array, right: Array, start: NDArray[np.int64], coefficients: Array, weight: Array, target: Array
+) -> None:
+    for r in range(len(start)):
+        for i in range(coefficients.shape[1]):
+            weighted = weight[r] * coefficients[r, i]
+            for d in range(right.shape[1]):
+                right[start[r] + i, d] += weighted * target[r, d]
+            for j in range(i, coefficients.shape[1]):
+                bands[start[r] + i, j - i] += weighted * coefficients[r, j]
+
+
+@njit(cache=True)
 def _solve(factor: Array, right: Array) -> Array:
+    out = np.empty_like(right)
+    for d in range(right.shape[1]):
+        out[:, d] = _solve_one(factor, right[:, d])
+    return out
+
+
+@njit(cache=True)
+def _solve_one(factor: Array, right: Array) -> Array:
+    """Solve L L' x = right (n,) for a factor from `_factor`."""
     n, reach = factor.shape
-    x = right.copy()
+    x = np.empty(n)
     for i in range(n):
+        total = right[i]
         for m in range(max(0, i - reach + 1), i):
-            x[i] -= factor[m, i - m] * x[m]
-        x[i] /= factor[i, 0]
+            total -= factor[m, i - m] * x[m]
+        x[i] = total / factor[i, 0]
     for i in range(n - 1, -1, -1):
+        total = x[i]
         for k in range(1, min(reach, n - i)):
-            x[i] -= factor[i, k] * x[i + k]
-        x[i] /= factor[i, 0]
+            total -= factor[i, k] * x[i + k]
+        x[i] = total / factor[i, 0]
     return x

@@ -49,11 +49,13 @@ class BodyPath:
 def body_path(
     plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings,
     before: BodyPath | None = None, above: Array | None = None, deeper: Array | None = None,
+    keep: bool = False,
 ) -> BodyPath:  # fmt: skip
     """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times.
 
     before : the path found in the round before; None in the first
     above : (n, 3), centre of mass minus root as measured on a first bake; None for that of the rest pose
+    keep : leave the path over the ground as it was before
     deeper : (p,) how far each press of a palm drew the root below where it was wanted, metres
     """
     rate = 1.0 / float(times[1] - times[0])
@@ -62,7 +64,10 @@ def body_path(
         mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
         above = np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (len(times), 1))
     reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
-    mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
+    if keep and before is not None:
+        mass_ground = before.mass
+    else:
+        mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
     ground = mass_ground - above[:, [0, 2]]
     yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
     bent = _bent(plan.presses, deeper, times, settings)

@@ -12,10 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.banded import REACH, BandedLeastSquares, _factor, _solve
+from dancetutor_cli.motion.banded import REACH, BandedLeastSquares, _factor, _solve_one
 
 Array = NDArray[np.float64]
-TOLERANCE = 1e-7
+TOLERANCE = 1e-6
 ROUNDS = 60
 
 
@@ -59,7 +59,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
             rows.append(sign * wide[use])
             highs.append(bound[use])
     x, found, rounds = _interior_point(
-        problem.bands, problem.right[:, 0], np.concatenate(starts), np.concatenate(rows), np.concatenate(highs),
+        problem.bands, np.ascontiguousarray(problem.right[:, 0]), np.concatenate(starts), np.concatenate(rows), np.concatenate(highs),
         TOLERANCE, ROUNDS,
     )  # fmt: skip
     return Solution(x, bool(found), int(rounds))
@@ -107,10 +107,9 @@ def _direction(
     factor: Array, start: NDArray[np.int64], rows: Array, dual: Array, primal: Array, s: Array, z: Array, aim: Array
 ) -> tuple[Array, Array, Array]:
     """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
-    right = np.zeros((len(dual), 1))
-    right[:, 0] = -dual
-    _add_transposed(start, rows, -(aim - s * z + z * primal) / s, right[:, 0])
-    dx = _solve(factor, right)[:, 0]
+    right = -dual
+    _add_transposed(start, rows, -(aim - s * z + z * primal) / s, right)
+    dx = _solve_one(factor, right)
     ds = -primal - _times_rows(start, rows, dx)
     dz = (aim - s * z - z * ds) / s
     return dx, ds, dz
@@ -120,7 +119,7 @@ def _direction(
 def _interior_point(
     bands: Array, right: Array, start: NDArray[np.int64], rows: Array, high: Array, tolerance: float, most: int
 ) -> tuple[Array, bool, int]:
-    x = _solve(_factor(bands), right.reshape(-1, 1))[:, 0]
+    x = _solve_one(_factor(bands), right)
     m = len(high)
     if m == 0:
         return x, True, 0

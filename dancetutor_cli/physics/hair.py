@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.limbs import Vec, add, dot, length, qrot, scale, sub
 from dancetutor_cli.motion.paths import cubic
 from dancetutor_cli.motion.settings import HairSettings
 from dancetutor_cli.rig import quaternion as quat
@@ -24,6 +25,7 @@ JOINTS = ("braid1", "braid2", "braid3", "braid4")
 TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the rest pose, metres
 HEAD = (0.0, 0.085, 0.005)  # middle of the head's ball from the skullbase
 BACK = ((0.0, 0.0, 0.015), (0.0, 0.17, 0.020))  # the back's capsule: its ends from vt10 and from vt4
+ITERATIONS = 5  # of the constraints in each step
 SETTLE = 1.0  # seconds of hanging still before the first frame
 
 
@@ -74,22 +76,21 @@ def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, f
 
 
 @njit(cache=True)
-def _push_out(p: Array, a: Array, b: Array, radius: float) -> None:
-    """Move p (3,) out of the capsule around the line from a to b."""
-    along = b - a
-    size = np.dot(along, along)
-    s = min(1.0, max(0.0, np.dot(p - a, along) / size)) if size > 0.0 else 0.0
-    away = p - (a + s * along)
-    distance = math.sqrt(np.dot(away, away))
+def _pushed_out(p: Vec, a: Vec, b: Vec, radius: float) -> Vec:
+    """p, moved out of the capsule around the line from a to b."""
+    along = sub(b, a)
+    size = dot(along, along)
+    s = min(1.0, max(0.0, dot(sub(p, a), along) / size)) if size > 0.0 else 0.0
+    away = sub(p, add(a, scale(along, s)))
+    distance = length(away)
     if 1e-9 < distance < radius:
-        p += away * ((radius - distance) / distance)
+        return add(p, scale(away, (radius - distance) / distance))
+    return p
 
 
-@njit(cache=True)
-def _turned(q: Array, v: Array) -> Array:
-    axis = q[1:]
-    t = 2.0 * np.cross(axis, v)
-    return v + q[0] * t + np.cross(axis, t)
+@njit(cache=True, inline="always")
+def _vec(a: Array) -> Vec:
+    return (a[0], a[1], a[2])
 
 
 @njit(cache=True)
@@ -100,33 +101,39 @@ def _simulate(
     n = len(bones)
     lengths = np.sqrt((bones**2).sum(axis=1))
     out = np.empty((len(root), n + 1, 3))
-    p = np.empty((n + 1, 3))
+    p, before = np.empty((n + 1, 3)), np.empty((n + 1, 3))
     p[0] = root[0]
+    first = (turn[0, 0], turn[0, 1], turn[0, 2], turn[0, 3])
     for k in range(n):
-        p[k + 1] = p[k] + _turned(turn[0], bones[k])
-    before = p.copy()
+        p[k + 1, 0], p[k + 1, 1], p[k + 1, 2] = add(_vec(p[k]), qrot(first, _vec(bones[k])))
+    before[:] = p
     keep = math.exp(-damping * step)
     for frame in range(-settle, len(root)):
         f = max(frame, 0)
+        q = (turn[f, 0], turn[f, 1], turn[f, 2], turn[f, 3])
         for k in range(1, n + 1):
-            velocity = (p[k] - before[k]) * keep
-            before[k] = p[k]
-            p[k] = p[k] + velocity
+            for d in range(3):
+                moved = (p[k, d] - before[k, d]) * keep
+                before[k, d] = p[k, d]
+                p[k, d] += moved
             p[k, 1] -= gravity * step * step
-        before[0] = p[0]
         p[0] = root[f]
-        for _ in range(6):
+        centre, bottom, top = _vec(head[f]), _vec(low[f]), _vec(high[f])
+        held = add(_vec(p[0]), qrot(q, _vec(bones[0])))
+        for _ in range(ITERATIONS):
             for k in range(1, n + 1):
                 # bending: each segment leans a little to where the head, or the segment before, would hold it
+                here, above = _vec(p[k]), _vec(p[k - 1])
                 if k == 1:
-                    rest = p[0] + _turned(turn[f], bones[0])
+                    rest = held
                 else:
-                    rest = p[k - 1] + (p[k - 1] - p[k - 2]) * (lengths[k - 1] / lengths[k - 2])
-                p[k] += (rest - p[k]) * stiffness
-                _push_out(p[k], head[f], head[f], head_radius)
-                _push_out(p[k], low[f], high[f], back_radius)
-                d = p[k] - p[k - 1]
-                p[k] = p[k - 1] + d * (lengths[k - 1] / math.sqrt(np.dot(d, d)))
+                    rest = add(above, scale(sub(above, _vec(p[k - 2])), lengths[k - 1] / lengths[k - 2]))
+                here = add(here, scale(sub(rest, here), stiffness))
+                here = _pushed_out(here, centre, centre, head_radius)
+                here = _pushed_out(here, bottom, top, back_radius)
+                d = sub(here, above)
+                here = add(above, scale(d, lengths[k - 1] / length(d)))
+                p[k, 0], p[k, 1], p[k, 2] = here
         if frame >= 0:
             out[frame] = p
     return out

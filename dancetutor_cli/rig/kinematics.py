@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from dancetutor_cli.rig import quaternion as quat
@@ -24,15 +25,34 @@ def world_transforms(skeleton: Skeleton, rotations: Array, root: Array) -> tuple
     positions (f, j, 3) in metres and rotations (f, j, 4), both in the world
     """
     positions = np.empty((*rotations.shape[:2], 3))
-    world = np.empty_like(rotations)
-    for joint, parent in enumerate(skeleton.parents):
-        if parent < 0:
-            positions[:, joint] = root
-            world[:, joint] = rotations[:, joint]
-        else:
-            positions[:, joint] = positions[:, parent] + quat.rotate(world[:, parent], skeleton.offsets[joint])
-            world[:, joint] = quat.multiply(world[:, parent], rotations[:, joint])
+    world = np.empty(rotations.shape)
+    _forward(skeleton.parents, skeleton.offsets, np.ascontiguousarray(rotations), np.asarray(root), positions, world)
     return positions, world
+
+
+@njit(cache=True)
+def _forward(
+    parents: NDArray[np.int32], offsets: Array, local: Array, root: Array, positions: Array, world: Array
+) -> None:
+    """Fill positions (f, j, 3) and world (f, j, 4)."""
+    for f in range(len(local)):
+        for j in range(len(parents)):
+            p = parents[j]
+            if p < 0:
+                positions[f, j] = root[f]
+                world[f, j] = local[f, j]
+                continue
+            w, x, y, z = world[f, p, 0], world[f, p, 1], world[f, p, 2], world[f, p, 3]
+            vx, vy, vz = offsets[j, 0], offsets[j, 1], offsets[j, 2]
+            tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+            positions[f, j, 0] = positions[f, p, 0] + vx + w * tx + y * tz - z * ty
+            positions[f, j, 1] = positions[f, p, 1] + vy + w * ty + z * tx - x * tz
+            positions[f, j, 2] = positions[f, p, 2] + vz + w * tz + x * ty - y * tx
+            a, b, c, d = local[f, j, 0], local[f, j, 1], local[f, j, 2], local[f, j, 3]
+            world[f, j, 0] = w * a - x * b - y * c - z * d
+            world[f, j, 1] = w * b + x * a + y * d - z * c
+            world[f, j, 2] = w * c - x * d + y * a + z * b
+            world[f, j, 3] = w * d + x * c - y * b + z * a
 
 
 def joint_matrices(skeleton: Skeleton, rotations: Array, root: Array) -> Array:

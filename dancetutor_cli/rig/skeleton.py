@@ -51,8 +51,8 @@ _LEFT_SIDE: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("l_shoulder", "l_sternoclavicular", (0.160, 1.380, -0.015)),
     ("l_elbow", "l_shoulder", (0.160 + 0.262 * _DOWN, 1.380 - 0.262 * _DOWN, -0.015)),
     ("l_radiocarpal", "l_elbow", (0.160 + 0.492 * _DOWN, 1.380 - 0.492 * _DOWN, -0.007)),
-    ("l_eyeball_joint", "skullbase", (0.036, 1.585, 0.056)),
-    ("l_eyelid_joint", "skullbase", (0.036, 1.585, 0.056)),
+    ("l_eyeball_joint", "skullbase", (0.039, 1.589, 0.060)),
+    ("l_eyelid_joint", "skullbase", (0.039, 1.589, 0.060)),
 )
 _MIDDLE: tuple[tuple[str, str | None, tuple[float, float, float]], ...] = (
     ("HumanoidRoot", None, (0.0, 0.935, 0.0)),
@@ -61,7 +61,7 @@ _MIDDLE: tuple[tuple[str, str | None, tuple[float, float, float]], ...] = (
     ("vt4", "vt10", (0.0, 1.290, -0.028)),
     ("vc4", "vt4", (0.0, 1.450, -0.018)),
     ("skullbase", "vc4", (0.0, 1.525, 0.002)),
-    ("braid1", "skullbase", (0.0, 1.625, -0.105)),
+    ("braid1", "skullbase", (0.0, 1.628, -0.116)),
     ("braid2", "braid1", (0.0, 1.515, -0.150)),
     ("braid3", "braid2", (0.0, 1.405, -0.155)),
     ("braid4", "braid3", (0.0, 1.295, -0.155)),

@@ -82,7 +82,7 @@ def hair_depth(body: Body, skeleton: Skeleton) -> Array:
 
 
 def _segments_apart(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Least distance (f,) between the segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection 5.1.9)."""
+    """Least distance (f,) between segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
     u, v, w = b - a, d - c, a - c
     uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)
     uw, vw = np.sum(u * w, axis=1), np.sum(v * w, axis=1)
