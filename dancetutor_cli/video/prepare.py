@@ -17,6 +17,7 @@ SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and d
 SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texels across, 0: no cast shadow
 SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
 _MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
+_MARK_HEIGHT = 1.0  # a foot higher than this has no mark
 NO_FOOT = -1.0
 
 
@@ -79,7 +80,7 @@ def feet_on_floor(scene: Scene, state: FrameState) -> Array:
     if state.joints is None:
         return out
     for row, mark, colour in zip(out, foot_marks(scene, state.joints), scene.colours.by_limb[:2], strict=True):
-        if mark is not None:
+        if mark is not None and mark.height < _MARK_HEIGHT:
             near = max(0.0, 1.0 - mark.height / scene.look.light.contact_height)
             row[:] = (*mark.heel, *mark.toe, mark.ground, near, *colour)
     return out
