@@ -1,286 +1,349 @@
-"""The dynamic programme: the cheapest way through all rows, as one numba kernel over precomputed tables.
+"""The dynamic programme: the cheapest way through the rows, over transition tables that are filled as states are met.
 
-A state is packed into an integer: left and right foot (0 = home, 1.. = panel), last leg, side of an exact 180, and the panel
-each hand holds. The kernel keeps the states reachable after each row (few: the panels of the last rows bind the feet), each
-with its cheapest cost and its parent; of equal costs the first found stays, and ways are tried left foot first.
+States and rows are numbered as they come up ("interned"). For each pair of a row pattern and a state the model lists
+the moves once; from then on the loop only adds costs. Costs of a row are kept relative to the row's cheapest state.
 """
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-# Fields of a state: 5 bits left, 5 right, 2 last leg (0 none, 1 left, 2 right), 2 side, 5 left hand, 5 right hand.
-# Fields of an action: 5 bits for each limb, 0 = presses nothing, else panel + 1.
-# Order of the weights and terms; `solver.TERMS` names them.
-CROSSED, DOUBLESTEP, FOOTSWITCH, SPIN, TURN_135, TURN_180 = 0, 1, 2, 3, 4, 5
-HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYED = 6, 7, 8, 9, 10
-FORCED = 11  # a doublestep because the other foot is held: an event without a cost
-EVENTS = 12
-SLOTS = 1 << 12
+from dancetutor_cli.play.tables import COLUMN_BITS, MOST_MOVES
+from dancetutor_cli.play.thesis_moves import expand_thesis, start_thesis
 
-
-@njit(cache=True)
-def _after_mines(state, active, mines, side, n):  # type: ignore[no-untyped-def]
-    """Release ended holds of the hands; feet that are free and on a mine go home: one turn."""
-    left, right = state & 31, (state >> 5) & 31
-    last, facing = (state >> 10) & 3, (state >> 12) & 3
-    lhand, rhand = (state >> 14) & 31, (state >> 19) & 31
-    if lhand and not (active >> (lhand - 1)) & 1:
-        lhand = 0
-    if rhand and not (active >> (rhand - 1)) & 1:
-        rhand = 0
-    new_left, new_right = left, right
-    if left and (mines >> (left - 1)) & 1 and not (active >> (left - 1)) & 1:
-        new_left = 0
-    if right and (mines >> (right - 1)) & 1 and not (active >> (right - 1)) & 1:
-        new_right = 0
-    if new_left != left or new_right != right:
-        facing = np.int64(side[left * n + right, facing, new_left * n + new_right])
-    return new_left | (new_right << 5) | (last << 10) | (facing << 12) | (lhand << 14) | (rhand << 19)
+# what `_advance` wants before it can go on
+DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_TIMED = range(7)
+STATES, PATTERNS, MOVES, PAIRS, NODES, TIMED = range(6)  # places in `counts`
+UNKNOWN = -1
+MOST_MS = 1023  # longer times cost like this one
 
 
-@njit(cache=True)
-def _move(before, action, row_steps, holds, active, weights, crossed, turn, side, hand, n, events):  # type: ignore[no-untyped-def]
-    """State after an action and its cost; counts what happens in `events` if that is not empty.
+class Tables(NamedTuple):
+    """All states, row patterns and moves met so far with one pad and preset; they outlive a chart.
 
-    `before` is the state after `_after_mines`. Returns (state, cost).
+    counts : int64, how much of each is used
+    state_key : int64; state_hash : int32, number of the state or -1, power of two long
+    pattern_row, pattern_forced : int64; pattern_hash : int32
+    pair_key : int64, pattern << 32 | state, -1 free; pair_moves : int64, first move << 16 | number of moves
+    move_next : int32, state; move_cost : int32; move_timed : int32, number of packed facts
+    move_action, move_part : int64; move_terms : int32 (, t); move_events : int32, bits of `vocabulary.EVENTS`
+    timed_key : int64, packed facts; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
     """
-    left, right = before & 31, (before >> 5) & 31
-    last, facing = (before >> 10) & 3, (before >> 12) & 3
-    lhand, rhand = (before >> 14) & 31, (before >> 19) & 31
-    a_left, a_right = action & 31, (action >> 5) & 31
-    a_lhand, a_rhand = (action >> 10) & 31, (action >> 15) & 31
-    new_left = a_left if a_left else left
-    new_right = a_right if a_right else right
-    several = row_steps & (row_steps - 1)
-    old, new = left * n + right, new_left * n + new_right
-    bits = turn[old, facing, new]
-    facing = np.int64(side[old, facing, new])
-    left_free = not (left and (active >> (left - 1)) & 1)
-    right_free = not (right and (active >> (right - 1)) & 1)
-    record = len(events) > 0
-    cost = 0
-    if crossed[new]:
-        cost += weights[CROSSED]
-        if record:
-            events[CROSSED] += 1
-    if bits & 1:
-        cost += weights[SPIN]
-        if record:
-            events[SPIN] += 1
-    if bits & 2:
-        cost += weights[TURN_135]
-        if record:
-            events[TURN_135] += 1
-    if bits & 4:
-        cost += weights[TURN_180]
-        if record:
-            events[TURN_180] += 1
-    if several:
-        swapped = (left_free and left and (row_steps >> (left - 1)) & 1 and a_left and a_left != left) or (
-            right_free and right and (row_steps >> (right - 1)) & 1 and a_right and a_right != right
-        )
-        if swapped:
-            cost += weights[FOOTSWITCH]
-            if record:
-                events[FOOTSWITCH] += 1
-    elif left_free and right_free:
-        same = (a_left and last == 1 and a_left != left) or (a_right and last == 2 and a_right != right)
-        if same:
-            cost += weights[DOUBLESTEP]
-            if record:
-                events[DOUBLESTEP] += 1
-    elif record and ((a_left and last == 1 and a_left != left) or (a_right and last == 2 and a_right != right)):
-        events[FORCED] += 1
-    for h in range(2):
-        pressed = a_lhand if h == 0 else a_rhand
-        if pressed:
-            kind = hand[h, new, pressed - 1]
-            for bit, weight in ((1, HAND_ACROSS), (2, HAND_ASIDE), (4, HAND_BEHIND)):
-                if kind & bit:
-                    cost += weights[weight]
-                    if record:
-                        events[weight] += 1
-            if (holds >> (pressed - 1)) & 1:
-                if h == 0:
-                    lhand = pressed
-                else:
-                    rhand = pressed
-    holding = (1 if lhand else 0) + (1 if rhand else 0)
-    played = (1 if a_left else 0) + (1 if a_right else 0) + (1 if a_lhand else 0) + (1 if a_rhand else 0)
-    steps = 0
-    rest = row_steps
-    while rest:
-        rest &= rest - 1
-        steps += 1
-    cost += holding * weights[HAND_HOLD] + (steps - played) * weights[UNPLAYED]
-    if record:
-        events[HAND_HOLD] += holding
-        events[UNPLAYED] += steps - played
-    if a_left and a_right:
-        last = 0
-    elif a_left:
-        last = 1
-    elif a_right:
-        last = 2
-    return new_left | (new_right << 5) | (last << 10) | (facing << 12) | (lhand << 14) | (rhand << 19), cost
+
+    counts: NDArray[np.int64]
+    state_key: NDArray[np.int64]
+    state_hash: NDArray[np.int32]
+    pattern_row: NDArray[np.int64]
+    pattern_forced: NDArray[np.int64]
+    pattern_hash: NDArray[np.int32]
+    pair_key: NDArray[np.int64]
+    pair_moves: NDArray[np.int64]
+    move_next: NDArray[np.int32]
+    move_cost: NDArray[np.int32]
+    move_timed: NDArray[np.int32]
+    move_action: NDArray[np.int64]
+    move_part: NDArray[np.int64]
+    move_terms: NDArray[np.int32]
+    move_events: NDArray[np.int32]
+    timed_key: NDArray[np.int64]
+    timed_cost: NDArray[np.int32]
 
 
-@njit(cache=True)
-def _actions(before, row_steps, active, allow_doublestep, out):  # type: ignore[no-untyped-def]
-    """Every way to play a row from a state; fills `out`, returns their number."""
-    left, right = before & 31, (before >> 5) & 31
-    last = (before >> 10) & 3
-    lhand_free, rhand_free = not (before >> 14) & 31, not (before >> 19) & 31
-    left_free = not (left and (active >> (left - 1)) & 1)
-    right_free = not (right and (active >> (right - 1)) & 1)
-    count = 0
-    if row_steps & (row_steps - 1) == 0:
-        panel = 1
-        while not (row_steps >> (panel - 1)) & 1:
-            panel += 1
-        if left_free and left == panel:
-            out[0] = panel
-            return 1
-        if right_free and right == panel:
-            out[0] = panel << 5
-            return 1
-        if left_free and (not right_free or allow_doublestep or last != 1):
-            out[count] = panel
-            count += 1
-        if right_free and (not left_free or allow_doublestep or last != 2):
-            out[count] = panel << 5
-            count += 1
-        if left_free or right_free:
-            return count
-        if lhand_free:
-            out[count] = panel << 10
-            count += 1
-        if rhand_free:
-            out[count] = panel << 15
-            count += 1
-        if count == 0:
-            out[0] = 0
-            count = 1
-        return count
-    panels = np.zeros(17, dtype=np.int64)
-    k = 0
-    for c in range(16):
-        if (row_steps >> c) & 1:
-            panels[k] = c + 1
-            k += 1
-    legs = (1 if left_free else 0) + (1 if right_free else 0)
-    hands = (1 if lhand_free else 0) + (1 if rhand_free else 0)
-    must = min(hands, max(0, k - legs))
-    for i in range(k if left_free else 1):
-        a = panels[i] if left_free else 0
-        for j in range(k if right_free else 1):
-            b = panels[j] if right_free else 0
-            if left_free and right_free and a == b:
+class Nodes(NamedTuple):
+    """The states each row can end in. Row r has nodes first[r + 1] to first[r + 2]; first[0] to first[1] is the start.
+
+    first : int64 (n + 2,); base : int64 (n + 1,), cost of the cheapest node before each row
+    cost, move : int32; parent : int32, a node of the row before
+    slot : int32, by state: its node, if that belongs to the row at hand
+    """
+
+    first: NDArray[np.int64]
+    base: NDArray[np.int64]
+    cost: NDArray[np.int32]
+    move: NDArray[np.int32]
+    parent: NDArray[np.int32]
+    slot: NDArray[np.int32]
+
+
+class RowArrays(NamedTuple):
+    """`Rows` for the kernels, n rows and c columns, and the numbers of their patterns.
+
+    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column; pattern : int32 (n,)
+    """
+
+    tick: NDArray[np.int64]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+    forced: NDArray[np.int64]
+    pattern: NDArray[np.int32]
+
+
+@njit
+def _slot_of(value, size):  # type: ignore[no-untyped-def]
+    """Where the search for a number in a hash table of a power of two starts."""
+    mixed = np.uint64(value) * np.uint64(0x9E3779B97F4A7C15)
+    return np.int64(mixed >> np.uint64(32)) & (size - 1)
+
+
+@njit
+def _state(key, t):  # type: ignore[no-untyped-def]
+    """Number of a packed state."""
+    size = len(t.state_hash)
+    at = _slot_of(key, size)
+    while t.state_hash[at] >= 0:
+        if t.state_key[t.state_hash[at]] == key:
+            return t.state_hash[at]
+        at = (at + 1) & (size - 1)
+    number = t.counts[STATES]
+    t.counts[STATES] += 1
+    t.state_hash[at] = number
+    t.state_key[number] = key
+    return number
+
+
+@njit
+def _pattern(row, forced, t):  # type: ignore[no-untyped-def]
+    """Number of a packed row with its overrides."""
+    size = len(t.pattern_hash)
+    at = _slot_of(row ^ forced * 31, size)
+    while t.pattern_hash[at] >= 0:
+        number = t.pattern_hash[at]
+        if t.pattern_row[number] == row and t.pattern_forced[number] == forced:
+            return number
+        at = (at + 1) & (size - 1)
+    number = t.counts[PATTERNS]
+    t.counts[PATTERNS] += 1
+    t.pattern_hash[at] = number
+    t.pattern_row[number] = row
+    t.pattern_forced[number] = forced
+    return number
+
+
+@njit
+def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
+    """Pack every row (see `tables.ROW_MASKS`) and number it; False if the tables have no room for as many patterns."""
+    n, c = rows.steps.shape
+    if t.counts[PATTERNS] + n > len(t.pattern_row) or 2 * (t.counts[PATTERNS] + n) > len(t.pattern_hash):
+        return False
+    ends = np.full(c, -1, dtype=np.int64)
+    held = 0
+    for r in range(n):
+        row = 0
+        if held:
+            for p in range(c):
+                if held >> p & 1 and ends[p] <= rows.tick[r]:
+                    row |= 1 << p + 3 * COLUMN_BITS
+                    held &= ~(1 << p)
+        for p in range(c):
+            step = rows.steps[r, p]
+            if step == 3:
+                row |= 1 << p + COLUMN_BITS
+                ends[p] = rows.hold_end[r, p]
+                held |= 1 << p
+            elif step >= 4 and keep_rolls:
+                row |= 1 << p + step * COLUMN_BITS  # the masks of rolls and roll taps are the fifth and the sixth
+            elif step:
+                row |= 1 << p
+            if rows.mines[r, p]:
+                row |= 1 << p + 2 * COLUMN_BITS
+        rows.pattern[r] = _pattern(row, rows.forced[r], t)
+    return True
+
+
+@njit
+def _timed(facts, t):  # type: ignore[no-untyped-def]
+    """Number of packed facts that cost by time."""
+    for number in range(t.counts[TIMED]):
+        if t.timed_key[number] == facts:
+            return number
+    number = t.counts[TIMED]
+    t.counts[TIMED] += 1
+    t.timed_key[number] = facts
+    return number
+
+
+@njit
+def _meet(pattern, state, model, g, w, switches, out, t):  # type: ignore[no-untyped-def]
+    """Moves of a pair that has not come up before: list, number and keep them. Returns what `pair_moves` holds."""
+    count = expand_thesis(t.state_key[state], t.pattern_row[pattern], t.pattern_forced[pattern], g, w, switches, out)
+    first = t.counts[MOVES]
+    for i in range(count):
+        move = first + i
+        t.move_next[move] = _state(out.key[i], t)
+        t.move_timed[move] = _timed(out.timed[i], t)
+        t.move_action[move], t.move_part[move] = out.action[i], out.part[i]
+        t.move_events[move] = out.events[i]
+        cost = 0
+        for term in range(out.terms.shape[1]):
+            t.move_terms[move, term] = out.terms[i, term]
+            cost += out.terms[i, term]
+        t.move_cost[move] = cost
+    t.counts[MOVES] += count
+    return first << 16 | count
+
+
+@njit
+def _wanted(t, nodes):  # type: ignore[no-untyped-def]
+    """What has no room for one more pair, or DONE."""
+    if t.counts[STATES] + MOST_MOVES > min(len(t.state_key), len(nodes.slot)):
+        return MORE_STATES
+    if t.counts[MOVES] + MOST_MOVES > len(t.move_next):
+        return MORE_MOVES
+    if 2 * t.counts[PAIRS] >= len(t.pair_key):
+        return MORE_PAIRS
+    if t.counts[TIMED] + 64 > len(t.timed_key):
+        return MORE_TIMED
+    return DONE
+
+
+@njit
+def _moves_of(pattern, state, model, g, w, switches, out, t, nodes):  # type: ignore[no-untyped-def]
+    """First move and number of moves of a pair, packed; if it is new and there is no room: what is wanted, negative."""
+    key = np.int64(pattern) << 32 | state
+    size = len(t.pair_key)
+    at = _slot_of(key, size)
+    while t.pair_key[at] >= 0:
+        if t.pair_key[at] == key:
+            return t.pair_moves[at]
+        at = (at + 1) & (size - 1)
+    wanted = _wanted(t, nodes)
+    if wanted != DONE:
+        return np.int64(-wanted)
+    t.pair_key[at] = key
+    t.pair_moves[at] = _meet(pattern, state, model, g, w, switches, out, t)
+    t.counts[PAIRS] += 1
+    return t.pair_moves[at]
+
+
+@njit
+def _row(r, rows, t, nodes, model, g, w, switches, out):  # type: ignore[no-untyped-def]
+    """Nodes of row r from those of the row before. Returns DONE or what there is no room for."""
+    low, high = nodes.first[r], nodes.first[r + 1]
+    used = high
+    pattern = rows.pattern[r]
+    cheapest = np.int32(2147483647)
+    wanted = DONE
+    for v in range(low, high):
+        if used + MOST_MOVES > len(nodes.cost):
+            wanted = MORE_NODES
+            break
+        packed = _moves_of(pattern, t.move_next[nodes.move[v]], model, g, w, switches, out, t, nodes)
+        if packed < 0:
+            wanted = -packed
+            break
+        first = packed >> 16
+        for move in range(first, first + (packed & 0xFFFF)):
+            cost = nodes.cost[v] + t.move_cost[move]
+            state = t.move_next[move]
+            u = nodes.slot[state]
+            if u < high:
+                u = used
+                used += 1
+                nodes.slot[state] = u
+            elif cost >= nodes.cost[u]:
                 continue
-            for p in range(-1, k if lhand_free else 0):
-                c = panels[p] if p >= 0 else 0
-                if c and (c in (a, b)):
-                    continue
-                for q in range(-1, k if rhand_free else 0):
-                    d = panels[q] if q >= 0 else 0
-                    if d and (d in (a, b, c)):
-                        continue
-                    if (1 if c else 0) + (1 if d else 0) != must:
-                        continue
-                    out[count] = a | (b << 5) | (c << 10) | (d << 15)
-                    count += 1
-    return count
+            nodes.cost[u] = cost
+            nodes.move[u] = move
+            nodes.parent[u] = v
+            cheapest = min(cheapest, cost)
+    if wanted != DONE:
+        for u in range(high, used):
+            nodes.slot[t.move_next[nodes.move[u]]] = -1  # as if nothing had been done
+        return wanted
+    for u in range(high, used):
+        nodes.cost[u] -= cheapest
+    nodes.first[r + 2] = used
+    nodes.base[r + 1] = nodes.base[r] + cheapest
+    return DONE
+
+
+@njit
+def _trace(n, c, t, nodes, path, limb, part):  # type: ignore[no-untyped-def]
+    """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
+    node = nodes.first[n]
+    for u in range(nodes.first[n], nodes.first[n + 1]):
+        if nodes.cost[u] < nodes.cost[node]:
+            node = u
+    for r in range(n - 1, -1, -1):
+        move = nodes.move[node]
+        path[r] = move
+        node = nodes.parent[node]
+        action, parts = t.move_action[move], t.move_part[move]
+        for p in range(c):
+            code = action >> 3 * p & 7
+            limb[r, p] = -2 if code == 5 else code - 1
+            part[r, p] = parts >> 2 * p & 3
 
 
 @njit(cache=True)
-def _solve(steps, holds, active, mines, weights, allow_doublestep, crossed, turn, side, hand):  # type: ignore[no-untyped-def]
-    """Masks per row (n,) int64 -> (states after each row, actions, events (n, 12)).
+def fill_states(keys, count, table):  # type: ignore[no-untyped-def]
+    """Enter the first `count` keys into an empty hash table of their numbers."""
+    for number in range(count):
+        at = _slot_of(keys[number], len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
 
-    steps, holds, active, mines : bit c set for column c; active : held from an earlier row on into this one
-    """
-    rows = len(steps)
-    n = int(np.sqrt(len(crossed)) + 0.5)
-    nothing = np.zeros(0, dtype=np.int64)
-    state = np.zeros(1024, dtype=np.int64)
-    cost = np.zeros(1024, dtype=np.int64)
-    parent = np.zeros(1024, dtype=np.int32)
-    act = np.zeros(1024, dtype=np.int32)
-    first = np.zeros(rows + 2, dtype=np.int64)
-    first[1] = 1  # one state before all rows: at home, facing the screen, no last leg
-    table = np.full(SLOTS, -1, dtype=np.int64)
-    actions = np.zeros(60000, dtype=np.int64)
-    for r in range(rows):
-        a, b = first[r], first[r + 1]
-        e = b
-        for s in range(a, b):
-            before = _after_mines(state[s], active[r], mines[r], side, n)
-            if steps[r]:
-                count = _actions(before, steps[r], active[r], allow_doublestep, actions)
-            else:
-                actions[0] = 0
-                count = 1
-            if e + count > len(state):
-                size = 2 * len(state) + count
-                grown = np.zeros(size, dtype=np.int64)
-                grown[:e] = state[:e]
-                state = grown
-                grown2 = np.zeros(size, dtype=np.int64)
-                grown2[:e] = cost[:e]
-                cost = grown2
-                grown3 = np.zeros(size, dtype=np.int32)
-                grown3[:e] = parent[:e]
-                parent = grown3
-                grown4 = np.zeros(size, dtype=np.int32)
-                grown4[:e] = act[:e]
-                act = grown4
-            for i in range(count):
-                new, price = before, 0
-                if steps[r]:
-                    new, price = _move(
-                        before,
-                        actions[i],
-                        steps[r],
-                        holds[r],
-                        active[r],
-                        weights,
-                        crossed,
-                        turn,
-                        side,
-                        hand,
-                        n,
-                        nothing,
-                    )
-                total = cost[s] + price
-                slot = (new * 40503 ^ (new >> 11)) & (SLOTS - 1)
-                while table[slot] >= 0 and state[table[slot]] != new:
-                    slot = (slot + 1) & (SLOTS - 1)
-                at = table[slot]
-                if at < 0:
-                    table[slot] = e
-                    state[e], cost[e], parent[e], act[e] = new, total, s, actions[i]
-                    e += 1
-                elif total < cost[at]:
-                    cost[at], parent[at], act[at] = total, s, actions[i]
-        first[r + 2] = e
-        for s in range(b, e):  # empty the table again
-            slot = (state[s] * 40503 ^ (state[s] >> 11)) & (SLOTS - 1)
-            while table[slot] >= 0:
-                table[slot] = -1
-                slot = (slot + 1) & (SLOTS - 1)
-    best = first[rows]
-    for s in range(first[rows], first[rows + 1]):
-        if cost[s] < cost[best]:
-            best = s
-    states = np.zeros(rows, dtype=np.int64)
-    chosen = np.zeros(rows, dtype=np.int64)
-    events = np.zeros((rows, EVENTS), dtype=np.int64)
-    s = best
-    for r in range(rows - 1, -1, -1):
-        states[r], chosen[r] = state[s], act[s]
-        s = parent[s]
-        if steps[r]:
-            before = _after_mines(state[s], active[r], mines[r], side, n)
-            _move(before, chosen[r], steps[r], holds[r], active[r], weights, crossed, turn, side, hand, n, events[r])
-    return states, chosen, events
+
+@njit(cache=True)
+def fill_patterns(rows, forced, count, table):  # type: ignore[no-untyped-def]
+    """The same for row patterns."""
+    for number in range(count):
+        at = _slot_of(rows[number] ^ forced[number] * 31, len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@njit(cache=True)
+def fill_pairs(old_key, old_moves, key, moves):  # type: ignore[no-untyped-def]
+    """Move all pairs into a larger empty table."""
+    for i in range(len(old_key)):
+        if old_key[i] < 0:
+            continue
+        at = _slot_of(old_key[i], len(key))
+        while key[at] >= 0:
+            at = (at + 1) & (len(key) - 1)
+        key[at], moves[at] = old_key[i], old_moves[i]
+
+
+def _source_stamp() -> str:
+    """A digest of the kernel code: numba's cache looks at one file; as a constant of the kernel, this tells of all."""
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
+
+
+def _compile(stamp: str) -> Any:
+    @njit(cache=True)
+    def run(rows, start_row, t, nodes, model, g, w, switches, out, path, limb, part):  # type: ignore[no-untyped-def]
+        """Go on from `start_row` to the end of the rows. Returns the row reached and what has no room, or DONE."""
+        assert len(stamp)
+        n, c = rows.steps.shape
+        if t.counts[MOVES] == 0:  # move 0 leads to the start of every play
+            t.move_next[0] = _state(start_thesis(g), t)
+            t.counts[MOVES] = 1
+        if start_row == 0:
+            if not _number_rows(rows, model > 0, t):
+                return 0, MORE_PATTERNS
+            nodes.first[0], nodes.first[1], nodes.base[0] = 0, 1, 0
+            nodes.cost[0], nodes.move[0], nodes.parent[0] = 0, 0, 0
+        for r in range(start_row, n):
+            wanted = _row(r, rows, t, nodes, model, g, w, switches, out)
+            if wanted != DONE:
+                return r, wanted
+        _trace(n, c, t, nodes, path, limb, part)
+        return n, DONE
+
+    return run
+
+
+run: Callable[..., tuple[int, int]] = _compile(_source_stamp())

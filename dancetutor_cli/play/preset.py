@@ -1,101 +1,163 @@
-"""Cost presets: weights and switches of the solver, from `configs/presets/` or a user's own file."""
+"""Cost presets: which rules of play hold and what each undesired thing costs, from configs/presets/*.yaml."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.marked_yaml import MarkedYaml, read
+from dancetutor_cli.play.vocabulary import MODELS, Model
 from dancetutor_cli.resources import config_path
 
-TERMS = (
-    "crossed", "doublestep", "jump_footswitch", "spin", "turn_135", "turn_180", "hand_hold", "hand_across", "hand_aside",
-    "hand_behind", "unplayed",
-)  # fmt: skip
-_KEYS = ("about", "extends", "model", "roll_window", "allow_doublestep", "costs")
 DEFAULT_PRESET = "thesis"
+MAX_WEIGHT = 1_000_000
+_KEYS = ("extends", "model", "roll-window", "switches", "weights", "times")
 
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """name; costs : weight by term of `TERMS`, integers; roll_window : seconds."""
+    """A complete set of rules and costs; hashable, and it pickles.
+
+    name : as the user gave it, without folder and suffix
+    model : which rules it is about, a key of `vocabulary.MODELS`
+    roll_window : seconds a roll may go unpressed
+    switches, weights, times : (name, value) in the order of the model; costs are whole numbers, times milliseconds
+    """
 
     name: str
-    costs: dict[str, int]
+    model: str
     roll_window: float
-    allow_doublestep: bool
+    switches: tuple[tuple[str, bool], ...]
+    weights: tuple[tuple[str, int], ...]
+    times: tuple[tuple[str, int], ...] = ()
+
+    def switch(self, name: str) -> bool:
+        """A switch by name."""
+        return dict(self.switches)[name]
+
+    def weight(self, name: str) -> int:
+        """A weight by name."""
+        return dict(self.weights)[name]
+
+    def with_values(
+        self, *, weights: Mapping[str, int] | None = None, switches: Mapping[str, bool] | None = None
+    ) -> Preset:
+        """The same preset with some values changed. Raises KeyError for a name the model does not have."""
+        both = ((self.weights, weights or {}), (self.switches, switches or {}))
+        for old, new in both:
+            if unknown := set(new) - {name for name, _ in old}:
+                raise KeyError(", ".join(sorted(unknown)))
+        changed = [tuple((name, new.get(name, value)) for name, value in old) for old, new in both]
+        return Preset(self.name, self.model, self.roll_window, changed[1], changed[0], self.times)  # type: ignore[arg-type]
 
 
 def preset_names() -> list[str]:
-    """The presets that come with the program."""
-    return sorted(p.stem for p in config_path("presets").glob("*.yaml"))
+    """Names of the presets that come with the program."""
+    return sorted(path.stem for path in config_path("presets").glob("*.yaml"))
 
 
-def load_preset(name_or_path: str | Path = DEFAULT_PRESET) -> Preset:
-    """A preset by name, or from a file. Raises `UsageError` naming the file, the line and what exists."""
+def load_preset(name_or_path: str | Path) -> Preset:
+    """A preset by name, or from a YAML file of one's own.
+
+    A file may say `extends: NAME` and then only what differs. Raises UsageError for an unknown preset, key or value,
+    with file, line and the names that exist; FileError if the file cannot be read.
+    """
+    text = str(name_or_path)
+    if text in preset_names():
+        return _load(config_path(f"presets/{text}.yaml"), ())
     path = Path(name_or_path)
-    if path.suffix.lower() not in (".yaml", ".yml"):
-        if str(name_or_path) not in preset_names():
-            known = ", ".join(preset_names())
-            raise UsageError(f"no preset '{name_or_path}'; there are {known}, or give a .yaml file")
-        path = config_path(f"presets/{name_or_path}.yaml")
-    values = _read(path, ())
-    return _checked(path, values)
+    if path.suffix.lower() in (".yaml", ".yml") or path.is_file():
+        return _load(path, ())
+    raise UsageError(f"there is no preset '{text}'; there are: {', '.join(preset_names())}, or give a .yaml file")
 
 
-def _read(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
-    if path in seen:
-        raise UsageError(f"{path}: presets extend each other in a circle")
-    try:
-        node = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
-        loaded = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: not UTF-8 text") from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f":{mark.line + 1}" if mark else ""
-        raise UsageError(f"{path}{line}: {getattr(error, 'problem', None) or 'no YAML'}") from None
-    if not isinstance(loaded, dict) or node is None:
-        raise UsageError(f"{path}: a preset is a mapping with the keys {', '.join(_KEYS)}")
-    _known(path, node, _KEYS)
-    for key, value in node.value:
-        if key.value == "costs":
-            if not isinstance(loaded["costs"], dict):
-                raise UsageError(f"{path}:{key.start_mark.line + 1}: costs is a mapping of {', '.join(TERMS)}")
-            _known(path, value, TERMS)
-    base: dict[str, Any] = {"costs": {}}
-    if "extends" in loaded:
-        parent = str(loaded["extends"])
-        other = path.parent / parent if Path(parent).suffix else config_path(f"presets/{parent}.yaml")
-        if not other.exists():
-            raise UsageError(f"{path}: extends '{parent}', which is not there; there are {', '.join(preset_names())}")
-        base = _read(other, (*seen, path))
-    costs = {**base["costs"], **loaded.get("costs", {})}
-    return {**base, **loaded, "costs": costs}
+@cache
+def _read(path: Path) -> MarkedYaml:
+    return read(path)
 
 
-def _known(path: Path, node: Any, names: tuple[str, ...]) -> None:
-    for key, _ in node.value:
-        if key.value not in names:
-            line = key.start_mark.line + 1
-            raise UsageError(f"{path}:{line}: unknown key '{key.value}'; there are {', '.join(names)}")
+def _load(path: Path, seen: tuple[Path, ...]) -> Preset:
+    source = _read(path) if path.is_relative_to(config_path("presets")) else read(path)
+    _only(source, (), _KEYS)
+    base = _base(source, (*seen, path.absolute()))
+    model_name = str(source.data.get("model", base.model if base else ""))
+    if model_name not in MODELS:
+        raise _wrong(source, ("model",), f"'model' must be one of {', '.join(MODELS)}, or extend a preset")
+    if base is not None and base.model != model_name:
+        raise _wrong(source, ("model",), f"'model' is '{model_name}', but the preset it extends has '{base.model}'")
+    model = MODELS[model_name]
+    return Preset(
+        name=path.stem,
+        model=model_name,
+        roll_window=_roll_window(source, base),
+        switches=_values(source, "switches", model.switches, dict(base.switches) if base else {}),
+        weights=_values(source, "weights", model.weights, dict(base.weights) if base else {}),
+        times=_values(source, "times", model.times, dict(base.times) if base else {}),
+    )
 
 
-def _checked(path: Path, values: dict[str, Any]) -> Preset:
-    costs = values["costs"]
-    if missing := [term for term in TERMS if term not in costs]:
-        raise UsageError(f"{path}: no cost for {', '.join(missing)} (extends: thesis takes over the rest)")
-    for term, cost in costs.items():
-        if not isinstance(cost, int) or isinstance(cost, bool) or not 0 <= cost <= 10**9:
-            raise UsageError(f"{path}: {term} is a whole number from 0 to 10**9, not {cost!r}")
-    window, allow = values.get("roll_window", 0.35), values.get("allow_doublestep", True)
-    if not isinstance(window, int | float) or isinstance(window, bool) or not 0 < window < 60:
-        raise UsageError(f"{path}: roll_window is in seconds, above 0 and below 60, not {window!r}")
-    if not isinstance(allow, bool):
-        raise UsageError(f"{path}: allow_doublestep is true or false, not {allow!r}")
-    return Preset(path.stem, {term: costs[term] for term in TERMS}, float(window), allow)
+def _base(source: MarkedYaml, seen: tuple[Path, ...]) -> Preset | None:
+    name = source.data.get("extends")
+    if name is None:
+        return None
+    beside = source.path.parent / str(name)
+    path = config_path(f"presets/{name}.yaml") if name in preset_names() else beside
+    if path.absolute() in seen:
+        raise _wrong(source, ("extends",), f"'{name}' extends itself")
+    if not path.is_file():
+        raise _wrong(
+            source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"
+        )
+    return _load(path, seen)
+
+
+def _values(
+    source: MarkedYaml, group: str, known: tuple[str, ...], base: dict[str, Any]
+) -> tuple[tuple[str, Any], ...]:
+    data = source.data.get(group) or {}
+    if data:
+        _only(source, (group,), known)
+    for name in known:
+        if name not in data and name not in base:
+            raise _wrong(source, (group,), f"'{group}' lacks '{name}'")
+    for name, value in data.items():
+        if group == "switches":
+            if not isinstance(value, bool):
+                raise _wrong(source, (group, name), f"'{name}' must be true or false, not {value!r}")
+        elif isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MAX_WEIGHT:
+            raise _wrong(
+                source, (group, name), f"'{name}' must be a whole number from 0 to {MAX_WEIGHT}, not {value!r}"
+            )
+    return tuple((name, data.get(name, base.get(name))) for name in known)
+
+
+def _roll_window(source: MarkedYaml, base: Preset | None) -> float:
+    value = source.data.get("roll-window", base.roll_window if base else None)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value <= 10:
+        raise _wrong(
+            source, ("roll-window",), f"'roll-window' must be seconds, more than 0 and at most 10, not {value!r}"
+        )
+    return float(value)
+
+
+def _only(source: MarkedYaml, keys: tuple[str | int, ...], known: tuple[str, ...]) -> None:
+    inside: Any = source.data
+    for key in keys:
+        inside = inside[key]
+    if not isinstance(inside, dict):
+        raise _wrong(source, keys, f"'{keys[-1]}' must be a mapping of names to values")
+    for key in inside:
+        if key not in known:
+            where = f" in '{keys[-1]}'" if keys else ""
+            raise _wrong(source, (*keys, key), f"unknown key '{key}'{where}; there are: {', '.join(known) or 'none'}")
+
+
+def _wrong(source: MarkedYaml, keys: tuple[str | int, ...], message: str) -> UsageError:
+    return UsageError(str(source.error(keys, message)))
+
+
+__all__ = ["DEFAULT_PRESET", "Model", "Preset", "load_preset", "preset_names"]

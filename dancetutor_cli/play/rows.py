@@ -1,4 +1,4 @@
-"""From a chart's notes to the rows a solver sees: judged notes only, rolls as virtual taps (thesis 3.3.3)."""
+"""From the notes of a chart to the rows a solver sees: rolls become taps, what the game does not judge is left out."""
 
 from __future__ import annotations
 
@@ -6,51 +6,62 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.model import Rows, StepKind
 
-_STEP = {Kind.TAP: StepKind.TAP, Kind.LIFT: StepKind.LIFT, Kind.HOLD: StepKind.HOLD, Kind.ROLL: StepKind.ROLL}
-_ROLL_STEPS = (48, 24, 16, 12, 8, 6, 4, 3)  # ticks: 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat
+_STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
+_STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL
+# 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat in ticks, longest first
+_ROLL_GAPS = tuple(TICKS_PER_BEAT // part for part in (1, 2, 3, 4, 6, 8, 12, 16))
+_EPSILON = 1e-6  # seconds (cost-model.md)
 
 
-def prepare(chart: Chart, roll_window: float = 0.35) -> Rows:
-    """Rows of a chart: beats with at least one step or mine.
+def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
+    """The rows of a chart: beats with at least one step or mine (cost-model.md, "Rows").
 
-    roll_window : seconds within which a roll must be tapped again (In the Groove: 0.35)
+    Parameters
+    ----------
+    chart : its unjudged notes, fakes and keysounds are left out, and columns that the pad does not have
+    pad : tells the number of columns, c
+    roll_window : seconds that a roll may go unpressed; it becomes taps at most so far apart
     """
-    notes, columns = chart.notes, chart.columns
-    judged = notes.judged & (notes.kind != Kind.FAKE) & (notes.kind != Kind.KEYSOUND)
-    tick, column, kind = notes.tick[judged], notes.column[judged], notes.kind[judged]
-    end, line = notes.end[judged], notes.line[judged]
-    roll_ticks, roll_columns = [], []
-    for i in np.flatnonzero(kind == Kind.ROLL):
-        taps = _roll_taps(chart, int(tick[i]), int(end[i]), roll_window)
-        roll_ticks.extend(taps)
-        roll_columns.extend([int(column[i])] * len(taps))
-    rolls = np.array(roll_ticks, dtype=np.int64)
-    all_ticks, inverse = np.unique(np.concatenate([tick, rolls]), return_inverse=True)
-    n = len(all_ticks)
-    steps = np.zeros((n, columns), dtype=np.uint8)
-    hold_end = np.full((n, columns), -1, dtype=np.int64)
-    mines = np.zeros((n, columns), dtype=bool)
-    lines = np.zeros(n, dtype=np.int32)
-    row = inverse[: len(tick)]
-    steps[inverse[len(tick) :], np.array(roll_columns, dtype=np.int64)] = StepKind.ROLL_TAP
-    for note_kind, step in _STEP.items():
-        of_kind = kind == note_kind
-        steps[row[of_kind], column[of_kind]] = step
-    held = kind == Kind.HOLD
-    hold_end[row[held], column[held]] = end[held]
-    mines[row[kind == Kind.MINE], column[kind == Kind.MINE]] = True
-    lines[row] = line
-    return Rows(
-        all_ticks, chart.timing.seconds(all_ticks), lines, steps, hold_end, mines, chart.timing.milliseconds(all_ticks)
-    )
+    notes, c = chart.notes, len(pad)
+    ours = notes.judged & (notes.column < c)
+    kinds = _STEP_OF_KIND[notes.kind]
+    step, mine = ours & (kinds > 0), ours & (notes.kind == Kind.MINE)
+    roll_tick, roll_column = _roll_taps(chart, ours & (notes.kind == Kind.ROLL), roll_window)
+    tick = np.unique(np.concatenate([notes.tick[step | mine], roll_tick]))
+    n = len(tick)
+    steps = np.zeros((n, c), dtype=np.uint8)
+    steps[np.searchsorted(tick, roll_tick), roll_column] = StepKind.ROLL_TAP
+    row = np.searchsorted(tick, notes.tick)
+    steps[row[step], notes.column[step]] = kinds[step]  # a real note wins over a virtual one
+    hold_end = np.full((n, c), -1, dtype=np.int64)
+    hold = ours & (notes.kind == Kind.HOLD)
+    hold_end[row[hold], notes.column[hold]] = notes.end[hold]
+    mines = np.zeros((n, c), dtype=bool)
+    mines[row[mine], notes.column[mine]] = True
+    line = np.zeros(n, dtype=np.int32)
+    line[row[step | mine]] = notes.line[step | mine]
+    second = chart.timing.seconds(tick)
+    return Rows(tick, second, line, steps, hold_end, mines, chart.timing.milliseconds(tick))
 
 
-def _roll_taps(chart: Chart, start: int, end: int, window: float) -> NDArray[np.int64]:
-    """Ticks of the virtual taps behind a roll's head: every longest step that fits the window at the head's BPM."""
-    beat_seconds = 60 / chart.timing.bpm_at(start)
-    for step in _ROLL_STEPS:
-        if step / TICKS_PER_BEAT * beat_seconds <= window + 1e-6:
-            break
-    return np.arange(start + step, end, step, dtype=np.int64)
+def _roll_taps(chart: Chart, rolls: NDArray[np.bool_], window: float) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
+    """Tick and column of every virtual tap, heads included."""
+    notes = chart.notes
+    ticks, columns = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int16)]
+    for note in np.flatnonzero(rolls):
+        head = int(notes.tick[note])
+        taps = np.arange(head, max(int(notes.end[note]), head + 1), roll_gap(chart.timing.bpm_at(head), window))
+        ticks.append(taps)
+        columns.append(np.full(len(taps), notes.column[note]))
+    return np.concatenate(ticks), np.concatenate(columns)
+
+
+def roll_gap(bpm: float, window: float) -> int:
+    """Ticks between the virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
+    for gap in _ROLL_GAPS:
+        if gap / TICKS_PER_BEAT * 60.0 / bpm <= window + _EPSILON:
+            return gap
+    return _ROLL_GAPS[-1]

@@ -1,0 +1,286 @@
+"""The rules of cost-model.md: every way to play one row from one state, and what each costs. Kernel code.
+
+A state is eight numbers (`LEFT_AT` ... `RIGHT_HOLDS`), packed into one integer between rows. Place c, the number of
+panels, is home. Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from dancetutor_cli.play.tables import COLUMN_BITS, EPSILON
+from dancetutor_cli.play.vocabulary import EVENTS
+
+# the numbers of a state
+LEFT_AT, RIGHT_AT = 0, 1  # places of the feet
+SIDE = 2  # of a facing of 180 degrees: 1 reached as +180, 2 reached as -180, 0 otherwise
+LAST = 3  # last leg: 0 none, 1 left, 2 right
+LEFT_HELD, RIGHT_HELD = 4, 5  # 1 while a foot is reserved by a hold
+LEFT_HOLDS, RIGHT_HOLDS = 6, 7  # panel + 1 that a hand holds, 0 none
+
+UNPLAYED = 5
+(
+    CROSSOVER, DOUBLESTEP, JUMP_FOOTSWITCH, SPIN, TURN_135, TURN_180,
+    HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYABLE,
+) = range(11)  # fmt: skip
+_HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPLAYABLE = (
+    1 << EVENTS.index(name)
+    for name in (
+        "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand",
+        "jump", "unplayable",
+    )
+)  # fmt: skip
+_MASK = (1 << COLUMN_BITS) - 1
+
+
+@njit
+def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facing the screen, no last leg
+    home = g.neighbours.shape[0]
+    return home | home << 4
+
+
+@njit
+def _pack(s):  # type: ignore[no-untyped-def]
+    return s[0] | s[1] << 4 | s[2] << 8 | s[3] << 10 | s[4] << 12 | s[5] << 13 | s[6] << 14 | s[7] << 18
+
+
+@njit
+def _unpack(key, s):  # type: ignore[no-untyped-def]
+    s[0], s[1], s[2], s[3] = key & 15, key >> 4 & 15, key >> 8 & 3, key >> 10 & 3
+    s[4], s[5], s[6], s[7] = key >> 12 & 1, key >> 13 & 1, key >> 14 & 15, key >> 18 & 15
+
+
+@njit
+def turn(before, side, after):  # type: ignore[no-untyped-def]
+    """From one facing to another: degrees turned (unsigned), whether it is a spin, side of the new facing."""
+    back = abs(before) >= 180.0 - EPSILON
+    start = -180.0 if back and side == 2 else before
+    delta = after - start
+    while delta > 180.0 + EPSILON:
+        delta -= 360.0
+    while delta <= -180.0 - EPSILON:
+        delta += 360.0
+    if abs(delta) >= 180.0 - EPSILON:
+        return 180.0, False, 0
+    ends_back = abs(after) >= 180.0 - EPSILON
+    if back and ends_back:
+        return 0.0, False, side
+    end = start + delta
+    spin = abs(end) > 180.0 + EPSILON and not (back and side == 0)
+    return abs(delta), spin, ((1 if end > 0 else 2) if ends_back else 0)
+
+
+@njit
+def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
+    """What comes before the steps of a row: ended holds free their limbs; free legs on mines go home, one turn."""
+    home = g.neighbours.shape[0]
+    for foot in range(2):
+        if s[LEFT_HELD + foot] and released >> s[foot] & 1:
+            s[LEFT_HELD + foot] = 0
+        held = s[LEFT_HOLDS + foot]
+        if held and released >> (held - 1) & 1:
+            s[LEFT_HOLDS + foot] = 0
+    before = g.angle[s[LEFT_AT], s[RIGHT_AT]]
+    for foot in range(2):
+        if not s[LEFT_HELD + foot] and s[foot] < home and mines >> s[foot] & 1:
+            s[foot] = home
+    s[SIDE] = turn(before, s[SIDE], g.angle[s[LEFT_AT], s[RIGHT_AT]])[2]
+
+
+@njit
+def _charge_hand(terms, s, hand, panel, g, w):  # type: ignore[no-untyped-def]
+    """What it costs that a hand presses a panel, by the pose after the move."""
+    x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
+    y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
+    if math.hypot(x, y) <= EPSILON:
+        return
+    facing = math.radians(g.angle[s[LEFT_AT], s[RIGHT_AT]])
+    lateral = x * math.cos(facing) + y * math.sin(facing)
+    ahead = -x * math.sin(facing) + y * math.cos(facing)
+    if (lateral > EPSILON and hand == 0) or (lateral < -EPSILON and hand == 1):
+        terms[HAND_ACROSS] += w[HAND_ACROSS]
+    off = math.degrees(math.atan2(abs(lateral), ahead))
+    if off > 90.0 + EPSILON:
+        terms[HAND_BEHIND] += w[HAND_BEHIND]
+    elif off > 45.0 + EPSILON:
+        terms[HAND_ASIDE] += w[HAND_ASIDE]
+
+
+@njit
+def _place(s, press, holds):  # type: ignore[no-untyped-def]
+    """The state after limbs pressed their panels (-1: none)."""
+    for limb in range(4):
+        panel = press[limb]
+        if panel < 0:
+            continue
+        if limb < 2:
+            s[limb] = panel
+            s[LEFT_HELD + limb] = holds >> panel & 1
+        else:
+            s[LEFT_HOLDS + limb - 2] = panel + 1 if holds >> panel & 1 else 0
+    if press[0] >= 0 and press[1] >= 0:
+        s[LAST] = 0
+    elif press[0] >= 0:
+        s[LAST] = 1
+    elif press[1] >= 0:
+        s[LAST] = 2
+
+
+@njit
+def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no-untyped-def]
+    """Write one way to play a row: `out.press` are the panels of the limbs, `before` the state before, after mines.
+
+    doublestep : 0 none, 1 forced (the other leg is reserved), 2 one that costs
+    """
+    s, press, terms = out.state[8:], out.press, out.terms[m]
+    s[:8] = before[:8]
+    terms[:] = 0
+    _place(s, press, holds)
+    degrees, spin, side = turn(g.angle[before[0], before[1]], before[SIDE], g.angle[s[0], s[1]])
+    s[SIDE] = side
+    action = events = 0
+    for i in range(n):
+        limb = UNPLAYED
+        for j in range(4):
+            if press[j] == out.panels[i]:
+                limb = j + 1
+        action |= limb << 3 * out.panels[i]
+        if limb == UNPLAYED:
+            terms[UNPLAYABLE] += w[UNPLAYABLE]
+            events |= _UNPLAYABLE
+    if g.right[s[1], 0] < g.left[s[0], 0] - EPSILON:
+        terms[CROSSOVER] = w[CROSSOVER]
+        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF
+    if doublestep == 2:
+        terms[DOUBLESTEP] = w[DOUBLESTEP]
+        events |= _DOUBLESTEP
+    elif doublestep == 1:
+        events |= _FORCED
+    if spin:
+        terms[SPIN] = w[SPIN]
+        events |= _SPIN
+    if degrees >= 180.0 - EPSILON:
+        terms[TURN_180] = w[TURN_180]
+    elif degrees >= 135.0 - EPSILON:
+        terms[TURN_135] = w[TURN_135]
+    for foot in range(2):
+        free = not before[LEFT_HELD + foot]
+        if n > 1 and free and press[foot] >= 0 and press[foot] != before[foot] and steps >> before[foot] & 1:
+            terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
+            events |= _JUMP_FOOTSWITCH
+    for hand in range(2):
+        if press[2 + hand] >= 0:
+            events |= _HAND
+            _charge_hand(terms, s, hand, press[2 + hand], g, w)
+        if s[LEFT_HOLDS + hand]:
+            terms[HAND_HOLD] += w[HAND_HOLD]
+    if press[0] >= 0 and press[1] >= 0:
+        events |= _JUMP
+    out.events[m] = events
+    out.key[m] = _pack(s)
+    out.action[m] = action
+    out.part[m] = 0
+    out.timed[m] = 0
+    return m + 1
+
+
+@njit
+def _fits(out, n, forced):  # type: ignore[no-untyped-def]
+    """Whether the panels of the limbs are those that overrides ask for (3 bits for each column, 0: any limb)."""
+    for i in range(n):
+        want = forced >> 3 * out.panels[i] & 7
+        if want and out.press[want - 1] != out.panels[i]:
+            return False
+    return True
+
+
+@njit
+def _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w):  # type: ignore[no-untyped-def]
+    """Every way to give exactly so many legs and hands different panels of the row, as far as overrides allow."""
+    m = 0
+    press, panels = out.press, out.panels
+    both = before[LEFT_HELD] == 0 and before[RIGHT_HELD] == 0
+    for i in range(-1, n):
+        if (i >= 0 and not usable & 1) or (jack >= 0 and (jack == 0) != (i >= 0)):
+            continue
+        press[0] = panels[i] if i >= 0 else -1
+        for j in range(-1, n):
+            if (j >= 0 and (not usable & 2 or j == i)) or (i >= 0) + (j >= 0) != legs:
+                continue
+            if jack >= 0 and (jack == 1) != (j >= 0):
+                continue
+            press[1] = panels[j] if j >= 0 else -1
+            leg = 0 if i >= 0 else 1
+            doublestep = 0
+            if n == 1 and legs == 1 and before[LAST] == leg + 1 and before[leg] != panels[0]:
+                doublestep = 2 if both else 1
+            if doublestep == 2 and not allow and not forced:
+                continue
+            for k in range(-1, n):
+                if k >= 0 and (not usable & 4 or k in (i, j)):
+                    continue
+                press[2] = panels[k] if k >= 0 else -1
+                for q in range(-1, n):
+                    if (q >= 0 and (not usable & 8 or q in (i, j, k))) or (k >= 0) + (q >= 0) != hands:
+                        continue
+                    press[3] = panels[q] if q >= 0 else -1
+                    if forced == 0 or _fits(out, n, forced):
+                        m = _emit(out, m, before, steps, n, holds, doublestep, g, w)
+    return m
+
+
+@njit
+def _forced_limbs(forced, n, out):  # type: ignore[no-untyped-def]
+    """Limbs that overrides name, as bits, and how many steps they name a hand for."""
+    limbs = hands = 0
+    for i in range(n):
+        want = forced >> 3 * out.panels[i] & 7
+        if want:
+            limbs |= 1 << (want - 1)
+            hands += want > 2
+    return limbs, hands
+
+
+@njit
+def expand_thesis(key, row, forced, g, w, switches, out):  # type: ignore[no-untyped-def]
+    """All ways to play a row from a state, into `out`; returns their number, at least 1.
+
+    row : packed masks of the row; forced : limb codes of overrides; w : weights by term
+    """
+    before = out.state
+    _unpack(key, before)
+    holds = row >> COLUMN_BITS & _MASK
+    steps = (row | row >> 4 * COLUMN_BITS | row >> 5 * COLUMN_BITS) & _MASK | holds
+    _release_and_flee(before, row >> 3 * COLUMN_BITS & _MASK, row >> 2 * COLUMN_BITS & _MASK, g)
+    n = 0
+    for panel in range(g.neighbours.shape[0]):
+        if steps >> panel & 1:
+            out.panels[n] = panel
+            n += 1
+    if n == 0:
+        out.key[0], out.action[0], out.part[0], out.timed[0], out.events[0] = _pack(before), 0, 0, 0, 0
+        out.terms[0, :] = 0
+        return 1
+    usable = jack = 0
+    for limb in range(4):
+        usable |= (before[LEFT_HELD + limb] == 0) << limb
+    jack = -1
+    if n == 1:
+        for foot in range(1, -1, -1):
+            if usable >> foot & 1 and before[foot] == out.panels[0]:
+                jack = foot
+    legs = min((usable & 1) + (usable >> 1 & 1), n)
+    hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
+    allow = switches[0]
+    m = _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w)
+    if m == 0:  # overrides against the rules: they win, even over holds and the jack rule
+        limbs, forced_hands = _forced_limbs(forced, n, out)
+        usable |= limbs
+        legs = min((usable & 1) + (usable >> 1 & 1), n - forced_hands)
+        hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
+        m = _assign(out, before, usable, legs, hands, -1, steps, n, holds, forced, True, g, w)
+    if m == 0:  # overrides nobody can follow, such as one foot on two panels
+        m = _assign(out, before, usable, legs, hands, -1, steps, n, holds, 0, True, g, w)
+    return m
