@@ -206,64 +206,66 @@ def _wanted(t, nodes):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _moves_of(pattern, state, model, g, w, switches, out, t, nodes):  # type: ignore[no-untyped-def]
-    """First move and number of moves of a pair, packed; if it is new and there is no room: what is wanted, negative."""
-    key = np.int64(pattern) << 32 | state
-    size = len(t.pair_key)
-    at = _slot_of(key, size)
-    while t.pair_key[at] >= 0:
-        if t.pair_key[at] == key:
-            return t.pair_moves[at]
-        at = (at + 1) & (size - 1)
+def _enter(at, key, model, g, w, switches, out, t, nodes):  # type: ignore[no-untyped-def]
+    """Enter a new pair at a free place of the hash table; returns its moves, or, negative, what there is no room for."""
     wanted = _wanted(t, nodes)
     if wanted != DONE:
         return np.int64(-wanted)
     t.pair_key[at] = key
-    t.pair_moves[at] = _meet(pattern, state, model, g, w, switches, out, t)
+    t.pair_moves[at] = _meet(key >> 32, key & 0xFFFFFFFF, model, g, w, switches, out, t)
     t.counts[PAIRS] += 1
     return t.pair_moves[at]
 
 
 @njit
-def _row(r, rows, t, nodes, model, g, w, switches, out):  # type: ignore[no-untyped-def]
-    """Nodes of row r from those of the row before. Returns DONE or what there is no room for."""
-    low, high = nodes.first[r], nodes.first[r + 1]
-    used = high
-    pattern = rows.pattern[r]
-    cheapest = np.int32(2147483647)
-    wanted = DONE
-    for v in range(low, high):
-        if used + MOST_MOVES > len(nodes.cost):
-            wanted = MORE_NODES
-            break
-        packed = _moves_of(pattern, t.move_next[nodes.move[v]], model, g, w, switches, out, t, nodes)
-        if packed < 0:
-            wanted = -packed
-            break
-        first = packed >> 16
-        for move in range(first, first + (packed & 0xFFFF)):
-            cost = nodes.cost[v] + t.move_cost[move]
-            state = t.move_next[move]
-            u = nodes.slot[state]
-            if u < high:
-                u = used
-                used += 1
-                nodes.slot[state] = u
-            elif cost >= nodes.cost[u]:
-                continue
-            nodes.cost[u] = cost
-            nodes.move[u] = move
-            nodes.parent[u] = v
-            cheapest = min(cheapest, cost)
-    if wanted != DONE:
+def _advance(r, rows, t, nodes, model, g, w, switches, out):  # type: ignore[no-untyped-def]
+    """Nodes of row r and all after it. Returns the row reached and DONE, or what there is no room for.
+
+    Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
+    """
+    pattern, slot, first_node = rows.pattern, nodes.slot, nodes.first
+    node_cost, node_move, node_parent = nodes.cost, nodes.move, nodes.parent
+    pair_key, pair_moves, move_next, move_cost = t.pair_key, t.pair_moves, t.move_next, t.move_cost
+    size = len(pair_key)
+    for row in range(r, len(pattern)):
+        low, high = first_node[row], first_node[row + 1]
+        used, wanted, cheapest = high, DONE, np.int32(2147483647)
+        for v in range(low, high):
+            if used + MOST_MOVES > len(node_cost):
+                wanted = MORE_NODES
+                break
+            key = np.int64(pattern[row]) << 32 | move_next[node_move[v]]
+            at = _slot_of(key, size)
+            while pair_key[at] >= 0 and pair_key[at] != key:
+                at = (at + 1) & (size - 1)
+            packed = pair_moves[at]
+            if pair_key[at] < 0:
+                packed = _enter(at, key, model, g, w, switches, out, t, nodes)
+                if packed < 0:
+                    wanted = -packed
+                    break
+            before = node_cost[v]
+            for move in range(packed >> 16, (packed >> 16) + (packed & 0xFFFF)):
+                cost = before + move_cost[move]
+                state = move_next[move]
+                u = slot[state]
+                if u < high:
+                    u = used
+                    used += 1
+                    slot[state] = u
+                elif cost >= node_cost[u]:
+                    continue
+                node_cost[u], node_move[u], node_parent[u] = cost, move, v
+                cheapest = min(cheapest, cost)
+        if wanted != DONE:
+            for u in range(high, used):
+                slot[move_next[node_move[u]]] = -1  # as if nothing had been done
+            return row, wanted
         for u in range(high, used):
-            nodes.slot[t.move_next[nodes.move[u]]] = -1  # as if nothing had been done
-        return wanted
-    for u in range(high, used):
-        nodes.cost[u] -= cheapest
-    nodes.first[r + 2] = used
-    nodes.base[r + 1] = nodes.base[r] + cheapest
-    return DONE
+            node_cost[u] -= cheapest
+        first_node[row + 2] = used
+        nodes.base[row + 1] = nodes.base[row] + cheapest
+    return len(pattern), DONE
 
 
 @njit
@@ -336,12 +338,10 @@ def _compile(stamp: str) -> Any:
                 return 0, MORE_PATTERNS
             nodes.first[0], nodes.first[1], nodes.base[0] = 0, 1, 0
             nodes.cost[0], nodes.move[0], nodes.parent[0] = 0, 0, 0
-        for r in range(start_row, n):
-            wanted = _row(r, rows, t, nodes, model, g, w, switches, out)
-            if wanted != DONE:
-                return r, wanted
-        _trace(n, c, t, nodes, path, limb, part)
-        return n, DONE
+        row, wanted = _advance(start_row, rows, t, nodes, model, g, w, switches, out)
+        if wanted == DONE:
+            _trace(n, c, t, nodes, path, limb, part)
+        return row, wanted
 
     return run
 
