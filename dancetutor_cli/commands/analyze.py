@@ -4,24 +4,40 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
+from dancetutor_cli.commands.selection import Selection, selection_options
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.reports.formats import FORMATS
 
 if TYPE_CHECKING:
-    from dancetutor_cli.reports import Report
+    from dancetutor_cli.jobs.lint_run import LintRun
+    from dancetutor_cli.reports.tally import Tally
+
+Source = tuple[Path, bytes | None]
+
+
+def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
+    """Print the documentation of a rule and end; needs no PATH."""
+    if value is None or context.resilient_parsing:
+        return
+    from dancetutor_cli.lint.registry import rule_named
+    from dancetutor_cli.reports.explain import explain, explain_all
+
+    click.echo(explain_all() if value.lower() == "all" else explain(rule_named(value)), nl=False)
+    context.exit()
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, allow_dash=True), metavar="PATH...")
 @selection_options
-@preset_option
+@click.option("--preset", metavar="NAME|FILE", help="Cost preset of the solver.")
 @click.option(
     "--format",
     "format_name",
-    type=click.Choice(["text", "json"]),
+    type=click.Choice(FORMATS),
     default="text",
     show_default=True,
     help="How to print the result.",
@@ -29,52 +45,96 @@ if TYPE_CHECKING:
 @click.option(
     "--fail-on",
     type=click.Choice(["error", "warning", "never"]),
-    default="warning",
-    show_default=True,
-    help="The least severity of a finding that makes the exit status 1.",
+    help="The least severity of a finding that makes the exit status 1.  [default: warning]",
 )
 @click.option("--exit-zero", is_flag=True, help="Findings do not fail the run; unreadable files still do.")
-def command(
-    paths: tuple[Path, ...],
-    steps_type: str | None,
-    difficulty: str | None,
-    index: int | None,
-    preset: str,
-    format_name: str,
-    fail_on: str,
-    exit_zero: bool,
-) -> int:
+@click.option("--select", multiple=True, metavar="RULES", help="Run only these rules: codes, names, families (DT2).")
+@click.option("--ignore", multiple=True, metavar="RULES", help="Do not run these rules.")
+@click.option("--config", metavar="FILE|NAME", help="Configuration, in place of the dancetutor.yaml up the tree.")
+@click.option(
+    "--set",
+    "assignments",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Change one value of the configuration, for example DT205.max_rows=4.",
+)
+@click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
+@click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
+@click.option("--statistics", is_flag=True, help="Print how often each rule was found.")
+@click.option(
+    "--stdin-filename",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="What the chart on standard input (PATH -) is called.",
+)
+@click.option(
+    "--explain",
+    callback=_explain,
+    expose_value=False,
+    is_eager=True,
+    metavar="RULE|all",
+    help="Print the documentation of a rule and end.",
+)
+def command(**options: Any) -> int:  # fmt: skip
     """Find the feet of charts and lint them.
 
-    PATH is a .sm or .ssc file, or a folder that is searched for them.
+    PATH is a .sm or .ssc file, a folder that is searched for them, or - for standard input.
 
     Exit status: 0 no findings, 1 findings, 2 something could not be read or run.
     """
-    from dancetutor_cli.jobs.analyze import Task, analyze_file, preset_name
-    from dancetutor_cli.library import find_files
-    from dancetutor_cli.lint.configuration import load_configuration
+    from dancetutor_cli.jobs.lint_run import LintRun, Request
+
+    request = Request(
+        selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
+        want_rows=options["format_name"] == "json",
+        **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
+                                            "baseline", "update_baseline")},
+    )  # fmt: skip
+    sources = _sources(options["paths"], options["stdin_filename"])
+    return _run(LintRun(request), sources, options)
+
+
+def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
+    from dancetutor_cli.jobs.analyze import analyze_file
+    from dancetutor_cli.reports.formats import open_report
     from dancetutor_cli.reports.tally import Tally
 
-    selection = Selection(steps_type, difficulty, index)
-    settings = load_configuration(None).settings
-    report = _report(format_name, preset_name(preset))
-    tally = Tally(fail_on, exit_zero)
+    first = sources[0][0]
+    tally = Tally(run.fail_on(first), options["exit_zero"])
+    run.open_baseline(first)
+    tasks = [run.task(path, data) for path, data in sources]
+    report = open_report(options["format_name"], run.preset_name(first))
     report.begin()
-    for path in find_files(paths):
-        result = analyze_file(Task(path, preset, selection, settings, want_rows=format_name == "json"))
+    for task in tasks:
+        result = run.without_known(analyze_file(task))
         tally.add(result)
         report.add(result)
     report.end(tally)
+    _finish(run, tally, options["statistics"])
     return tally.exit_status
 
 
-def _report(format_name: str, preset: str) -> Report:
-    if format_name == "json":
-        from dancetutor_cli.reports.json_report import JsonReport
+def _finish(run: LintRun, tally: Tally, statistics: bool) -> None:
+    """What is said after the results, to standard error: so that the results stay one document."""
+    if statistics:
+        click.echo(tally.statistics(), err=True, nl=False)
+    for line in run.close_baseline():
+        click.echo(line, err=True)
+    if not tally.charts and not tally.unreadable:
+        has = "; ".join(tally.unselected[:20])
+        raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
 
-        return JsonReport(click.get_binary_stream("stdout"), preset)
-    from dancetutor_cli.reports.text import TextReport
 
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="replace")
-    return TextReport(sys.stdout, sys.stderr)
+def _sources(paths: tuple[Path, ...], stdin_filename: Path | None) -> list[Source]:
+    """The chart files that the paths mean; standard input with its bytes."""
+    from dancetutor_cli.library import find_files
+
+    if any(str(path) == "-" for path in paths):
+        if len(paths) > 1:
+            raise UsageError("standard input (-) goes alone, without other paths")
+        data = sys.stdin.buffer.read()
+        name = "stdin.ssc" if b"#NOTEDATA" in data.upper() else "stdin.sm"
+        return [(stdin_filename or Path(name), data)]
+    if stdin_filename is not None:
+        raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")
+    return [(path, None) for path in find_files(paths)]

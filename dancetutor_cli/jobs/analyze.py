@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,11 +11,13 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.settings import Settings
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.play.preset import Preset
+    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.play import Preset
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,7 @@ class Task:
 
     preset : name or file of the cost preset
     want_rows : whether the result shall carry every row, for JSON
+    data : the bytes to read in place of the file's, for standard input
     """
 
     path: Path
@@ -30,44 +34,67 @@ class Task:
     selection: Selection
     settings: Settings
     want_rows: bool = False
+    data: bytes | None = None
 
 
 def analyze_file(task: Task) -> FileResult:
     """Read, solve and lint one file. Never raises for what is wrong with the file: that is `error` in the result."""
-    from dancetutor_cli import chart as reader
-    from dancetutor_cli.play import load_preset
-
     try:
-        song = reader.load(task.path)
+        song = load_song(task)
     except FileError as error:
-        return _unreadable(task.path, error)
-    except OSError as error:
-        return _unreadable(task.path, FileError(task.path, error.strerror or str(error)))
-    return _analyze_song(song, task, load_preset(task.preset))
-
-
-def _analyze_song(song: Song, task: Task, preset: Preset) -> FileResult:
+        return _unreadable(task, error)
     from dancetutor_cli.lint.check import check_file
     from dancetutor_cli.lint.subject import FileSubject
 
-    charts = tuple(_analyze_chart(song, chart, task, preset) for chart in task.selection.charts(song))
-    findings = check_file(FileSubject(song), task.settings)
-    warnings = [warning.message for warning in song.warnings]
-    for chart, result in zip(task.selection.charts(song), charts, strict=True):
-        warnings += [f"{chart.label}: {warning.message}" for warning in chart.warnings]
+    selected = task.selection.charts(song)
+    charts = tuple(_chart_result(subject, task) for subject in solved(song, selected, task))
+    return FileResult(
+        str(task.path),
+        song.title,
+        song.artist,
+        None,
+        tuple(_warnings(song, charts)),
+        check_file(FileSubject(song), task.settings),
+        charts,
+        tuple(chart.label for chart in song.charts if chart not in selected),
+    )
+
+
+def load_song(task: Task) -> Song:
+    """Read the task's file; FileError if that fails."""
+    from dancetutor_cli import chart as reader
+
+    return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
+
+
+def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartSubject]:
+    """Each of the charts with its play."""
+    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.play import load_preset, solve_chart
+
+    preset: Preset = load_preset(task.preset)
+    for chart in charts:
+        yield ChartSubject(song, chart, solve_chart(chart, preset), load_pad(chart.steps_type))
+
+
+def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
+    yield from (warning.message for warning in song.warnings)
+    for result in charts:
+        yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
-            warnings.append(f"{chart.label}: steps type '{chart.steps_type}' has no pad, so there are no feet")
-    return FileResult(str(task.path), song.title, song.artist, None, tuple(warnings), findings, charts)
+            yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
 
 
-def _analyze_chart(song: Song, chart: Chart, task: Task, preset: Preset) -> ChartResult:
+def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
+    from dancetutor_cli.jobs.density import density
+    from dancetutor_cli.jobs.excerpt import arrows, with_excerpts
     from dancetutor_cli.jobs.rows import json_rows
     from dancetutor_cli.lint.check import check_chart
-    from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.play import solve_chart
 
-    play = solve_chart(chart, preset)
-    subject = ChartSubject(song, chart, play)
+    chart, play = subject.chart, subject.play
+    findings = check_chart(subject, task.settings)
+    dense = density(chart, task.settings.stream_rows)
     return ChartResult(
         index=chart.index,
         steps_type=chart.steps_type,
@@ -75,13 +102,19 @@ def _analyze_chart(song: Song, chart: Chart, task: Task, preset: Preset) -> Char
         meter=chart.meter,
         description=chart.description,
         playable=play is not None,
-        row_count=0 if play is None else int(play.rows.steps.any(axis=1).sum()),
+        row_count=len(subject.step_rows()),
         cost=0 if play is None else play.total,
         counts=Counter(name for names in (play.moves if play else ()) for name in names),
-        findings=check_chart(subject, task.settings),
+        findings=findings if play is None else with_excerpts(findings, play),
         rows=tuple(json_rows(subject)) if task.want_rows else None,
+        nps_mean=dense.mean,
+        nps_peak=dense.peak,
+        breakdown=dense.breakdown,
+        stream_measures=dense.stream_measures,
+        arrows="" if subject.pad is None else arrows(subject.pad),
     )
 
 
-def _unreadable(path: Path, error: FileError) -> FileResult:
-    return FileResult(str(path), "", "", str(error), (), (), ())
+def _unreadable(task: Task, error: FileError) -> FileResult:
+    finding = Finding("DT101", "unreadable", "error", error.message, error.line, error.column)
+    return FileResult(str(task.path), "", "", str(error), (), (finding,), ())

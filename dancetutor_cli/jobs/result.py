@@ -18,6 +18,8 @@ class ChartResult:
 
     counts : name of the move -> rows in which it happens
     playable : False if the steps type has no pad; then there are no rows and no cost
+    nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
+    arrows : a sign for each panel, to draw rows with
     """
 
     index: int
@@ -30,7 +32,12 @@ class ChartResult:
     cost: int
     counts: Mapping[str, int]
     findings: tuple[Finding, ...]
-    rows: tuple[Mapping[str, Any], ...] | None
+    rows: tuple[Mapping[str, Any], ...] | None = None
+    nps_mean: float = 0.0
+    nps_peak: float = 0.0
+    breakdown: str = ""
+    stream_measures: int = 0
+    arrows: str = ""
 
     @property
     def label(self) -> str:
@@ -49,6 +56,7 @@ class FileResult:
     warnings: tuple[str, ...]
     findings: tuple[Finding, ...]  # about the file, not about one chart
     charts: tuple[ChartResult, ...]
+    unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
 
     def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
         """Every finding with the chart it is about."""

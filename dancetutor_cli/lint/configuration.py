@@ -13,13 +13,24 @@ import yaml
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.lint.registry import matching, rule_named
 from dancetutor_cli.lint.settings import SEVERITIES, Condition, Layer, Options, Settings
+from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
 
 FILE_NAME = "dancetutor.yaml"
 FAIL_ON = ("error", "warning", "never")
 _Found = TypeVar("_Found")
-_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_TOP_KEYS = ("extends", "preset", "fail-on", "baseline", "select", "ignore", "rules", "overrides", "feet")
+_TOP_KEYS = (
+    "extends",
+    "preset",
+    "fail-on",
+    "baseline",
+    "stream-rows",
+    "select",
+    "ignore",
+    "rules",
+    "overrides",
+    "feet",
+)
 _OVERRIDE_KEYS = ("when", "select", "ignore", "rules")
 _WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
 
@@ -66,7 +77,7 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         key, equals, value = text.partition("=")
         if not equals:
             raise UsageError(f"--set {text}: write it as KEY=VALUE, for example DT201.severity=error")
-        parsed = yaml.load(value, Loader=_Loader)
+        parsed = yaml.safe_load(value)
         rule, dot, option = key.partition(".")
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
@@ -94,8 +105,7 @@ def _codes(selectors: Iterable[str]) -> frozenset[str]:
 @cache
 def default_rules() -> Mapping[str, Options]:
     """Every rule with its default severity and options: configs/lint/default.yaml."""
-    rules: Mapping[str, Options] = _read_yaml(config_path("lint/default.yaml"))["rules"]
-    return rules
+    return dict(read(config_path("lint/default.yaml")).data["rules"])
 
 
 def _located(source: str | Path) -> Path:
@@ -112,7 +122,8 @@ def _located(source: str | Path) -> Path:
 def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configuration:
     if path.resolve() in seen:
         raise FileError(path, "extends itself")
-    data = _read_yaml(path)
+    source = read(path)
+    data = dict(source.data)
     extended = data.pop("extends", [])
     for name in [extended] if isinstance(extended, str) else extended:
         beside = path.parent / str(name)
@@ -120,7 +131,7 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configur
     try:
         return replace(_apply(base, data, path.parent), path=path)
     except _ConfigError as fault:
-        raise FileError(path, fault.message, _line_of(path, fault.keys)) from None
+        raise source.error(fault.keys, fault.message) from None
 
 
 def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Configuration:
@@ -136,10 +147,13 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Config
     if fail_on is not None and fail_on not in FAIL_ON:
         raise _ConfigError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
     baseline = folder / str(data["baseline"]) if data.get("baseline") else base.baseline
+    stream_rows = data.get("stream-rows", settings.stream_rows)
+    if not isinstance(stream_rows, int) or stream_rows < 1:
+        raise _ConfigError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
     preset = data.get("preset", base.preset)
     if preset is not None and (folder / str(preset)).is_file():
         preset = str(folder / str(preset))
-    return Configuration(settings, base.path, preset, fail_on, baseline)
+    return Configuration(replace(settings, stream_rows=stream_rows), base.path, preset, fail_on, baseline)
 
 
 def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...]) -> Layer:
@@ -234,33 +248,3 @@ def _check_keys(data: Mapping[str, Any], known: Sequence[str], place: tuple[str 
     for key in data:
         if key not in known:
             raise _ConfigError((*place, str(key)), f"there is no '{key}' here; there are {', '.join(known)}")
-
-
-def _read_yaml(path: Path) -> dict[str, Any]:
-    try:
-        data = yaml.load(path.read_bytes(), Loader=_Loader)
-    except OSError as error:
-        raise FileError(path, error.strerror or str(error)) from error
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = None if mark is None else mark.line + 1
-        raise FileError(path, f"is not YAML: {getattr(error, 'problem', None) or error}", line) from error
-    if data is not None and not isinstance(data, dict):
-        raise FileError(path, "must be a mapping of names to values", 1)
-    return dict(data or {})
-
-
-def _line_of(path: Path, keys: Sequence[str | int]) -> int | None:
-    """Line of the last key of the path that can be found; parses the file once more, so only for errors."""
-    node = yaml.compose(path.read_bytes(), Loader=_Loader)
-    line: int | None = None
-    for key in keys:
-        if isinstance(node, yaml.MappingNode):
-            pairs = [(k, v) for k, v in node.value if k.value == str(key)]
-            if not pairs:
-                break
-            line, node = pairs[0][0].start_mark.line + 1, pairs[0][1]
-        elif isinstance(node, yaml.SequenceNode) and isinstance(key, int):
-            node = node.value[key]
-            line = node.start_mark.line + 1
-    return line

@@ -6,10 +6,13 @@ Rows are numbers of rows of the play. Limbs: 0 left foot, 1 right foot, 2 left h
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.play.model import Limb, Play, StepKind
 
 _EPSILON = 1e-6
@@ -17,20 +20,42 @@ _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
-class Feet:
-    """A play, and where its pad's panels are. `panels` : (c, 2), x to the right and y to the screen, panel widths."""
+@dataclass(frozen=True, slots=True)
+class Presses:
+    """Steps that are played, in order of rows and columns; arrays of one length. No virtual taps of rolls."""
 
-    def __init__(self, play: Play, panels: NDArray[np.float64]) -> None:
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    limb: NDArray[np.int8]
+
+    def of(self, limb: int) -> Presses:
+        """Those of one limb; of a bracket only its first panel."""
+        mine = np.flatnonzero(self.limb == limb)
+        mine = mine[np.diff(self.row[mine], prepend=-1) > 0]
+        return Presses(self.row[mine], self.column[mine], self.limb[mine])
+
+
+class Feet:
+    """A play, its timing, and where its pad's panels are.
+
+    panels : (c, 2), x to the right and y to the screen, panel widths
+    """
+
+    def __init__(self, play: Play, panels: NDArray[np.float64], timing: Timing) -> None:
         self._play = play
         self._panels = panels
+        self._timing = timing
+
+    @cached_property
+    def presses(self) -> Presses:
+        """All presses of the play."""
+        steps, limbs = self._play.rows.steps, self._play.limb
+        row, column = np.nonzero((limbs >= 0) & (steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
+        return Presses(row, column, limbs[row, column])
 
     def limb_name(self, row: int, column: int) -> str:
         """ "left foot", "right hand" ... of what presses a cell."""
         return _LIMB_NAMES.get(Limb(int(self._play.limb[row, column])), "limb")
-
-    def crossed(self) -> NDArray[np.bool_]:
-        """Per row whether the feet are crossed after it, and the row has a step."""
-        return (np.abs(self._play.facing) > 90 + _EPSILON) & self._play.rows.steps.any(axis=1)
 
     def crossed_runs(self) -> Iterator[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
@@ -46,77 +71,74 @@ class Feet:
         yield from np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON).tolist()
 
     def same_foot_runs(self, length: int, max_seconds: float) -> Iterator[int]:
-        """Rows in which one foot steps, alone, for the `length`-th time in a row and always on a new panel."""
-        count, foot, panel, second = 0, -1, -1, -np.inf
-        for row in np.flatnonzero(self._play.rows.steps.any(axis=1)).tolist():
-            columns = np.flatnonzero(self._play.rows.steps[row])
-            limb, now = int(self._play.limb[row, columns[0]]), float(self._play.rows.second[row])
-            if len(columns) > 1 or limb not in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
-                count, foot = 0, -1
-                continue
-            follows = limb == foot and now - second <= max_seconds + _EPSILON and columns[0] != panel
-            count = count + 1 if follows else 1
-            foot, panel, second = limb, int(columns[0]), now
+        """Rows in which one foot steps, alone, for the `length`-th time in a row and always on a new panel.
+
+        A step while the other foot is held down does not count: there is no choice.
+        """
+        presses, seconds = self.presses, self._play.rows.second
+        first = np.flatnonzero(np.diff(presses.row, prepend=-1))  # the first press of every row
+        alone = np.diff(np.append(first, len(presses.row))) == 1
+        row, column, limb = presses.row[first], presses.column[first], presses.limb[first]
+        follows = alone[1:] & alone[:-1] & (limb[1:] == limb[:-1]) & (limb[1:] <= Limb.RIGHT_FOOT)
+        follows &= (column[1:] != column[:-1]) & (np.diff(seconds[row]) <= max_seconds + _EPSILON)
+        count, last = 1, -1
+        for place in (np.flatnonzero(follows) + 1).tolist():
+            forced = "forced-doublestep" in self._play.moves[row[place]]
+            count = 1 if forced else count + 1 if place == last + 1 else 2
+            last = place
             if count == length:
-                yield row
+                yield int(row[place])
                 count = 1
 
-    def presses(self) -> Iterator[tuple[int, int, int]]:
-        """Row, column and limb of every step that is played, in order; the virtual taps of rolls left out."""
-        limbs = self._play.limb
-        played = (limbs >= 0) & (self._play.rows.steps != StepKind.NONE) & (self._play.rows.steps != StepKind.ROLL_TAP)
-        for row, column in np.argwhere(played).tolist():
-            yield row, column, int(limbs[row, column])
-
-    def travels(self) -> Iterator[tuple[int, int, float, float]]:
-        """Row, column, way (panel widths) and time (s) since the same foot's last step; a bracket counts once."""
-        last: dict[int, tuple[int, int]] = {}
-        for row, column, limb in self.presses():
-            before = last.get(limb)
-            if limb > Limb.RIGHT_FOOT or (before is not None and before[0] == row):
-                continue
-            last[limb] = (row, column)
-            if before is not None and before[1] != column:
-                way = float(np.hypot(*(self._panels[column] - self._panels[before[1]])))
-                yield row, column, way, float(self._play.rows.second[row] - self._play.rows.second[before[0]])
+    def travels(
+        self,
+    ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
+        """For each foot its steps on a new panel: rows, columns, ways (panel widths), times (s) since its last step."""
+        for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
+            steps = self.presses.of(foot)
+            way = np.hypot(*np.diff(self._panels[steps.column], axis=0).T)
+            moved = np.flatnonzero(way > _EPSILON)
+            yield (
+                steps.row[1:][moved],
+                steps.column[1:][moved],
+                way[moved],
+                np.diff(self._play.rows.second[steps.row])[moved],
+            )
 
     def releases(self) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a hold which the same limb left to press another panel."""
-        rows, held = self._play.rows, dict[int, tuple[int, int]]()
-        for row, column, limb in self.presses():
-            if limb in held:
-                ended, from_column = held.pop(limb)
-                if from_column != column:
-                    yield row, column, float(rows.second[row] - _second_at(rows.tick, rows.second, ended))
-            if rows.steps[row, column] == StepKind.HOLD:
-                held[limb] = (int(rows.hold_end[row, column]), column)
+        rows = self._play.rows
+        for limb in range(4):
+            steps = self.presses.of(limb)
+            held = np.flatnonzero(rows.steps[steps.row, steps.column] == StepKind.HOLD)
+            held = held[held + 1 < len(steps.row)]
+            moved = held[steps.column[held + 1] != steps.column[held]]
+            ended = self._timing.seconds(rows.hold_end[steps.row[moved], steps.column[moved]])
+            late = rows.second[steps.row[moved + 1]] - ended
+            yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
     def mines_under_held(self) -> Iterator[tuple[int, int]]:
         """Row and column of every mine on a panel that a foot holds at that moment."""
-        rows = self._play.rows
-        until: dict[int, int] = {}
-        for row in np.flatnonzero(rows.mines.any(axis=1) | (rows.hold_end >= 0).any(axis=1)).tolist():
-            tick = int(rows.tick[row])
-            for column in np.flatnonzero(rows.mines[row]).tolist():
-                if until.get(column, -1) > tick:
+        rows, play = self._play.rows, self._play
+        for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
+            feet = (play.limb[:, column] == Limb.LEFT_FOOT) | (play.limb[:, column] == Limb.RIGHT_FOOT)
+            heads = np.flatnonzero(feet & (rows.steps[:, column] == StepKind.HOLD))
+            for row in np.flatnonzero(rows.mines[:, column]).tolist():
+                head = int(np.searchsorted(heads, row)) - 1
+                if head >= 0 and rows.hold_end[heads[head], column] > rows.tick[row]:
                     yield row, column
-            for column in np.flatnonzero(rows.hold_end[row] >= 0).tolist():
-                if self._play.limb[row, column] in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
-                    until[column] = int(rows.hold_end[row, column])
 
-    def mines_before_steps(self) -> Iterator[tuple[int, int, float]]:
-        """Row, column and time (s) since the last mine on the panel of each step for which a foot had to come."""
-        rows, mined = self._play.rows, dict[int, float]()
-        for row in range(len(rows)):
-            for column in np.flatnonzero(rows.steps[row]).tolist():
-                limb = int(self._play.limb[row, column])
-                stood = row and limb in (0, 1) and self._play.feet[row - 1, limb] == column
-                if column in mined and not stood and rows.steps[row, column] != StepKind.ROLL_TAP:
-                    yield row, column, float(rows.second[row]) - mined.pop(column)
-            for column in np.flatnonzero(rows.mines[row]).tolist():
-                mined[column] = float(rows.second[row])
-
-
-def _second_at(ticks: NDArray[np.int64], seconds: NDArray[np.float64], tick: int) -> float:
-    """Time of a tick between the rows of a play, to the straight line between its neighbours."""
-    return float(np.interp(tick, ticks, seconds))
+    def mines_before_steps(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
+        """Row, column and time (s) since a mine on the same panel, of each step for which a foot has to come."""
+        rows, play = self._play.rows, self._play
+        for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
+            steps = np.flatnonzero((rows.steps[:, column] > 0) & (rows.steps[:, column] != StepKind.ROLL_TAP))
+            for mine in np.flatnonzero(rows.mines[:, column]).tolist():
+                at = int(np.searchsorted(steps, mine))
+                if at == len(steps):
+                    continue
+                row = int(steps[at])
+                seconds, limb = float(rows.second[row] - rows.second[mine]), int(play.limb[row, column])
+                stood = row > 0 and limb in (0, 1) and play.feet[row - 1, limb] == column
+                if seconds <= max_seconds + _EPSILON and not stood:
+                    yield row, column, seconds

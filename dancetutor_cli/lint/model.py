@@ -6,6 +6,21 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
+class ExcerptRow:
+    """One of the rows around a finding; a character for each column.
+
+    notes : "1" tap, "2" hold, "4" roll, "L" lift, "M" mine, "|" a hold that goes on, " " nothing
+    limbs : "L", "R" foot ("l", "r" its toe in a bracket), "<", ">" hand, "?" no limb is left, " " no step
+    here : whether the finding is about this row
+    """
+
+    beat: float
+    notes: str
+    limbs: str
+    here: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Finding:
     """One finding in a chart file.
 
@@ -13,6 +28,7 @@ class Finding:
     line, column : 1-based place in the file for the text form (column of the note's character); None: the whole file
     note_column : column of the note from 0, or None; beat, measure, second : None for findings about the file
     chart : index of the chart in the file, None for findings about the file
+    excerpt : the rows around it; suggestion : the small edit that would remove it, None if there is none
     """
 
     rule: str
@@ -27,3 +43,5 @@ class Finding:
     second: float | None = None
     margin: int | None = None
     chart: int | None = None
+    excerpt: tuple[ExcerptRow, ...] = ()
+    suggestion: str | None = None

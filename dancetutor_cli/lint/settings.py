@@ -7,7 +7,7 @@ A layer is what one file says, or one entry of its `overrides`. Later layers win
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import PurePath
 from typing import Any
@@ -74,13 +74,17 @@ class Layer:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """All layers in order. Plain data, so that it pickles and can be part of a cache key."""
+    """All layers in order. Plain data, so that it pickles and can be part of a cache key.
+
+    stream_rows : a measure with at least so many rows counts as stream
+    """
 
     layers: tuple[Layer, ...] = ()
+    stream_rows: int = 16
 
     def with_layer(self, layer: Layer) -> Settings:
         """The same with one more layer on top."""
-        return Settings((*self.layers, layer))
+        return replace(self, layers=(*self.layers, layer))
 
     def for_file(self, path: PurePath) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""

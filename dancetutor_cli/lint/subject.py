@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.lint.feet import Feet
 from dancetutor_cli.lint.notes import Notes
+from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.model import Limb, Play
 
 
@@ -34,17 +34,17 @@ class FileSubject:
 
 @dataclass(frozen=True)
 class ChartSubject:
-    """One chart; `play` is None where the steps type has no pad. `panels` : (c, 2) places of the pad's panels."""
+    """One chart; `play` and `pad` are None where the steps type has no pad."""
 
     song: Song
     chart: Chart
     play: Play | None
-    panels: NDArray[np.float64] | None = None
+    pad: Pad | None = None
 
     @cached_property
     def feet(self) -> Feet | None:
         """Questions about the play, where there is one."""
-        return None if self.play is None or self.panels is None else Feet(self.play, self.panels)
+        return None if self.play is None or self.pad is None else Feet(self.play, self.pad.panels, self.chart.timing)
 
     @cached_property
     def notes(self) -> Notes:

@@ -24,13 +24,18 @@ class Tally:
     charts: int = 0
     unreadable: int = 0
     severities: Counter[str] = field(default_factory=Counter)
+    rules: Counter[str] = field(default_factory=Counter)
+    unselected: list[str] = field(default_factory=list)
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
         self.files += 1
         self.charts += len(result.charts)
         self.unreadable += result.error is not None
-        self.severities.update(finding.severity for finding, _ in result.all_findings())
+        self.unselected += result.unselected
+        for finding, _ in result.all_findings():
+            self.rules[f"{finding.rule} {finding.name}"] += 1
+            self.severities[finding.severity] += result.error is None
 
     @property
     def exit_status(self) -> int:
@@ -40,6 +45,11 @@ class Tally:
         if self.exit_zero or self.fail_on == "never":
             return 0
         return int(any(n and _RANK[name] >= _RANK[self.fail_on] for name, n in self.severities.items()))
+
+    def statistics(self) -> str:
+        """How often each rule was found, one line each, most frequent first."""
+        ordered = sorted(self.rules.items(), key=lambda item: (-item[1], item[0]))
+        return "".join(f"{count:7} {rule}\n" for rule, count in ordered)
 
     def summary(self) -> str:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""

@@ -11,6 +11,7 @@ from rich.style import Style
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.reports.drawing import draw
 from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.table import chart_table
 from dancetutor_cli.reports.tally import Tally
@@ -26,7 +27,9 @@ class TextReport:
         self._stream = stream
         self._errors = errors
         self._console = make_console(stream)
-        self._coloured = self._console.color_system is not None and not self._console.legacy_windows
+        self._colours = _colours(self._console)
+
+        self._plain = not _can_encode(stream, "←↙■●│·")
 
     def begin(self) -> None:
         """Nothing comes before the first file."""
@@ -65,12 +68,16 @@ class TextReport:
         where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
         label = f" [{safe(chart.label)}]" if chart else ""
         self._line(f"{where} {rule} {safe(finding.message)}", self._paint(label + moment(finding), "dim"))
+        if finding.suggestion:
+            self._line(f"    better: {safe(finding.suggestion)}")
+        for line in draw(finding.excerpt, chart.arrows if chart else "", self._paint, plain=self._plain):
+            self._line(line)
 
     def _line(self, *parts: str) -> None:
         self._stream.write("".join(parts) + "\n")
 
     def _paint(self, text: str, style: str) -> str:
-        return Style.parse(style).render(text, color_system=ColorSystem.STANDARD) if self._coloured and text else text
+        return Style.parse(style).render(text, color_system=self._colours) if self._colours and text else text
 
 
 def moment(finding: Finding) -> str:
@@ -90,6 +97,23 @@ def clock(second: float) -> str:
     milliseconds = round(abs(second) * 1000)
     minutes, rest = divmod(milliseconds, 60_000)
     return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
+
+
+def _colours(console: Console) -> ColorSystem | None:
+    systems = {
+        "standard": ColorSystem.STANDARD,
+        "256": ColorSystem.EIGHT_BIT,
+        "truecolor": ColorSystem.TRUECOLOR,
+    }
+    return systems.get(console.color_system or "") if not console.legacy_windows else None
+
+
+def _can_encode(stream: IO[str], text: str) -> bool:
+    try:
+        text.encode(getattr(stream, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def make_console(stream: IO[str]) -> Console:

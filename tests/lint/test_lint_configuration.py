@@ -131,7 +131,7 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
         ("overrides:\n  - rules: {}\n", 2, ["when"]),
         ("overrides:\n  - when: {metre: 3}\n", 2, ["metre", "meter"]),
         ("overrides:\n  - when:\n      meter: hard\n", 3, ["hard", "1-7"]),
-        ("rules: [\n", 2, ["not YAML"]),
+        ("rules: [\n", 2, ["expected"]),
         ("- a\n", 1, ["mapping"]),
     ],
 )

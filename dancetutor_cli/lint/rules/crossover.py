@@ -27,6 +27,6 @@ class Crossover(ChartRule):
     name = "crossover"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each step that crosses the feet."""
-        for row in subject.rows_with_any("crossover"):
-            yield self.finding("the feet cross here", subject.at_row(row))
+        """One finding for each step after which the feet are newly crossed."""
+        for first, _ in subject.feet.crossed_runs() if subject.feet else ():
+            yield self.finding("the feet cross here", subject.at_row(first))

@@ -27,9 +27,12 @@ class FastStep(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step that is too fast."""
+        import numpy as np
+
         feet = subject.feet
-        for row, column, way, seconds in feet.travels() if feet else ():
-            if feet and way > self.options["max_speed"] * seconds + 1e-6:
-                name = feet.limb_name(row, column)
-                message = f"the {name} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+        for rows, columns, ways, seconds in feet.travels() if feet else ():
+            for at in np.flatnonzero(ways > self.options["max_speed"] * seconds + 1e-6).tolist():
+                row, column = int(rows[at]), int(columns[at])
+                name = feet.limb_name(row, column) if feet else ""
+                message = f"the {name} moves {ways[at]:.1f} panels in {seconds[at] * 1000:.0f} ms"
                 yield self.finding(message, subject.at_row(row, column))

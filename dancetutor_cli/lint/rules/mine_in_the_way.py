@@ -27,7 +27,7 @@ class MineInTheWay(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such step."""
-        for row, column, seconds in subject.feet.mines_before_steps() if subject.feet else ():
-            if seconds <= self.options["max_seconds"] + 1e-6:
-                message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
-                yield self.finding(message, subject.at_row(row, column))
+        limit = self.options["max_seconds"]
+        for row, column, seconds in subject.feet.mines_before_steps(limit) if subject.feet else ():
+            message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
+            yield self.finding(message, subject.at_row(row, column))

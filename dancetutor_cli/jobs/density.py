@@ -1,0 +1,58 @@
+"""How dense a chart is: steps per second and the breakdown of its streams as players write it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
+
+_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
+
+
+@dataclass(frozen=True, slots=True)
+class Density:
+    """Rows with a step, counted as the games' "notes per second" do: a jump is one.
+
+    mean : rows per second from the first to the last step; peak : of the densest measure
+    breakdown : "32 (4) 16": measures of stream, breaks between them in brackets; "" without a stream
+    stream_measures : measures of stream in all
+    per_measure : rows with a step in every measure, up to the last step
+    """
+
+    mean: float
+    peak: float
+    breakdown: str
+    stream_measures: int
+    per_measure: tuple[int, ...]
+
+
+def density(chart: Chart, stream_rows: int) -> Density:
+    """Measure a chart; a measure with at least `stream_rows` rows counts as stream."""
+    notes = chart.notes
+    ticks = np.unique(notes.tick[notes.judged & np.isin(notes.kind, _STEPS)])
+    if not len(ticks):
+        return Density(0.0, 0.0, "", 0, ())
+    counts = np.bincount(np.maximum(ticks, 0) // TICKS_PER_MEASURE)
+    edges = chart.timing.seconds(np.arange(len(counts) + 1, dtype=np.int64) * TICKS_PER_MEASURE)
+    lengths = np.diff(edges)
+    rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > 0)
+    first, last = chart.timing.seconds(ticks[[0, -1]])
+    mean = len(ticks) / (last - first) if last > first else 0.0
+    stream = counts >= stream_rows
+    return Density(
+        float(mean), float(rates.max()), breakdown(stream.tolist()), int(stream.sum()), tuple(counts.tolist())
+    )
+
+
+def breakdown(stream: Sequence[bool]) -> str:
+    """Runs of stream measures as numbers, the breaks between them in brackets; no break at the start or the end."""
+    runs = [(is_stream, len(list(group))) for is_stream, group in groupby(stream)]
+    if runs and not runs[0][0]:
+        runs = runs[1:]
+    if runs and not runs[-1][0]:
+        runs = runs[:-1]
+    return " ".join(str(length) if is_stream else f"({length})" for is_stream, length in runs)

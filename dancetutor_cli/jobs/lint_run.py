@@ -1,0 +1,120 @@
+"""A run of `analyze`: which configuration holds for which file, the tasks, the baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.lint.configuration import (
+    Configuration,
+    find_configuration,
+    load_configuration,
+    with_assignments,
+    with_selection,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What the command line asks for; None where it says nothing and the configuration decides.
+
+    config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
+    """
+
+    selection: Selection = field(default_factory=Selection)
+    preset: str | None = None
+    config: str | None = None
+    assignments: Sequence[str] = ()
+    select: Sequence[str] = ()
+    ignore: Sequence[str] = ()
+    fail_on: str | None = None
+    baseline: Path | None = None
+    update_baseline: bool = False
+    want_rows: bool = False
+
+
+@dataclass
+class LintRun:
+    """Turns files into tasks, and raw results into what is reported."""
+
+    request: Request
+    _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
+    _baseline: Baseline | None = None
+    _found: list[Key] = field(default_factory=list)
+
+    def configuration(self, path: Path) -> Configuration:
+        """What holds for a file: --config, or the nearest dancetutor.yaml up the tree, and the command line on top."""
+        given = self.request.config
+        source = None if given is not None else find_configuration(path.absolute().parent)
+        if source not in self._by_source:
+            loaded = load_configuration(given if given is not None else source)
+            loaded = with_assignments(loaded, self.request.assignments)
+            self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
+        return self._by_source[source]
+
+    def preset(self, path: Path) -> str:
+        """Name or file of the cost preset for a file."""
+        from dancetutor_cli.play import DEFAULT_PRESET
+
+        return self.request.preset or self.configuration(path).preset or DEFAULT_PRESET
+
+    def preset_name(self, path: Path) -> str:
+        """Name of the cost preset for a file; UsageError if there is no such preset."""
+        from dancetutor_cli.play import load_preset
+
+        return load_preset(self.preset(path)).name
+
+    def task(self, path: Path, data: bytes | None = None) -> Task:
+        """The piece of work for a file."""
+        settings = self.configuration(path).settings
+        return Task(path, self.preset(path), self.request.selection, settings, self.request.want_rows, data)
+
+    def fail_on(self, path: Path) -> str:
+        """The least severity that fails the run, as the configuration of the first file says."""
+        return self.request.fail_on or self.configuration(path).fail_on or "warning"
+
+    def open_baseline(self, path: Path) -> None:
+        """Read the baseline that the command line, or the configuration of this file, names."""
+        where = self.request.baseline or self.configuration(path).baseline
+        if where is None and self.request.update_baseline:
+            where = Path("dancetutor-baseline.json")
+        if where is not None:
+            is_new = self.request.update_baseline and not where.exists()
+            self._baseline = Baseline(where) if is_new else load_baseline(where)
+
+    def without_known(self, result: FileResult) -> FileResult:
+        """The result without the findings that the baseline knows."""
+        baseline = self._baseline
+        if baseline is None or result.error is not None:
+            return result
+        if not result.unselected:
+            baseline.saw(result.path)
+        found = [(f, chart, baseline.key(result.path, _name(chart), f)) for f, chart in result.all_findings()]
+        self._found += [key for _, _, key in found]
+        known = self.request.update_baseline  # what is written now is known from now on
+        left = [(f, chart) for f, chart, key in found if not known and not baseline.absorbs(key)]
+        charts = tuple(replace(chart, findings=tuple(f for f, of in left if of is chart)) for chart in result.charts)
+        return replace(result, findings=tuple(f for f, of in left if of is None), charts=charts)
+
+    def close_baseline(self) -> list[str]:
+        """Write the baseline if that was asked for; lines to be said about it."""
+        if self._baseline is None:
+            return []
+        path = self._baseline.path
+        if self.request.update_baseline:
+            self._baseline.replaced(self._found).write()
+            return [f"{path}: {len(self._found)} finding{'' if len(self._found) == 1 else 's'} written"]
+        return [
+            f"{path}: entry is no longer needed: {file} {chart} {rule} "
+            + (f"beat {place / 48:g}" if chart else f"line {place}")
+            for file, chart, rule, place in self._baseline.unused()
+        ]
+
+
+def _name(chart: ChartResult | None) -> str:
+    return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip()

@@ -1,0 +1,82 @@
+"""`--format csv`: one line for each chart, tech counts under the names of ITGmania."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from typing import IO, Any
+
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.reports.safe import safe
+from dancetutor_cli.reports.structured import relative
+from dancetutor_cli.reports.tally import Tally
+
+# Name in ITGmania's TechCounts (or after its pattern) -> moves that count.
+TECH = {
+    "Crossovers": ("crossover-half", "crossover-full"),
+    "HalfCrossovers": ("crossover-half",),
+    "FullCrossovers": ("crossover-full",),
+    "Footswitches": ("footswitch-up", "footswitch-down"),
+    "UpFootswitches": ("footswitch-up",),
+    "DownFootswitches": ("footswitch-down",),
+    "Sideswitches": ("sideswitch-left", "sideswitch-right"),
+    "LeftSideswitches": ("sideswitch-left",),
+    "RightSideswitches": ("sideswitch-right",),
+    "Jacks": ("jack",),
+    "Brackets": ("bracket",),
+    "Doublesteps": ("doublestep", "forced-doublestep"),
+    "ForcedDoublesteps": ("forced-doublestep",),
+    "UnforcedDoublesteps": ("doublestep",),
+    "Spins": ("spin",),
+    "JumpFootswitches": ("jump-footswitch",),
+    "Candles": ("candle",),
+    "Gallops": ("gallop",),
+    "Hands": ("hand",),
+}
+
+
+class CsvReport:
+    """Writes a header and one line a chart; files that could not be read go to `errors`."""
+
+    def __init__(self, stream: IO[str], errors: IO[str]) -> None:
+        self._stream = stream
+        self._errors = errors
+        self._writer: csv.DictWriter[str] | None = None
+
+    def begin(self) -> None:
+        """The header needs no chart."""
+        self._writer = csv.DictWriter(self._stream, list(_line("", "", "", None)), lineterminator="\n")
+        self._writer.writeheader()
+
+    def add(self, result: FileResult) -> None:
+        """Write the charts of one file."""
+        if result.error is not None:
+            self._errors.write(f"dancetutor: {safe(result.error)}\n")
+        assert self._writer is not None
+        for chart in result.charts:
+            self._writer.writerow(_line(relative(result.path), safe(result.title), safe(result.artist), chart))
+
+    def end(self, tally: Tally) -> None:
+        """Nothing comes after the last chart."""
+
+
+def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapping[str, Any]:
+    counts: Mapping[str, int] = chart.counts if chart else {}
+    return {
+        "file": path,
+        "title": title,
+        "artist": artist,
+        "index": chart.index if chart else 0,
+        "steps_type": safe(chart.steps_type) if chart else "",
+        "difficulty": chart.difficulty if chart else "",
+        "meter": chart.meter if chart else 0,
+        "description": safe(chart.description) if chart else "",
+        "rows": chart.row_count if chart else 0,
+        "cost": chart.cost if chart else 0,
+        "nps_mean": round(chart.nps_mean, 3) if chart else 0,
+        "nps_peak": round(chart.nps_peak, 3) if chart else 0,
+        "stream_measures": chart.stream_measures if chart else 0,
+        "breakdown": chart.breakdown if chart else "",
+        **{name: sum(counts.get(move, 0) for move in moves) for name, moves in TECH.items()},
+        "findings": len(chart.findings) if chart else 0,
+    }

@@ -1,0 +1,32 @@
+"""`--explain`: the documentation of a rule, from its docstring, with its severity and options."""
+
+from __future__ import annotations
+
+import inspect
+
+from dancetutor_cli.lint.configuration import default_rules
+from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.lint.rule import FAMILIES, Rule
+
+
+def explain(rule: type[Rule]) -> str:
+    """What a rule finds, how its bad and its better pattern look, and how it is set."""
+    settings = dict(default_rules()[rule.code])
+    severity = settings.pop("severity")
+    lines = [f"{rule.code} {rule.name} ({FAMILIES[int(rule.code[2])]}, {severity})", "", inspect.getdoc(rule) or ""]
+    if settings:
+        lines += ["", "Options: " + ", ".join(f"{name} = {value}" for name, value in settings.items())]
+    return "\n".join(lines) + "\n"
+
+
+def explain_all() -> str:
+    """One line for each rule: code, name, severity, first sentence."""
+    lines: list[str] = []
+    family = ""
+    for code, rule in all_rules().items():
+        if FAMILIES[int(code[2])] != family:
+            family = FAMILIES[int(code[2])]
+            lines.append(f"{'' if not lines else chr(10)}{family}")
+        summary = (inspect.getdoc(rule) or "").splitlines()[0]
+        lines.append(f"  {code} {rule.name:22} {default_rules()[code]['severity']:8} {summary}")
+    return "\n".join(lines) + "\n"
