@@ -9,17 +9,23 @@ from __future__ import annotations
 import numpy as np
 from build_character_body import REST
 from build_character_loft import Lofted, rope
-from build_character_sdf import Array, Shape, blend, both, cone, ellipsoid, tube
+from build_character_sdf import Array, Shape, blend, both, cone, ellipsoid, scaled, tube
 
 EYE = REST["l_eyeball_joint"]
-EYE_RADIUS = 0.0340
+EYE_RADIUS = 0.0367
 LID_EDGE, LOWER_EDGE = 34.0, -36.0  # degrees of elevation on the eyeball; the lid closes by their difference
+LARGER, ABOUT = 1.08, np.array([0.0, 1.53, 0.0])  # the head is drawn at life size and then made larger
 BRAID = [REST[f"braid{k}"] for k in (1, 2, 3, 4)]
 BRAID_TIP = np.array([0.0, 1.205, -0.153])
 
 
 def cranium() -> Shape:
     return ellipsoid((0, 1.624, -0.008), (0.0835, 0.0900, 0.0965))
+
+
+def drawn(p: Array) -> Array:
+    """Places on the enlarged head as they were drawn."""
+    return ABOUT + (p - ABOUT) / LARGER
 
 
 def head() -> Shape:
@@ -32,7 +38,7 @@ def head() -> Shape:
     rim = both(ellipsoid((0.0640, 1.5860, 0.0420), (0.0210, 0.0330, 0.0300)))  # the outer corners of the eyes
     skull = blend(0.020, skull, rim)
     nose = cone((0, 1.574, 0.0865), (0, 1.5595, 0.0955), 0.0040, 0.0066)
-    return blend(0.014, skull, nose)  # the hair covers her ears
+    return scaled(blend(0.014, skull, nose), ABOUT, LARGER)  # the hair covers her ears
 
 
 def hair() -> Shape:
@@ -47,7 +53,8 @@ def hair() -> Shape:
         t = np.clip(face(p) / 0.040, 0, 1)
         return skull(p) - (-0.004 + 0.018 * t * t * (3 - 2 * t))
 
-    return blend(0.03, close, gathered)
+    tuft = ellipsoid((0, 1.690, 0.026), (0.072, 0.033, 0.058))  # fills the fringe from behind
+    return scaled(blend(0.03, close, gathered, tuft), ABOUT, LARGER)
 
 
 def locks() -> list[Lofted]:
@@ -64,7 +71,7 @@ def locks() -> list[Lofted]:
     widths = [(0.020, 0.032, 0.032, 0.024), (0.020, 0.028, 0.028, 0.019), (0.016, 0.023, 0.022, 0.015)]
     widths += [(0.020, 0.030, 0.030, 0.022), (0.016, 0.024, 0.022, 0.014)]
     out = [
-        rope([*points, tip], [*width, 0.0018], 7, 2, front, 0.5)
+        _larger(rope([*points, tip], [*width, 0.0018], 7, 2, front, 0.5))
         for points, tip, width in zip(fringe, tips, widths, strict=True)
     ]
     for side in (1, -1):
@@ -77,8 +84,12 @@ def locks() -> list[Lofted]:
                 (0.0765, 1.484, 0.060),
             ]
         )
-        out.append(rope(points * [side, 1, 1], [0.018, 0.0185, 0.0155, 0.0110, 0.0015], 7, 2, (side, 0, 0.3), 0.55))
+        out.append(_larger(rope(points * [side, 1, 1], [0.018, 0.0185, 0.0155, 0.0110, 0.0015], 7, 2, (side, 0, 0.3), 0.55)))
     return out
+
+
+def _larger(part: Lofted) -> Lofted:
+    return ABOUT + (part[0] - ABOUT) * LARGER, part[1], part[2]
 
 
 def braid_line(t: Array) -> Array:

@@ -72,6 +72,7 @@ def arm(p: Array, n: Array) -> Array:
 
 def face(p: Array, n: Array) -> Array:
     """Skin with blush, brows and an open smile."""
+    p = head.drawn(p)
     q = np.stack([np.abs(p[:, 0]), p[:, 1]], axis=1)
     front = p[:, 2] > 0.02
     base = fill(p, SKIN)
@@ -154,6 +155,7 @@ def eye(side: int) -> Paint:
 
 def hair(p: Array, n: Array) -> Array:
     """Strands that run back to the braid, deeper at the nape, a band of shine around the crown."""
+    p = head.drawn(p)
     turn = np.arctan2(p[:, 0], p[:, 1] - 1.625)
     strands = 0.5 * np.sin(turn * 23 + 3 * np.sin(turn * 5)) + 0.5 * np.sin(turn * 41 + 2 * np.sin(turn * 9 + 1))
     base = over(

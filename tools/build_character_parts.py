@@ -59,7 +59,7 @@ def shirt_mesh() -> Lofted:
 def face_mesh() -> Lofted:
     """The head, with calm normals in the face."""
     shape = head.head()
-    points, _, triangles = surface(shape, (-0.11, 1.46, -0.13), (0.11, 1.74, 0.13), 0.003, _face_first)
+    points, _, triangles = surface(shape, (-0.11, 1.45, -0.13), (0.11, 1.76, 0.14), 0.003, _face_first)
     return points, round_face(points, gradient(shape, points, 0.003)), triangles
 
 
@@ -82,7 +82,7 @@ def round_face(points: Array, normals: Array) -> Array:
     """Normals of the face turned towards those of a ball, so that drawn light falls on it in large calm areas."""
     ball = points - [0, 1.550, -0.030]
     ball /= np.linalg.norm(ball, axis=1, keepdims=True)
-    share = 0.7 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.088) / 0.006, 0, 1)
+    share = 0.7 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.096) / 0.006, 0, 1)
     mixed = normals + share[:, None] * (ball - normals)
     return np.asarray(mixed / np.linalg.norm(mixed, axis=1, keepdims=True))
 
@@ -107,9 +107,9 @@ def parts() -> list[Part]:
         Part("arm", of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm), "heat", 560, paint.arm, True),
         Part("neck", of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)), "heat", 450, paint.skin),
         Part("head", face_mesh, "skullbase", 1750, paint.face),
-        Part("hair", of_shape(head.hair(), ((-0.13, 1.46, -0.18), (0.13, 1.78, 0.16)), 0.004, even(0.0145)), "skullbase", 700, paint.hair),
+        Part("hair", of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, even(0.0165)), "skullbase", 700, paint.hair),
         Part("locks", lambda: joined(*head.locks()), "skullbase", 800, paint.hair),
-        Part("braid", of_shape(head.braid(), ((-0.05, 1.18, -0.20), (0.05, 1.67, -0.08)), 0.0025, even(0.0104)), "braid", 700, paint.braid),
+        Part("braid", of_shape(head.braid(), ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08)), 0.0025, even(0.0104)), "braid", 700, paint.braid),
         Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
         Part("shoe", of_shape(body.shoe_upper(), ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21)), 0.003, even(0.0140)), "foot", 0, paint.plain, True, "foot"),
         Part("wristband", trims.wristband, "heat", 0, paint.plain, True, "hand"),

@@ -184,3 +184,9 @@ def mirrored(shape: Shape) -> Shape:
 def both(shape: Shape) -> Shape:
     """A shape modelled on the left (+X), on both sides."""
     return lambda p: shape(np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], axis=1))
+
+
+def scaled(shape: Shape, about: ArrayLike, factor: float) -> Shape:
+    """A shape made larger about a point."""
+    c = np.asarray(about, float)
+    return lambda p: shape(c + (p - c) / factor) * factor

@@ -52,7 +52,7 @@ STYLES = {
     "h-anim": " ".join(j if i < 6 else "{s}_" + j for i, j in enumerate(_JOINTS)),
 }
 _VRM_BONES = "hips spine chest upperChest neck head UpperLeg LowerLeg Foot Toes Shoulder UpperArm LowerArm Hand"
-VRM = dict(zip(_VRM_BONES.split(), _JOINTS, strict=True))  # noqa: SIM905
+VRM = dict(zip(_VRM_BONES.split(), _JOINTS, strict=True))
 
 
 def renamed(style: str) -> dict[str, str]:
