@@ -110,10 +110,8 @@ def _with(comment: bytes, text: bytes, force: bool) -> bytes:
 
 def _without(comment: bytes, force: bool) -> bytes:
     """The comment without markers; nothing of it is left if a marker was all there was."""
-    for match in reversed(markers_in(comment)):
-        if match["pin"] and not force:
-            continue
-        comment = _cut(comment, match.start(), match.end())
+    while ours := [match for match in markers_in(comment) if force or not match["pin"]]:
+        comment = _cut(comment, *ours[-1].span())  # what is left may make a marker of two halves, hence the loop
     return comment
 
 

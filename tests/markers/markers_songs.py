@@ -1,0 +1,68 @@
+"""Songs and feet for the tests of markers: a small chart as text, letters that need no solver."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.feet.measures import StepRows, step_rows
+from dancetutor_cli.feet.notation import LETTERS
+from dancetutor_cli.markers import measure, rows
+from dancetutor_cli.markers.splice import apply
+
+HEADER = b"#TITLE:Song;\n#OFFSET:0;\n#BPMS:0=120;\n"
+SM_CHART = b"#NOTES:\n     dance-single:\n     :\n     Hard:\n     8:\n     0,0,0,0,0:"
+
+
+def sm(measures: bytes, header: bytes = HEADER) -> bytes:
+    """A .sm file with one chart; `measures` is what follows the last `:`, up to the `;`."""
+    return header + SM_CHART + measures
+
+
+def song_of(data: bytes, name: str = "song.sm") -> Song:
+    return parse(data, Path(name))
+
+
+def random_letters(chart: Chart, found: StepRows, seed: int) -> list[str]:
+    dice = random.Random(seed * 1000 + chart.index)
+    alphabet = sorted(LETTERS)
+    return ["".join(dice.choices(alphabet, k=int(count))) for count in found.steps.sum(axis=1)]
+
+
+def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), force: bool = False) -> bytes:
+    """The file with random feet in it; the same seed gives the same feet."""
+    splices = []
+    for chart in song.charts:
+        found = step_rows(song.data, chart)
+        letters = random_letters(chart, found, seed)
+        if "measure" in styles:
+            splices += measure.write(song.data, chart, found, letters, force)[0]
+        if "rows" in styles:
+            splices += rows.write(song.data, chart, found, letters)[0]
+    return apply(song.data, splices)
+
+
+def stripped(song: Song, styles: Sequence[str] = ("measure",), force: bool = False) -> bytes:
+    splices = []
+    for chart in song.charts:
+        if "measure" in styles:
+            splices += measure.strip(song.data, chart, force)
+        if "rows" in styles:
+            splices += rows.strip(song.data, chart)
+    return apply(song.data, splices)
+
+
+def readable(path: Path) -> Song | None:
+    """The song, or None for a file without charts."""
+    try:
+        return parse(path.read_bytes(), path)
+    except FileError:
+        return None
+
+
+def chart_files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*") if path.suffix.lower() in (".sm", ".ssc"))
