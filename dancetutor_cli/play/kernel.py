@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play.tables import COLUMN_BITS, MOST_MOVES
 from dancetutor_cli.play.thesis_moves import expand_thesis, start_thesis
 
