@@ -97,9 +97,12 @@ class _Reader:
         return {tag.name: self.text(tag) for tag in tags if tag.name not in ("NOTES", "NOTEDATA")}
 
     def timing_texts(self, tags: Iterable[Tag]) -> dict[str, timing_tags.Text]:
-        """The timing tags; of several of one name the last."""
-        latest = {tag.name: tag for tag in tags if tag.name in timing_tags.TIMING_TAGS}
-        return {name: timing_tags.Text(self.text(tag), self.lines(tag.start)) for name, tag in latest.items()}
+        """The timing tags, each character a byte; of several of one name the last."""
+        latest = {tag.name: tag for tag in tags if tag.name in timing_tags.TIMING_TAGS and tag.spans}
+        return {
+            name: timing_tags.Text(msd.plain(self.data[slice(*tag.spans[0])]).decode("latin-1"), self.lines(tag.start))
+            for name, tag in latest.items()
+        }
 
     def skip(self, reason: str, offset: int) -> None:
         self.warnings.append(ReadWarning("chart-skipped", f"{reason}; the chart is skipped", self.lines(offset)))
@@ -112,13 +115,15 @@ class _Reader:
         columns = names.COLUMNS.get(kind)
         if columns is None:
             columns = width_of_first_row(self.data, notes)
-            message = f"steps type '{kind[:40]}' is unknown; it is read with the {columns} columns of its first row"
+            message = (
+                f"steps type '{text.shown(kind)}' is unknown; it is read with the {columns} columns of its first row"
+            )
             warnings.append(ReadWarning("unknown-steps-type", message, line))
         meter = _meter(tags.get("METER", ""), line, warnings)
         description = text.one_line(tags.get("DESCRIPTION", ""))
         difficulty, said = names.difficulty(tags.get("DIFFICULTY", ""), description, meter, self.format == "sm")
         if not said:
-            message = f"difficulty '{tags.get('DIFFICULTY', '')[:40]}' is unknown; the games show {difficulty}"
+            message = f"difficulty '{text.shown(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
         routine, trimmed = names.is_routine(kind), self.format == "sm"
         read = read_notes(self.data, notes, columns, timing, self.lines, routine=routine, trimmed=trimmed)
@@ -146,7 +151,7 @@ class _Reader:
         for tag in song_tags:
             ended = tag.spans and self.data[tag.spans[-1][1] : tag.spans[-1][1] + 1] == b"#"
             if ended and not self.text(tag) and self._on_one_line(tag):
-                message = f"the value of {tag.name} starts with '#': the games read that as the next tag"
+                message = f"the value of {text.shown(tag.name)} starts with '#': the games read that as the next tag"
                 self.warnings.append(ReadWarning("hash-in-value", message, self.lines(tag.start)))
         if b"\r" in self.data and b"\n" not in self.data:
             message = "lines end at CR alone: the games read each measure as one row"
@@ -161,7 +166,9 @@ class _Reader:
                 self.warnings.append(ReadWarning("duplicate-difficulty", message, chart.line))
             seen.add(key)
         if (name := values.get("MUSIC", "")) and suspicious_music(name):
-            message = f"MUSIC '{name[:60]}' is not a plain file name inside the song's folder; it will not be opened"
+            message = (
+                f"MUSIC '{text.shown(name)}' is not a plain file name inside the song's folder; it will not be opened"
+            )
             line = next((self.lines(tag.start) for tag in reversed(song_tags) if tag.name == "MUSIC"), None)
             self.warnings.append(ReadWarning("unsafe-music", message, line))
 
@@ -260,7 +267,7 @@ def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
     meter, clean = number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
-        message = f"meter '{value[:40]}' is no usable number; read as {read}"
+        message = f"meter '{text.shown(value)}' is no usable number; read as {read}"
         warnings.append(ReadWarning("odd-meter", message, line))
         return read
     return int(meter)

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from dancetutor_cli.chart.decimals import beat, number, tick_of
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
+from dancetutor_cli.chart.text import shown
 from dancetutor_cli.chart.timing import Segments
 
 FAST_BPM = 9_999_999  # anything faster is a warp, as the games have it
@@ -56,11 +57,6 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
                 warn("odd-timing", f"{tag} entry '{shown(entry)}' is no pair of numbers; read as {read}")
             out.append((at, value))
     return out
-
-
-def shown(text: str) -> str:
-    """The start of a text on one line, for messages."""
-    return " ".join(text.split())[:40]
 
 
 def at_ticks(segments: Pairs) -> Segments:

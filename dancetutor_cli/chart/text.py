@@ -59,3 +59,8 @@ def _safe(text: str) -> str:
 def one_line(text: str) -> str:
     """The text on one line, for titles and names."""
     return " ".join(text.split())
+
+
+def shown(text: str) -> str:
+    """The start of a text on one line, safe to print, for messages."""
+    return "".join(c if c.isprintable() else "?" for c in one_line(text)[:60])

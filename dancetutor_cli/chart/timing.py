@@ -159,8 +159,11 @@ class _Knots:
     def ticks(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         i = np.searchsorted(self.after, seconds, side="right") - 1
         k = np.maximum(i, 0)
-        rate = np.where(self.rate[k] > 0, self.rate[k], np.inf)
-        later = np.minimum(self.tick[k] + (seconds - self.after[k]) / rate, np.append(self.tick[1:], _FAR)[k])
+        rate, following = self.rate[k], np.append(self.tick[1:], _FAR)[k]
+        passed = seconds - self.after[k]
+        moving = np.minimum(self.tick[k] + passed / np.where(rate > 0, rate, 1), following)
+        warping = np.where(passed > 0, following, self.tick[k])  # time passes in a warp only in a stop in it
+        later = np.where(rate > 0, moving, warping)
         sooner = np.minimum(self.tick[0] + (seconds - self.before[0]) / self.first_rate, self.tick[0])
         out: NDArray[np.float64] = np.where(i < 0, sooner, later)
         return out

@@ -9,6 +9,7 @@ from fractions import Fraction
 from dancetutor_cli.chart import negatives, segments
 from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import ReadWarning
+from dancetutor_cli.chart.text import shown
 from dancetutor_cli.chart.timing import Timing
 
 TIMING_TAGS = frozenset({
@@ -75,7 +76,7 @@ def is_own(tags: Mapping[str, Text], source: Source) -> bool:
 def _offset(tag: Text, warnings: list[ReadWarning]) -> Fraction:
     value, clean = number(tag.value)
     if not clean and tag.value.strip():
-        text = f"OFFSET '{segments.shown(tag.value)}' is no decimal number; read as {float(value):g}"
+        text = f"OFFSET '{shown(tag.value)}' is no decimal number; read as {float(value):g}"
         warnings.append(ReadWarning("odd-offset", text, tag.line))
     return value
 
