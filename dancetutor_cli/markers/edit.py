@@ -79,8 +79,10 @@ def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
     """What to append to a chart file: a block for each single. It starts on the file's last line."""
     eol = b"\r\n" if b"\r\n" in song.data else b"\n"
     names = _names(song)
+    if any(song.data[c.notes_span[1] : c.notes_span[1] + 1] != b";" for c in song.charts[-1:]):
+        raise EditError(song.path, "the last chart has no ';' at its end, so no chart can be added behind it")
     if song.data.endswith(b"\\"):
-        raise EditError(song.path, "ends with a lone '\\', behind which nothing can be added")
+        raise EditError(song.path, "ends with a lone '\\', behind which no chart can be added")
     blocks = []
     for one in feet:
         if one.chart.steps_type != lanes.SOURCE:

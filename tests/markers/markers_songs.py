@@ -6,6 +6,8 @@ import random
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError
@@ -29,8 +31,9 @@ def song_of(data: bytes, name: str = "song.sm") -> Song:
 
 def random_letters(chart: Chart, found: StepRows, seed: int) -> list[str]:
     dice = random.Random(seed * 1000 + chart.index)
-    alphabet = sorted(LETTERS)
-    return ["".join(dice.choices(alphabet, k=int(count))) for count in found.steps.sum(axis=1)]
+    ends = np.cumsum(found.steps.sum(axis=1)).tolist()
+    text = "".join(dice.choices(sorted(LETTERS), k=ends[-1])) if ends else ""
+    return [text[a:b] for a, b in zip([0, *ends[:-1]], ends, strict=True)] if ends else []
 
 
 def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), force: bool = False) -> bytes:
