@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
-SHORTEST_GAP = 0.003  # seconds between keys that are not divided further
+SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
 REFINEMENTS = 2  # rounds of adding keys half-way between others
-KEY_TOLERANCE = 0.0004  # metres that a standing sole may be off between keys
+KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
 

@@ -12,6 +12,7 @@ from dancetutor_cli.motion.track import FootTrack
 
 Array = NDArray[np.float64]
 GRAVITY = 9.81
+OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 
@@ -56,7 +57,8 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
     """Ground path: straight, or for jumps half turning about the middle between the feet (thesis 5.6.2.2)."""
-    e = smooth(s)[:, None]
+    free = np.clip((s - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
+    e = ((1.0 - np.cos(np.pi * free)) / 2)[:, None]
     straight = place[i] + e * (place[i + 1] - place[i])
     bulge = np.array([w.bulge for w in track.swings])[i] * (np.sin(np.pi * e) ** 2)
     turn = np.array([w.turn for w in track.swings])

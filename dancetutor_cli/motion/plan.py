@@ -188,7 +188,7 @@ class Planner:
         rest = self.settings.step.stream_pitch * cut
         if len(columns) > 1:
             land = rest = 0.0  # heel and toes of a bracket come down together
-        out = np.radians([lift, most * (1.0 - 0.5 * cut), land + 0.3 * rest, rest])
+        out = np.radians([lift * (1.0 - 0.4 * cut), most * (1.0 - 0.6 * cut), land + 0.3 * rest, rest])
         return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
     def _bulge(self, foot: _Foot, target: Array, yaw: float, other: _Foot) -> tuple[float, float]:

@@ -58,10 +58,9 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
             starts.append(start[use])
             rows.append(sign * wide[use])
             highs.append(bound[use])
-    x, found, rounds = _interior_point(
-        problem.bands, np.ascontiguousarray(problem.right[:, 0]), np.concatenate(starts), np.concatenate(rows), np.concatenate(highs),
-        TOLERANCE, ROUNDS,
-    )  # fmt: skip
+    stacked = np.concatenate(starts), np.concatenate(rows), np.concatenate(highs)
+    right = np.ascontiguousarray(problem.right[:, 0])
+    x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, ROUNDS)
     return Solution(x, bool(found), int(rounds))
 
 
