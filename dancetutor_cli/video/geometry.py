@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character, Mesh
+from dancetutor_cli.character.model import Character
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.video.textures import Skins, density, skins_of
 
 F32 = NDArray[np.float32]
 FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
@@ -22,9 +23,9 @@ class Packed:
     outline, drawn by moving vertices along it, has no gaps where a texture is cut
     uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
     triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
-    material : int32 (v,)
+    material : int32 (v,), number of the mesh, whose texture is in `skins`
+    density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
     patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
-    texels : float32 (n, 3), sRGB 0..1 of all textures, row by row; textures : int32 (m, 3), first texel, width, height
     """
 
     positions: F32
@@ -37,8 +38,8 @@ class Packed:
     feet: int
     material: NDArray[np.int32]
     patch: NDArray[np.int32]
-    texels: F32
-    textures: NDArray[np.int32]
+    density: F32
+    skins: Skins
 
 
 def pack(character: Character) -> Packed:
@@ -47,7 +48,7 @@ def pack(character: Character) -> Packed:
     if not meshes:
         raise UsageError(f"character '{character.name}' has no triangles to draw")
     first = np.cumsum([0, *(len(m.positions) for m in meshes)])
-    texels, textures = _textures(meshes)
+    skins = skins_of(meshes)
     positions = np.concatenate([m.positions for m in meshes]).astype(np.float32)
     normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
     material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
@@ -56,19 +57,22 @@ def pack(character: Character) -> Packed:
     weights = np.concatenate([m.weights for m in meshes]).astype(np.float32)
     of_feet = _feet(character, joints, weights)[triangles].all(axis=1)
     triangles = np.concatenate([triangles[of_feet], triangles[~of_feet]])
+    uv = np.concatenate([m.uv for m in meshes]).astype(np.float32)
+    sizes = [skins.pyramids[k][0].shape for k in skins.of_mesh]
+    side = np.sqrt([h * w for h, w, _ in sizes]).astype(np.float32)
     return Packed(
         positions=positions,
         normals=normals,
         hull=_welded(positions, normals, material),
-        uv=np.concatenate([m.uv for m in meshes]).astype(np.float32),
+        uv=uv,
         joints=joints,
         weights=weights,
         triangles=triangles,
         feet=int(of_feet.sum()),
         material=material,
         patch=_patches(triangles, len(positions)),
-        texels=texels,
-        textures=textures,
+        density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
+        skins=skins,
     )
 
 
@@ -77,19 +81,6 @@ def _feet(character: Character, joints: NDArray[np.int32], weights: F32) -> NDAr
     names = character.skeleton.names
     ours = [names.index(name) for side in "lr" for part in FOOT if (name := f"{side}_{part}") in names]
     return np.asarray((weights * np.isin(joints, ours)).sum(axis=1) > 0.5)
-
-
-def _textures(meshes: list[Mesh]) -> tuple[F32, NDArray[np.int32]]:
-    """Texels of all materials, multiplied by the base colour; a material without texture has one texel."""
-    texels, table, used = [], [], 0
-    for mesh in meshes:
-        colour = np.asarray(mesh.material.base_color[:3], dtype=np.float32)
-        texture = mesh.material.texture
-        image = np.ones((1, 1, 3), np.float32) if texture is None else texture[..., :3].astype(np.float32) / 255
-        texels.append((image * colour).reshape(-1, 3))
-        table.append((used, image.shape[1], image.shape[0]))
-        used += image.shape[0] * image.shape[1]
-    return np.ascontiguousarray(np.concatenate(texels), dtype=np.float32), np.array(table, dtype=np.int32)
 
 
 def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:

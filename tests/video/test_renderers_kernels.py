@@ -148,8 +148,14 @@ def test_packing_keeps_every_triangle_and_puts_the_feet_first():
     assert on_foot[: packed.feet].all() and not on_foot[packed.feet :].any() and packed.feet > 0
     # One piece of surface for each ellipsoid, none across two meshes.
     assert len(np.unique(packed.patch)) == 14
-    first, width, height = packed.textures[0]
-    assert (width, height) == (2, 2) and np.allclose(packed.texels[first], np.array([90, 120, 220]) / 255)
+    texels, table, meshes = packed.skins.flat()
+    body, head = (int(row) for row in meshes[:2, 3])
+    assert tuple(table[body, 1:]) == (2, 2) and tuple(texels[table[body, 0]]) == (90, 120, 220, 255)
+    assert tuple(table[body + 1, 1:]) == (1, 1)  # halved once
+    assert np.allclose(
+        texels[table[body + 1, 0], :3], np.mean([[90, 120, 220], [250] * 3, [250] * 3, [60, 80, 160]], 0), atol=1
+    )
+    assert tuple(table[head, 1:]) == (1, 1) and np.allclose(meshes[1, :3] * 255, (0.9, 0.75, 0.65))
 
 
 def test_outline_normals_agree_where_vertices_meet():

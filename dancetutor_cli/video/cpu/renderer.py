@@ -21,7 +21,7 @@ from dancetutor_cli.video.cpu.raster import (
     project_light,
     skin,
 )
-from dancetutor_cli.video.cpu.shade import light_vertices, resolve, toon_numbers
+from dancetutor_cli.video.cpu.shade import PER_METRE, light_vertices, resolve, toon_numbers
 from dancetutor_cli.video.geometry import pack
 from dancetutor_cli.video.prepare import (
     SAMPLES,
@@ -50,6 +50,7 @@ class CpuRenderer:
         self._samples = SAMPLES[quality]
         self._map = SHADOW_MAP[quality]
         self._mesh = pack(scene.character)
+        self._skins = self._mesh.skins.flat()
         self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
         self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)
@@ -132,7 +133,10 @@ class CpuRenderer:
             self._world, self._points, mesh.uv, mesh.material, np.array(camera.position), cast.axes, cast.origin,
             cast.scale, self._vertex,
         )  # fmt: skip
+        _, _, forward = camera.axes()
+        distance = ((self._world[0, :3] - camera.position) * forward).sum()
+        self._toon[PER_METRE] = focal / max(distance, NEAR)
         resolve(
-            self._out, samples, self._ids, self._depth, self._spans, count, triangles, mesh.patch, self._vertex,
-            mesh.texels, mesh.textures, self._shadow, self._toon,
+            self._out, samples, self._ids, self._depth, self._spans, count, triangles, mesh.patch, mesh.density,
+            self._vertex, *self._skins, self._shadow, self._toon,
         )  # fmt: skip

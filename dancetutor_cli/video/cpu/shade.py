@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.cpu.surfaces import smooth
 from dancetutor_cli.video.look import ToonLook
+from dancetutor_cli.video.textures import LEVELS
 
 Array = NDArray[np.float64]
 
@@ -17,14 +18,17 @@ Array = NDArray[np.float64]
 # Places in the rows that `light_vertices` writes, one row of 64 bytes for each vertex.
 _X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = range(12)
 # Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
-_BANDS, _SOFT, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST = 0, 2, 3, 6, 8, 11, 14
+_BANDS, _SOFT, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
 def toon_numbers(toon: ToonLook, cast: bool) -> Array:
-    """The numbers of the shading in one row; cast : is there a shadow map?"""
+    """The numbers of the shading in one row; cast : is there a shadow map?
+
+    The last, `PER_METRE`, is for the pixels that a metre of the dancer has, which changes with the camera.
+    """
     shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
-    numbers = [*toon.bands, toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast)]
+    numbers = [*toon.bands, toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast), 0.0]
     return np.array(numbers, dtype=np.float64)
 
 
@@ -97,9 +101,10 @@ def _sunlit(shadow: Any, u: float, v: float, height: float) -> float:  # pragma:
 
 @njit(cache=True, inline="always")
 def _colour(
-    a: int, b: int, c: int, px: float, py: float, vertex: Any, texels: Any, textures: Any, shadow: Any, toon: Any
-) -> Any:  # pragma: no cover
-    """Colour 0..1 of the triangle of vertices a, b, c at a place in samples."""
+    a: int, b: int, c: int, px: float, py: float, dense: float, vertex: Any, texels: Any, textures: Any, meshes: Any,
+    shadow: Any, toon: Any,
+) -> Any:  # fmt: skip  # pragma: no cover
+    """Colour 0..1 of the triangle of vertices a, b, c at a place in samples; dense : texels a metre, a little less."""
     x0, y0, x1, y1 = vertex[a, _X], vertex[a, _Y], vertex[b, _X], vertex[b, _Y]
     x2, y2 = vertex[c, _X], vertex[c, _Y]
     # Weights on the picture, kept inside of the triangle: a pixel's middle may lie just outside.
@@ -127,17 +132,22 @@ def _colour(
     m = int(vertex[a, _MATERIAL])
     u = vertex[a, _U] * w0 + vertex[b, _U] * w1 + vertex[c, _U] * w2
     v = vertex[a, _V] * w0 + vertex[b, _V] * w1 + vertex[c, _V] * w2
-    red, green, blue = _texel(texels, textures[m, 0], textures[m, 1], textures[m, 2], u, v)
-    red *= level * (toon[_SHADE] + (1.0 - toon[_SHADE]) * half)
-    green *= level * (toon[_SHADE + 1] + (1.0 - toon[_SHADE + 1]) * half)
-    blue *= level * (toon[_SHADE + 2] + (1.0 - toon[_SHADE + 2]) * half)
+    # The image of the texture in which a texel is about a pixel.
+    image, smallest = int(meshes[m, 3]), int(meshes[m, 3]) + LEVELS - 1
+    while image < smallest and dense > toon[PER_METRE]:
+        image += 1
+        dense *= 0.5
+    red, green, blue = _texel(texels, textures[image, 0], textures[image, 1], textures[image, 2], u, v)
+    red *= meshes[m, 0] * level * (toon[_SHADE] + (1.0 - toon[_SHADE]) * half)
+    green *= meshes[m, 1] * level * (toon[_SHADE + 1] + (1.0 - toon[_SHADE + 1]) * half)
+    blue *= meshes[m, 2] * level * (toon[_SHADE + 2] + (1.0 - toon[_SHADE + 2]) * half)
     return min(red + (1.0 - red) * rim, 1.0), min(green + (1.0 - green) * rim, 1.0), min(blue + (1.0 - blue) * rim, 1.0)
 
 
 @njit(cache=True)
 def resolve(
-    out: Any, samples: int, ids: Any, depth: Any, spans: Any, count: int, triangles: Any, patch: Any, vertex: Any,
-    texels: Any, textures: Any, shadow: Any, toon: Any,
+    out: Any, samples: int, ids: Any, depth: Any, spans: Any, count: int, triangles: Any, patch: Any,
+    density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any,
 ) -> None:  # fmt: skip  # pragma: no cover
     """Put the samples on the picture.
 
@@ -187,8 +197,9 @@ def resolve(
                 if weight < 0.5:
                     px, py = column * samples + k % samples + 0.5, row * samples + k // samples + 0.5
                 cr, cg, cb = _colour(
-                    triangles[t, 0], triangles[t, 1], triangles[t, 2], px, py, vertex, texels, textures, shadow, toon
-                )
+                    triangles[t, 0], triangles[t, 1], triangles[t, 2], px, py, 0.7 * density[t], vertex, texels,
+                    textures, meshes, shadow, toon,
+                )  # fmt: skip
                 r += weight * cr
                 g += weight * cg
                 b += weight * cb

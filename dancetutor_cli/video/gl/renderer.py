@@ -21,7 +21,7 @@ from dancetutor_cli.video.gl.primitive import SkinnedPrimitive
 from dancetutor_cli.video.gl.probe import gpu_device
 from dancetutor_cli.video.gl.programs import Program, ProgramCache
 from dancetutor_cli.video.gl.standing import Standing
-from dancetutor_cli.video.gl.targets import Target, refill, texture
+from dancetutor_cli.video.gl.targets import Target, pyramid, refill, texture
 from dancetutor_cli.video.prepare import (
     NO_FOOT,
     SAMPLES,
@@ -70,13 +70,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
     def _build(self) -> None:
         scene, quality = self._scene, self._quality
         mesh = pack(scene.character)
-        self._primitives: list[tuple[SkinnedPrimitive, int]] = []
-        for number, (first, width, height) in enumerate(mesh.textures):
+        self._skins = [pyramid(images) for images in mesh.skins.pyramids]
+        self._primitives: list[tuple[SkinnedPrimitive, int, Array]] = []
+        for number, (skin, tint) in enumerate(zip(mesh.skins.of_mesh, mesh.skins.tint, strict=True)):
             primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
-            image = mesh.texels[first : first + width * height].reshape(height, width, 3)
-            skin = np.round(image * 255).astype(np.uint8)
-            self._primitives.append((primitive, texture(skin, smooth=True)))
+            self._primitives.append((primitive, self._skins[skin], tint))
         self._reach = _reach(scene, mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
         self._drawn = Target(self._size, self._samples, depth=True)
@@ -116,7 +115,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         """Free the context and all that is in it."""
         if self._platform is not None:
             self._platform.make_current()
-            for primitive, _ in self._primitives:
+            for primitive, _, _ in self._primitives:
                 primitive.delete()
             self.delete()
             self._platform.delete_context()
@@ -137,7 +136,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         if cast.scale:
             self._use_skinned("depth.frag", light, cast, to_map=1.0)
             GL.glCullFace(GL.GL_BACK)
-            for primitive, _ in self._primitives:
+            for primitive, _, _ in self._primitives:
                 primitive.draw(part)
 
     def _use_skinned(self, fragment: str, light: Array, cast: Cast, **more: Any) -> Program:
@@ -208,8 +207,9 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         for outline, culled in ((0.0, GL.GL_BACK), (look.outline_width * height / 720.0, GL.GL_FRONT)):
             program.set_uniform("outline", float(outline))
             GL.glCullFace(culled)
-            for primitive, skin in self._primitives:
+            for primitive, skin, tint in self._primitives:
                 _bind_texture(_SKIN_UNIT, skin)
+                program.set_uniform("tint", tint)
                 primitive.draw(part)
         x0, y0, x1, y1 = (int(v) for v in box)
         self._resolved.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))

@@ -17,25 +17,34 @@ _STORED = {
 }
 
 
-def texture(image: NDArray[Any], smooth: bool = False) -> int:
-    """A texture of an image (h, w, 3 or 4) of uint8 or float32, its first row at v = 0."""
+def texture(image: NDArray[Any]) -> int:
+    """A texture of an image (h, w, 3 or 4) of uint8 or float32, its first row at v = 0, for reading single texels."""
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
-    kind = GL.GL_LINEAR if smooth else GL.GL_NEAREST
-    _parameters(kind, GL.GL_REPEAT)
+    _parameters(GL.GL_NEAREST, GL.GL_NEAREST, GL.GL_REPEAT)
     refill(number, image)
     return number
 
 
-def refill(number: int, image: NDArray[Any]) -> None:
-    """Give a texture another image."""
+def pyramid(images: tuple[NDArray[np.uint8], ...]) -> int:
+    """A smooth texture of an image and its halvings."""
+    number = int(GL.glGenTextures(1))
+    GL.glBindTexture(GL.GL_TEXTURE_2D, number)
+    _parameters(GL.GL_LINEAR_MIPMAP_LINEAR, GL.GL_LINEAR, GL.GL_REPEAT, len(images) - 1)
+    for level, image in enumerate(images):
+        refill(number, image, level)
+    return number
+
+
+def refill(number: int, image: NDArray[Any], level: int = 0) -> None:
+    """Give a texture, or a level of its pyramid, another image."""
     data = np.ascontiguousarray(image)
     height, width, channels = data.shape
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
     GL.glTexImage2D(
         GL.GL_TEXTURE_2D,
-        0,
+        level,
         _STORED[data.dtype, channels],
         width,
         height,
@@ -46,13 +55,13 @@ def refill(number: int, image: NDArray[Any]) -> None:
     )
 
 
-def _parameters(kind: int, wrap: int) -> None:
+def _parameters(small: int, large: int, wrap: int, levels: int = 0) -> None:
     for name, value in (
-        (GL.GL_TEXTURE_MIN_FILTER, kind),
-        (GL.GL_TEXTURE_MAG_FILTER, kind),
+        (GL.GL_TEXTURE_MIN_FILTER, small),
+        (GL.GL_TEXTURE_MAG_FILTER, large),
         (GL.GL_TEXTURE_WRAP_S, wrap),
         (GL.GL_TEXTURE_WRAP_T, wrap),
-        (GL.GL_TEXTURE_MAX_LEVEL, 0),
+        (GL.GL_TEXTURE_MAX_LEVEL, levels),
     ):
         GL.glTexParameteri(GL.GL_TEXTURE_2D, name, value)
 
@@ -118,7 +127,7 @@ def _shadow_texture(size: tuple[int, int]) -> int:
     """Depth that a sampler compares with, four neighbours weighted by the hardware."""
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
-    _parameters(GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)
+    _parameters(GL.GL_LINEAR, GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)
     GL.glTexParameteri(GL.GL_TEXTURE_2D, GL.GL_TEXTURE_COMPARE_MODE, GL.GL_COMPARE_REF_TO_TEXTURE)
     GL.glTexParameteri(GL.GL_TEXTURE_2D, GL.GL_TEXTURE_COMPARE_FUNC, GL.GL_LEQUAL)
     GL.glTexImage2D(GL.GL_TEXTURE_2D, 0, GL.GL_DEPTH_COMPONENT24, *size, 0, GL.GL_DEPTH_COMPONENT, GL.GL_FLOAT, None)

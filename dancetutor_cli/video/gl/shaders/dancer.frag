@@ -5,6 +5,7 @@ in vec3 terms;
 in vec3 place_in_light;
 
 uniform sampler2D skin;
+uniform vec3 tint;
 uniform sampler2DShadow shadow;
 uniform vec3 outline_colour;
 uniform float outline;
@@ -34,6 +35,6 @@ void main() {
     float level = levels.x + (levels.y - levels.x) * half_light + (levels.z - levels.y) * full_light;
     level *= 0.95 + 0.05 * terms.z;
     float edge = rim.x * smoothstep(rim.y, rim.y + 0.2, 1.0 - terms.y) * (0.6 + 0.4 * terms.z);
-    vec3 lit = texture(skin, uv).rgb * level * mix(shade, vec3(1.0), half_light);
+    vec3 lit = texture(skin, uv).rgb * tint * level * mix(shade, vec3(1.0), half_light);
     colour = vec4(min(lit + (1.0 - lit) * edge, 1.0), 1.0);
 }
