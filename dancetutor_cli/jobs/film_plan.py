@@ -10,7 +10,9 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.callouts import callouts_of
 from dancetutor_cli.jobs.film_request import Request, Subject, whole_song
+from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import StepKind
 from dancetutor_cli.video.diagram import StepRows
 from dancetutor_cli.video.film import FilmPlan
@@ -19,7 +21,7 @@ from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.video.overlay import SongShape, Words
 from dancetutor_cli.video.scroll import ScrollSegments, parse_segments
 from dancetutor_cli.video.sound import Click, SoundPlan
-from dancetutor_cli.video.sprites import quantisation
+from dancetutor_cli.video.sprites import highway_style, quantisation
 from dancetutor_cli.video.text import Typeface, clean
 
 if TYPE_CHECKING:
@@ -73,6 +75,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         motion=_motion(request, chart, play, pad, (start, end)),
         pad=pad,
         rows=step_rows(play),
+        callouts=callouts_of(ChartSubject(song, chart, play, pad), highway_style().callouts, scrolls),
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)

@@ -18,7 +18,7 @@ from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.highway import Highway, HighwayGeometry
 from dancetutor_cli.video.layout import pixels
 from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
+from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.sprites import highway_style
 from dancetutor_cli.video.television import Television
@@ -55,6 +55,7 @@ class FilmPlan:
     motion: Motion | None
     pad: PadLike | None
     rows: StepRows | None = None
+    callouts: tuple[Callout, ...] = ()
 
 
 class Film:
@@ -89,7 +90,9 @@ class Film:
         receptor = box[1] + share * (box[3] - box[1])
         geometry = HighwayGeometry(box, lane, receptor, plan.directions, down)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
-        return Highway(plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face)
+        return Highway(
+            plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face, plan.callouts
+        )
 
     @cached_property
     def _words(self) -> list[overlay.Header | overlay.Legend]:
@@ -112,6 +115,14 @@ class Film:
             return None, runs
         box = pixels(progress.box, self.size)
         return overlay.Progress(self.plan.song, box, self.scale * progress.text, self.face, self.style), runs
+
+    @cached_property
+    def _calls(self) -> overlay.Calls | None:
+        """What is called out over the dancer shortly before it comes."""
+        if not self.layout.dancer or not self.plan.callouts:
+            return None
+        box = self.layout.dancer_box(self.size, self.columns)
+        return overlay.Calls(self.plan.callouts, box, self.scale, self.face, self.style)
 
     @cached_property
     def _dancer(self) -> Dancer:
@@ -164,6 +175,8 @@ class Film:
         progress, runs = self._moving
         if progress:
             progress.draw(picture, second)
+        if self._calls:
+            self._calls.draw(picture, second)
         if runs:
             runs.draw(picture, second, run)
         return picture

@@ -13,7 +13,7 @@ from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video import sprites
 from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle, strip
 from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
+from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.scroll import Scroll
 from dancetutor_cli.video.text import Typeface
 
@@ -35,8 +35,9 @@ class HighwayGeometry:
 
     @property
     def left(self) -> float:
-        """x of the first lane's left edge."""
-        return (self.box[0] + self.box[2] - self.lane * len(self.directions)) / 2
+        """x of the first lane's left edge: more room on the right, where words stand, than for the measures' numbers."""
+        spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
+        return self.box[0] + 0.33 * spare
 
 
 class Highway:
@@ -51,9 +52,12 @@ class Highway:
         scroll: Scroll,
         fastest_bpm: float,
         face: Typeface,
+        callouts: tuple[Callout, ...] = (),
     ) -> None:
         self.notes, self.presses, self.lines = notes, presses, lines
-        self.geometry, self.face = geometry, face
+        self.geometry, self.face, self.callouts = geometry, face, callouts
+        self._callout_seconds = np.array([c.second for c in callouts])
+        self._callout_beats = np.array([c.beat for c in callouts])
         self.by_time = scroll.mode == "C"
         self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
@@ -61,6 +65,7 @@ class Highway:
         self.limb_colours = limb_colours().by_limb
         self.lights = PanelLights(presses, len(geometry.directions), self.style.flash_seconds)
         self._number = lru_cache(maxsize=256)(self._draw_number)
+        self._flag = lru_cache(maxsize=64)(self._draw_flag)
         self._make_sprites()
 
     def _make_sprites(self) -> None:
@@ -111,6 +116,7 @@ class Highway:
         self._draw_lines(frame, second, beat)
         self._draw_receptors(frame, second, beat)
         self._draw_notes(frame, second, beat)
+        self._draw_callouts(frame, second, beat)
 
     def _y(
         self, seconds: NDArray[np.float64], beats: NDArray[np.float64], second: float, beat: float
@@ -149,6 +155,22 @@ class Highway:
 
     def _draw_number(self, measure: int) -> Sprite:
         return self.face.sprite(str(measure), 0.21 * self.geometry.lane, (190, 196, 220))
+
+    def _draw_callouts(self, frame: Frame, second: float, beat: float) -> None:
+        """Words beside the rows they are about, on the right of the lanes."""
+        y = self._y(self._callout_seconds, self._callout_beats, second, beat)
+        x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
+        for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > second)):
+            flag = self._flag(self.callouts[i].text, self.callouts[i].severity)
+            blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
+
+    def _draw_flag(self, text: str, severity: str) -> Sprite:
+        geometry = self.geometry
+        room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
+        size = 0.21 * geometry.lane
+        width = self.face.width(text, size) + size
+        size = max(0.6 * size, size * min(1.0, room / width))
+        return sprites.flag(self.face.fit(text, size, room - size), size, self.style.callout[severity], self.face)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0

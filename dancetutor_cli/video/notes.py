@@ -46,6 +46,16 @@ class Presses:
 
 
 @dataclass(frozen=True, slots=True)
+class Callout:
+    """Words for a moment. second : of the music; beat : as drawn; severity : "move", "info", "warning" or "error"."""
+
+    second: float
+    beat: float
+    text: str
+    severity: str
+
+
+@dataclass(frozen=True, slots=True)
 class BeatLines:
     """One entry per beat from 0 on. second, beat (as drawn) : float64 (b,); index = the beat's number."""
 

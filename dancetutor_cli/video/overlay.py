@@ -13,12 +13,14 @@ from dancetutor_cli.video import shapes, sprites
 from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.sprites import HighwayStyle
 from dancetutor_cli.video.text import Typeface
 
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)
 INK = (12, 13, 22)
+CALL_STAYS = 0.35  # seconds that a call stays after its note
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +137,43 @@ class Runs:
             fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
             x, y = (self.size[0] - number.shape[1]) / 2, (self.size[1] - number.shape[0]) / 2
             blit(frame, number, x, round(y), fade)
+
+
+class Calls:
+    """Moves called out over the dancer before they come, at the top right of her box, with the time left as a bar."""
+
+    SHOWN = 2  # at a time, the nearest on top
+
+    def __init__(
+        self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
+    ) -> None:
+        self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
+        self.seconds = np.array([one.second for one in callouts])
+        self._sprite = lru_cache(maxsize=32)(self._pill)
+
+    def _pill(self, text: str, severity: str) -> Sprite:
+        size = 24 * self.scale
+        room = 0.45 * (self.box[2] - self.box[0])
+        return pill(self.face.fit(text, size, room), size, self.style.callout[severity], self.face, self.scale)
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw what comes within the next `callout_seconds` after `second`."""
+        first = int(np.searchsorted(self.seconds, second - CALL_STAYS))
+        y = self.box[1] + 22 * self.scale
+        for one in self.callouts[first : first + self.SHOWN]:
+            left = one.second - second
+            if left > self.style.callout_seconds:
+                break
+            label = self._sprite(one.text, one.severity)
+            x = self.box[2] - label.shape[1] - 22 * self.scale
+            fade = min(1.0, (self.style.callout_seconds - left) / 0.15, 1.0 + left / CALL_STAYS)
+            blit(frame, label, x, round(y), fade)
+            y += label.shape[0] + 4 * self.scale
+            share = min(1.0, max(0.0, left / self.style.callout_seconds))
+            bar = (label.shape[1] - 8 * self.scale) * share
+            edge = x + 4 * self.scale
+            rectangle(frame, edge, y, edge + bar, y + 4 * self.scale, self.style.callout[one.severity], 0.9 * fade)
+            y += 14 * self.scale
 
 
 @dataclass(frozen=True, slots=True)

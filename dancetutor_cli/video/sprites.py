@@ -42,6 +42,9 @@ class HighwayStyle:
     mark: float
     flash_seconds: float
     panel_seconds: float
+    callouts: dict[str, str]
+    callout_seconds: float
+    callout: dict[str, RGB]
     difficulty: dict[str, RGB]
     accent: RGB
 
@@ -189,6 +192,20 @@ def centre(target: Sprite, ink: Sprite) -> None:
     place = target[top : top + ink.shape[0], left : left + ink.shape[1]]
     keep = 255 - ink[..., 3:].astype(np.int64)
     place[...] = (place * keep + 127) // 255 + ink
+
+
+def flag(text: str, size: float, colour: RGB, face: Typeface) -> Sprite:
+    """Words on a dark label whose left edge points to the row they are about."""
+    words = face.sprite(text, size, colour, weight=0.012 * size)
+    height = max(6, round(1.5 * size))
+    width = words.shape[1] + height // 2
+    p = shapes.Painter(height, width)
+    d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * height)
+    p.paint(shapes.cover(d), colour, 0.9)
+    p.paint(shapes.cover(d + 0.07 * size), (16, 18, 32))
+    out = p.sprite()
+    centre(out, words)
+    return out
 
 
 @lru_cache(maxsize=8)

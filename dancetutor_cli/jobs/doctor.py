@@ -1,0 +1,125 @@
+"""The checks of `doctor`: each looks at one thing that rendering needs, and never raises."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from dancetutor_cli.errors import DancetutorError
+
+GIGABYTE = 1e9
+_ROOM = 2 * GIGABYTE  # a long song at best quality takes less
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What was found. state : "ok", "without" (something optional is missing) or "broken"; mend : what to do, or ""."""
+
+    name: str
+    state: str
+    message: str
+    mend: str = ""
+
+
+def examine() -> list[Check]:
+    """All checks, in the order in which a render needs the things."""
+    checks = [_guarded("cpu renderer", _cpu), _guarded("gl renderer", _gl), _guarded("ffmpeg", _ffmpeg)]
+    if checks[-1].state == "ok":
+        checks += [_guarded(f"encoder {name}", lambda n=name: _encoder(n)) for name in ENCODERS]  # type: ignore[misc]
+        checks.append(_guarded("speed change", _rubberband))
+    return [*checks, _guarded("numba cache", _cache), _guarded("font", _font), _guarded("disk", _disk)]
+
+
+# name of --encoder -> ffmpeg's encoder
+ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac", "webp": "libwebp_anim"}
+_NEEDED = ("x264", "aac")
+
+
+def _guarded(name: str, look: Callable[[], Check]) -> Check:
+    try:
+        return look()
+    except (DancetutorError, OSError, ImportError, RuntimeError) as error:
+        return Check(name, "broken", " ".join(str(error).split()), "install dancetutor again")
+
+
+def _cpu() -> Check:
+    import llvmlite
+    import numba
+
+    return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {llvmlite.__version__}")
+
+
+def _gl() -> Check:
+    from dancetutor_cli.video import gl_probe  # type: ignore[attr-defined]
+
+    return Check("gl renderer", "ok", str(gl_probe))
+
+
+def _ffmpeg() -> Check:
+    import subprocess
+
+    from dancetutor_cli.video.ffmpeg import executable
+
+    path = executable()
+    said = subprocess.run([path, "-version"], capture_output=True, text=True, check=True, timeout=20).stdout
+    return Check("ffmpeg", "ok", " ".join(said.splitlines()[0].split()[:3]) + f" ({path})")
+
+
+def _encoder(name: str) -> Check:
+    from dancetutor_cli.video.probe import works
+
+    label = f"encoder {name}"
+    failure = works(ENCODERS[name])
+    if failure is None:
+        return Check(label, "ok", f"{ENCODERS[name]} encodes a frame")
+    if name in _NEEDED:
+        return Check(label, "broken", failure, "pip install --force-reinstall imageio-ffmpeg")
+    return Check(label, "without", failure)
+
+
+def _rubberband() -> Check:
+    import numpy as np
+
+    from dancetutor_cli.video.sound import RATE, stretch
+
+    stretch(np.zeros((RATE // 4, 2), dtype=np.float32), 0.5)
+    return Check("speed change", "ok", "rubberband changes the speed and keeps the pitch")
+
+
+def _cache() -> Check:
+    from dancetutor_cli.resources import PACKAGE
+
+    files = list(PACKAGE.rglob("*.nbi"))
+    folder = PACKAGE
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            writable = True
+    except OSError:
+        writable = False
+    if files:
+        return Check("numba cache", "ok", f"{len(files)} kernels compiled in {folder}")
+    mend = (
+        "dancetutor warmup"
+        if writable
+        else "set NUMBA_CACHE_DIR to a folder that can be written, then dancetutor warmup"
+    )
+    return Check("numba cache", "without", "nothing compiled yet; the first render takes a minute longer", mend)
+
+
+def _font() -> Check:
+    from dancetutor_cli.video.text import Typeface
+
+    missing = Typeface().missing("AZaz09 é日")
+    note = f"; it has no {' '.join(missing)}: give --font FILE for such titles" if missing else ""
+    return Check("font", "ok", f"Pillow's built-in one{note}")
+
+
+def _disk() -> Check:
+    free = shutil.disk_usage(Path.cwd()).free
+    message = f"{free / GIGABYTE:.1f} GB free in {Path.cwd()}"
+    if free < _ROOM:
+        return Check("disk", "without", message, "make room, or write to another disk with -o")
+    return Check("disk", "ok", message)
