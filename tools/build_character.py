@@ -7,6 +7,7 @@ library versions give the same bytes.
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import build_character_body as body
@@ -14,7 +15,7 @@ import build_character_head as head
 import numpy as np
 from build_character_bake import Atlas
 from build_character_loft import Lofted
-from build_character_mesh import even, surface
+from build_character_mesh import Triangles, even, surface
 from build_character_parts import Part, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
@@ -41,7 +42,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     out = np.zeros((len(points), len(ORDER)))
     if part.skin == "heat":
         out = skin.at(points, normals)
-        return _with_ankles(out, points) if part.name in ("leggings", "figure") else out
+        return _with_ankles(out, points) if part.ankles else out
     if part.skin == "foot":
         toes = _smooth((points[:, 2] - 0.078) / 0.040)
         shin = _smooth((points[:, 1] - 0.072) / 0.090)
@@ -102,49 +103,52 @@ def occlusion(points: Array, normals: Array, strength: float) -> Array:
     return np.round(np.clip(1.04 - strength * dark, 0.62, 1.0), 5)
 
 
-def assemble(name: str, pieces: list[Part], skin: Skin, atlas: Atlas) -> Character:
-    """Make all pieces, skin them, paint their atlas and join what shares a material."""
-    pending: list[tuple[Part, Array, Array, np.ndarray, Array, int]] = []
-    for part in pieces:
-        made = part.make()
-        weights = weights_of(part, made, skin)
-        points, normals, triangles = made
-        slot = -1
-        if not part.tint:
-            open_ = "eye" in part.name or "lid" in part.name
-            shade = (
-                np.ones(len(points))
-                if open_
-                else occlusion(points, normals, 0.0 if part.name in ("leggings", "figure") else 0.22)
-            )
-            source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
-            points, normals, weights = points[source], normals[source], weights[source]
-            slot = len(atlas.parts) - 1
-        pending.append((part, points, normals, triangles, weights, slot))
+@dataclass(frozen=True)
+class Piece:
+    """A part made and skinned: slot is its place in the atlas, -1 for a part in a limb's colour."""
+
+    part: Part
+    points: Array
+    normals: Array
+    triangles: Triangles
+    weights: Array
+    slot: int
+
+
+def assemble(name: str, parts_: list[Part], skin: Skin, atlas: Atlas) -> Character:
+    """Make all parts, skin them, paint their atlas and join what is drawn together."""
+    pieces = [_piece(part, skin, atlas) for part in parts_]
     uv = atlas.pack()
     material = Material(name, (1.0, 1.0, 1.0, 1.0), atlas.paint(uv))
     meshes: dict[str, list[Mesh]] = {}
-    for part, points, normals, triangles, weights, slot in pending:
-        for sign in (1, -1) if part.mirror else (1,):
-            flip = MIRROR if sign < 0 else np.ones(3)
-            side = {1: "left", -1: "right"}[sign]
-            skinned = four(weights if sign > 0 else mirrored_weights(weights))
-            paint = material if not part.tint else tinted(f"{side}_{part.tint}")
-            mesh = Mesh(
-                part.name, (points * flip).astype(np.float32), (normals * flip).astype(np.float32),
-                (uv[slot] if slot >= 0 else np.zeros((len(points), 2))).astype(np.float32),
-                (triangles if sign > 0 else triangles[:, ::-1]).astype(np.int32), *skinned, paint,
-            )  # fmt: skip
-            meshes.setdefault(group_of(part, side), []).append(mesh)
+    for piece in pieces:
+        for side in ("left", "right") if piece.part.mirror else ("left",):
+            tint = f"{side}_{piece.part.tint}" if piece.part.tint else ""
+            place = uv[piece.slot] if not tint else np.zeros((len(piece.points), 2))
+            mesh = _mesh(piece, side == "right", place, tinted(tint) if tint else material)
+            meshes.setdefault(f"{side} {piece.part.name}" if tint else piece.part.mesh, []).append(mesh)
     print(f"{name}: atlas at {atlas.scale:.2f} of the wanted density, {len(atlas.charts)} charts")
     return character(name, [merged(mesh, group) for mesh, group in meshes.items()])
 
 
-def group_of(part: Part, side: str) -> str:
-    """Parts that share a material become one mesh; eyes and lids stay their own."""
+def _piece(part: Part, skin: Skin, atlas: Atlas) -> Piece:
+    made = part.make()
+    points, normals, triangles = made
+    weights = weights_of(part, made, skin)
     if part.tint:
-        return f"{side} {part.name}"
-    return {"left eye": "eyes", "right eye": "eyes", "lid": "eyelids"}.get(part.name, "body")
+        return Piece(part, points, normals, triangles, weights, -1)
+    shade = occlusion(points, normals, part.shade) if part.shade else np.ones(len(points))
+    source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
+    return Piece(part, points[source], normals[source], triangles, weights[source], len(atlas.parts) - 1)
+
+
+def _mesh(piece: Piece, mirror: bool, uv: Array, material: Material) -> Mesh:
+    flip = MIRROR if mirror else np.ones(3)
+    triangles = piece.triangles[:, ::-1] if mirror else piece.triangles
+    joints, weights = four(mirrored_weights(piece.weights) if mirror else piece.weights)
+    points, normals = (piece.points * flip).astype(np.float32), (piece.normals * flip).astype(np.float32)
+    uv, triangles = uv.astype(np.float32), triangles.astype(np.int32)
+    return Mesh(piece.part.name, points, normals, uv, triangles, joints, weights, material)
 
 
 def tinted(limb: str) -> Material:

@@ -1,8 +1,8 @@
 """The dancer's body and clothes as signed distance functions, on the rest positions of `rig.skeleton`.
 
 Sections are drawn as an artist draws a front and a side view: (station, half width, depth to the front, depth to the
-back, shift to the front, shift aside), all in metres. She is 1.70 m tall, athletic, with slightly larger head, hands and feet
-than life, because that reads better at 720p.
+back, shift to the front, shift aside), all in metres. She is 1.70 m tall, athletic, with slightly larger head, hands
+and feet than life, because that reads better at 720p.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ TORSO = [
 ]  # fmt: skip
 LEG = [
     (-0.110, 0.040, 0.045, 0.045, 0.000, 0.030), (-0.070, 0.062, 0.066, 0.068, -0.001, 0.014),
-    (-0.030, 0.0735, 0.077, 0.080, -0.001, 0.003), (0.030, 0.0795, 0.0815, 0.087, -0.003, 0.0), (0.100, 0.079, 0.081, 0.084, -0.001),
+    (-0.030, 0.0735, 0.077, 0.080, -0.001, 0.003), (0.030, 0.0795, 0.0815, 0.087, -0.003),
+    (0.100, 0.079, 0.081, 0.084, -0.001),
     (0.200, 0.069, 0.074, 0.072, 0.002), (0.300, 0.058, 0.063, 0.060, 0.006), (0.370, 0.0515, 0.055, 0.051, 0.009),
     (0.410, 0.0490, 0.053, 0.047, 0.010), (0.450, 0.0455, 0.047, 0.047, 0.006), (0.500, 0.0475, 0.045, 0.055, 0.000),
     (0.560, 0.0485, 0.042, 0.060, -0.004), (0.620, 0.0445, 0.038, 0.054, -0.007), (0.700, 0.0355, 0.032, 0.040, -0.012),

@@ -1,7 +1,8 @@
 """The dancer's head and hair as signed distance functions, and her eyes and lids as lofted spheres.
 
-The face is drawn friendly and young: large eyes set low, short round jaw, small nose. The eyes are spheres on the eyeball
-joints; the upper lid is a slice of a slightly larger sphere that turns about the eyelid joint's x axis, so she blinks when it turns.
+The face is drawn friendly and young: large eyes set low, short round jaw, small nose. The eyes are spheres on the
+eyeball joints; the upper lid is a slice of a slightly larger sphere that turns about the eyelid joint's x axis, so
+she blinks when it turns.
 """
 
 from __future__ import annotations
@@ -67,7 +68,13 @@ def locks() -> list[Lofted]:
         [(0.026, 1.700, 0.000), (0.050, 1.701, 0.056), (0.074, 1.676, 0.073), (0.089, 1.643, 0.064)],
         [(0.026, 1.698, 0.020), (0.040, 1.695, 0.079), (0.056, 1.670, 0.0940), (0.071, 1.644, 0.0885)],
     ]
-    tips = [(-0.096, 1.606, 0.052), (-0.077, 1.616, 0.082), (-0.044, 1.626, 0.099), (0.096, 1.602, 0.046), (0.084, 1.616, 0.070)]
+    tips = [
+        (-0.096, 1.606, 0.052),
+        (-0.077, 1.616, 0.082),
+        (-0.044, 1.626, 0.099),
+        (0.096, 1.602, 0.046),
+        (0.084, 1.616, 0.070),
+    ]
     widths = [(0.020, 0.032, 0.032, 0.024), (0.020, 0.028, 0.028, 0.019), (0.016, 0.023, 0.022, 0.015)]
     widths += [(0.020, 0.030, 0.030, 0.022), (0.016, 0.024, 0.022, 0.014)]
     out = [
@@ -84,7 +91,9 @@ def locks() -> list[Lofted]:
                 (0.0765, 1.484, 0.060),
             ]
         )
-        out.append(_larger(rope(points * [side, 1, 1], [0.018, 0.0185, 0.0155, 0.0110, 0.0015], 7, 2, (side, 0, 0.3), 0.55)))
+        out.append(
+            _larger(rope(points * [side, 1, 1], [0.018, 0.0185, 0.0155, 0.0110, 0.0015], 7, 2, (side, 0, 0.3), 0.55))
+        )
     return out
 
 

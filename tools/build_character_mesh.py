@@ -1,8 +1,8 @@
 """From a signed distance function to a light, even, watertight mesh with normals of the true surface.
 
 Marching cubes on a fine grid, edges collapsed down to a wanted size that may vary over the surface, then relaxed: edges
-flipped towards Delaunay, vertices moved to their neighbours' mean and back onto the surface. Values are rounded between the
-stages, so that a last-bit difference between machines does not become another mesh.
+flipped towards Delaunay, vertices moved to their neighbours' mean and back onto the surface. Values are rounded
+between the stages, so that a last-bit difference between machines does not become another mesh.
 """
 
 from __future__ import annotations

@@ -21,9 +21,11 @@ Skin = str  # "heat" over the body, "foot", "braid", or the one joint that holds
 
 @dataclass(frozen=True)
 class Part:
-    """One part. make : its surface; skin : how it is held; texels a metre; mirror : modelled left, copied right
+    """One part.
 
-    tint : name of the limb colour it wears instead of paint
+    make : its surface; skin : how it is held; density : texels a metre; paint : its colours
+    mirror : modelled on the left, copied to the right; tint : the limb whose colour it wears instead of paint
+    shade : how dark hollows are painted; ankles : it reaches into the shoes; mesh : what it is drawn with
     """
 
     name: str
@@ -33,6 +35,9 @@ class Part:
     paint: Paint
     mirror: bool = False
     tint: str = ""
+    shade: float = 0.22
+    ankles: bool = False
+    mesh: str = "body"
 
 
 def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lofted]:
@@ -87,8 +92,8 @@ def round_face(points: Array, normals: Array) -> Array:
     return np.asarray(mixed / np.linalg.norm(mixed, axis=1, keepdims=True))
 
 
-def parts() -> list[Part]:
-    """All parts, in the order in which they are written."""
+def surfaces() -> dict[str, Callable[[], Lofted]]:
+    """Makers of the parts that are modelled with distance functions: shape, box, grid, edge length."""
     leg = ramp(
         [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
         [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0245, 0.0245, 0.0200, 0.028],
@@ -99,41 +104,64 @@ def parts() -> list[Part]:
         [0.022, 0.0195, 0.0150, 0.0150, 0.0195, 0.0160, 0.0112, 0.0079],
         _along_arm,
     )
+    shoe_box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
+    braid_box = ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08))
+    return {
+        "leggings": of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg),
+        "arm": of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm),
+        "neck": of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)),
+        "hair": of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, even(0.0165)),
+        "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0104)),
+        "shoe": of_shape(body.shoe_upper(), shoe_box, 0.003, even(0.0140)),
+    }
+
+
+def parts() -> list[Part]:
+    """All parts of the dancer, in the order in which they are written."""
+    made = surfaces()
     return [
-        Part("leggings", of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg), "heat", 470, paint.leggings),
+        Part("leggings", made["leggings"], "heat", 470, paint.leggings, shade=0.0, ankles=True),
         Part("shirt", shirt_mesh, "heat", 660, paint.shirt),
         Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim),
-        Part("cuff", trims.cuff, "heat", 400, paint.trim, True),
-        Part("arm", of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm), "heat", 560, paint.arm, True),
-        Part("neck", of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)), "heat", 450, paint.skin),
+        Part("cuff", trims.cuff, "heat", 400, paint.trim, mirror=True),
+        Part("arm", made["arm"], "heat", 560, paint.arm, mirror=True),
+        Part("neck", made["neck"], "heat", 450, paint.skin),
         Part("head", face_mesh, "skullbase", 1750, paint.face),
-        Part("hair", of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, even(0.0165)), "skullbase", 700, paint.hair),
+        Part("hair", made["hair"], "skullbase", 700, paint.hair),
         Part("locks", lambda: joined(*head.locks()), "skullbase", 800, paint.hair),
-        Part("braid", of_shape(head.braid(), ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08)), 0.0025, even(0.0104)), "braid", 700, paint.braid),
+        Part("braid", made["braid"], "braid", 700, paint.braid),
         Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
-        Part("shoe", of_shape(body.shoe_upper(), ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21)), 0.003, even(0.0140)), "foot", 0, paint.plain, True, "foot"),
-        Part("wristband", trims.wristband, "heat", 0, paint.plain, True, "hand"),
-        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, True),
-        Part("sole", trims.sole, "foot", 400, paint.rubber, True),
-        Part("laces", trims.laces, "foot", 300, paint.rubber, True),
-        Part("left eye", lambda: eye(1), "l_eyeball_joint", 2200, paint.eye(1)),
-        Part("right eye", lambda: eye(-1), "r_eyeball_joint", 2200, paint.eye(-1)),
-        Part("lid", lambda: placed(joined(*head.lid(True))), "eyelid_joint", 1300, paint.lid, True),
-        Part("lower lid", lambda: placed(joined(*head.lid(False))), "skullbase", 1300, paint.lid, True),
-    ]  # fmt: skip
+        *_limb_parts(made["shoe"]),
+        Part("laces", trims.laces, "foot", 300, paint.rubber, mirror=True),
+        Part("left eye", lambda: eye(1), "l_eyeball_joint", 2200, paint.eye(1), shade=0.0, mesh="eyes"),
+        Part("right eye", lambda: eye(-1), "r_eyeball_joint", 2200, paint.eye(-1), shade=0.0, mesh="eyes"),
+        Part("lid", lambda: lid(True), "eyelid_joint", 1300, paint.lid, mirror=True, shade=0.0, mesh="eyelids"),
+        Part("lower lid", lambda: lid(False), "skullbase", 1300, paint.lid, mirror=True, shade=0.0),
+    ]
+
+
+def _limb_parts(shoe: Callable[[], Lofted]) -> list[Part]:
+    """What wears the limbs' colours, and the rest of the shoe."""
+    return [
+        Part("shoe", shoe, "foot", 0, paint.plain, mirror=True, tint="foot"),
+        Part("wristband", trims.wristband, "heat", 0, paint.plain, mirror=True, tint="hand"),
+        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, mirror=True),
+        Part("sole", trims.sole, "foot", 400, paint.rubber, mirror=True),
+    ]
 
 
 def mannequin_parts() -> list[Part]:
     """A plain figure that shows the pose: one skin with its joints marked, and the limbs' colours."""
     fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0105, 0.0085], lambda p: np.abs(p[:, 0]))
-    box = ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16))
-    coloured = [part for part in parts() if part.name in ("shoe", "wristband", "shoe collar", "sole")]
-    return [Part("figure", of_shape(body.figure(), box, 0.0055, fine), "heat", 700, paint.figure), *coloured]
+    make = of_shape(body.figure(), ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16)), 0.0055, fine)
+    figure = Part("figure", make, "heat", 700, paint.figure, shade=0.0, ankles=True)
+    return [figure, *_limb_parts(surfaces()["shoe"])]
 
 
-def placed(part: Lofted) -> Lofted:
-    """A part modelled about the left eye's centre, moved there."""
-    return part[0] + head.EYE, part[1], part[2]
+def lid(upper: bool) -> Lofted:
+    """The left upper or lower lid with its lashes."""
+    points, normals, triangles = joined(*head.lid(upper))
+    return points + head.EYE, normals, triangles
 
 
 def eye(side: int) -> Lofted:

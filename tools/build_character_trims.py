@@ -69,8 +69,11 @@ def shoe_collar() -> Lofted:
 def sole() -> Lofted:
     """White rubber with a flat bottom on y = 0, higher at the toe, where it is the shoe's cap."""
     x = HIP[0]
-    out = [(0.000, 0.183), (0.020, 0.176), (0.0345, 0.160), (0.0425, 0.138), (0.0460, 0.110), (0.0450, 0.082), (0.0410, 0.050),
-           (0.0385, 0.015), (0.0380, -0.020), (0.0360, -0.045), (0.028, -0.064), (0.015, -0.0745), (0.000, -0.0765)]  # fmt: skip
+    out = [
+        (0.0000, 0.1830), (0.0200, 0.1760), (0.0345, 0.1600), (0.0425, 0.1380), (0.0460, 0.1100), (0.0450, 0.0820),
+        (0.0410, 0.0500), (0.0385, 0.0150), (0.0380, -0.0200), (0.0360, -0.0450), (0.0280, -0.0640), (0.0150, -0.0745),
+        (0.0000, -0.0765),
+    ]  # fmt: skip
     inner = [(-w * (1.03 if z > 0.06 else 0.98), z) for w, z in out[-2:0:-1]]
     ring = spline([*out, *inner, out[0]], 1)[:-1]
     z = ring[:, 1]
@@ -89,7 +92,7 @@ def sole() -> Lofted:
         centre = np.array([0.0, 0.05])
         flat = centre + (ring - centre) * scale
         rings.append(np.stack([x + flat[:, 0], np.broadcast_to(y, len(z)), flat[:, 1]], axis=1))
-    return loft([*rings, _around_upper(ring + [x, 0.0], high + 0.002)])
+    return loft([*rings, _around_upper(ring + np.array([x, 0.0]), high + 0.002)])
 
 
 def _around_upper(ring: Array, y: Array) -> Array:

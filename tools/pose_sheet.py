@@ -1,6 +1,6 @@
-"""Draw a character in poses that are hard on a skin: build/pose_sheet.png, and close-ups: build/pose_faces.png.
+"""Draw a character in poses that are hard on a skin: build/pose_sheet.png.
 
-Usage: python tools/pose_sheet.py [CHARACTER.glb] [OUT.png] [sheet|faces|close|CELL ...]
+Usage: python tools/pose_sheet.py [CHARACTER.glb] [OUT.png] [sheet|faces|close]
 It has its own small rasteriser, so that the skin can be judged before and without the renderers of the program.
 """
 
@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import yaml
 from numba import njit
 from PIL import Image, ImageDraw
 
@@ -35,47 +36,23 @@ class Cell:
     rise: float = 0.35
 
 
-ARMS_DOWN = {"l_shoulder": [("z", -32.0)], "r_shoulder": [("z", 32.0)]}
-DANCE: dict[str, list[tuple[str, float]]] = {
-    "l_shoulder": [("z", 30.0), ("y", -25.0)], "l_elbow": [("y", -70.0)], "r_shoulder": [("z", 15), ("y", 30.0)],
-    "r_elbow": [("y", 80.0)], "l_hip": [("x", -50.0), ("z", 12.0)], "l_knee": [("x", 70.0)], "r_hip": [("z", -8.0)],
-    "vt10": [("y", 12.0), ("z", -4.0)], "skullbase": [("y", -14.0)], "l_talocrural": [("x", 15.0)],
-    "braid1": [("z", 12)], "braid2": [("z", 10)],
-}  # fmt: skip
-FACE = (0.0, 1.60, 0.0)
-SHEET = [
-    Cell("front"), Cell("back", ARMS_DOWN, 180.0), Cell("side", ARMS_DOWN, 90.0), Cell("three quarters", ARMS_DOWN, 35.0),
-    Cell("back three quarters", {}, 145.0), Cell("dance", DANCE, 20.0), Cell("dance, back", DANCE, 200.0),
-    Cell("arms up", {"l_shoulder": [("z", 120.0)], "r_shoulder": [("z", -120.0)], "l_sternoclavicular": [("z", 15)], "r_sternoclavicular": [("z", -15)]}),
-    Cell("elbows 120", {"l_elbow": [("y", -120.0)], "r_elbow": [("y", 120.0)]}),
-    Cell("knees 120", {"l_hip": [("x", -60.0)], "l_knee": [("x", 120.0)], "r_knee": [("x", 120.0)]}, 60.0),
-    Cell("hips 120", {"l_hip": [("x", -120.0)], "l_knee": [("x", 120.0)], "r_hip": [("x", -60)], "r_knee": [("x", 60)]}, 60.0),
-    Cell("arms forward 120", {"l_shoulder": [("z", -45), ("x", -120)], "r_shoulder": [("z", 45), ("x", -120)]}, 50.0),
-    Cell("hip spread", {"l_hip": [("z", 50)], "r_hip": [("z", -50)]}, 0.0),
-    Cell("bow 120", {"vl5": [("x", 40)], "vt10": [("x", 40)], "vt4": [("x", 20)], "vc4": [("x", 20)]}, 75.0),
-    Cell("head turned 75, bent", {"vc4": [("y", 35), ("x", 20)], "skullbase": [("y", 40), ("x", 15)]}, 0.0, (0, 1.45, 0), 1.3),
-    Cell("feet", {"l_metatarsal": [("x", -35)], "l_talocrural": [("x", 25)]}, 60.0, (0, 0.1, 0.05), 0.9),
-]  # fmt: skip
-CLOSE = [
-    Cell("elbow, near", {"l_elbow": [("y", -120.0)]}, 20.0, (0.42, 1.15, 0), 0.9), Cell("elbow, back", {"l_elbow": [("y", -120.0)]}, 200.0, (0.42, 1.15, 0), 0.9),
-    Cell("knee, side", {"l_hip": [("x", -60.0)], "l_knee": [("x", 120.0)]}, 85.0, (0.08, 0.7, 0.2), 1.2), Cell("knee, front", {"l_hip": [("x", -60.0)], "l_knee": [("x", 120.0)]}, 20.0, (0.08, 0.7, 0.2), 1.2),
-    Cell("hip, side", {"l_hip": [("x", -120.0)], "l_knee": [("x", 120.0)]}, 85.0, (0.08, 0.95, 0.1), 1.2), Cell("hip, front", {"l_hip": [("x", -120.0)], "l_knee": [("x", 120.0)]}, 25.0, (0.08, 0.95, 0.1), 1.2),
-    Cell("hip, back", {"l_hip": [("x", -120.0)], "l_knee": [("x", 120.0)]}, 160.0, (0.08, 0.95, 0.1), 1.2), Cell("split, back", {"l_hip": [("z", 50)], "r_hip": [("z", -50)]}, 180.0, (0, 0.9, 0), 1.4),
-    Cell("arms up, near", {"l_shoulder": [("z", 120.0)], "r_shoulder": [("z", -120.0)]}, 10.0, (0, 1.45, 0), 1.4), Cell("arms up, back", {"l_shoulder": [("z", 120.0)], "r_shoulder": [("z", -120.0)]}, 190.0, (0, 1.45, 0), 1.4),
-    Cell("arms forward", {"l_shoulder": [("z", -45), ("x", -120)], "r_shoulder": [("z", 45), ("x", -120)]}, 60.0, (0, 1.4, 0), 1.4), Cell("arms back", {"l_shoulder": [("x", 60)], "r_shoulder": [("x", 60)]}, 120.0, (0, 1.35, 0), 1.4),
-    Cell("bow, near", {"vl5": [("x", 40)], "vt10": [("x", 40)], "vt4": [("x", 20)], "vc4": [("x", 20)]}, 75.0, (0, 1.05, 0.15), 1.5), Cell("twist", {"vl5": [("y", 20)], "vt10": [("y", 25)]}, 0.0, (0, 1.2, 0), 1.5),
-    Cell("neck 60", {"vc4": [("x", 30)], "skullbase": [("x", 30)]}, 80.0, (0, 1.5, 0.03), 1.0), Cell("neck turned", {"vc4": [("y", 35)], "skullbase": [("y", 40)]}, 0.0, (0, 1.5, 0), 1.0),
-]  # fmt: skip
-BLINK = {f"{s}_eyelid_joint": [("x", 66.0)] for s in "lr"}
-HALF = {f"{s}_eyelid_joint": [("x", 30.0)] for s in "lr"}
-LOOK = {f"{s}_eyeball_joint": [("y", 25.0)] for s in "lr"}
-FACES = [
-    Cell("face", {}, 0.0, FACE, 0.62, 0.02), Cell("face 3/4", {}, 35.0, FACE, 0.62, 0.02), Cell("face side", {}, 90.0, FACE, 0.75, 0.02),
-    Cell("looks left", LOOK, -20.0, FACE, 0.62, 0.02), Cell("half closed", HALF, 15.0, FACE, 0.62, 0.02), Cell("blink", BLINK, 0.0, FACE, 0.62, 0.02),
-    Cell("head back", {}, 160.0, FACE, 0.75, 0.05), Cell("hand", {}, 60.0, (0.56, 0.98, 0.0), 0.55, 0.1),
-    Cell("palm", {}, -100.0, (0.56, 0.98, 0.0), 0.55, 0.1), Cell("upper body", ARMS_DOWN, 20.0, (0, 1.35, 0), 1.4, 0.1),
-    Cell("upper back", ARMS_DOWN, 200.0, (0, 1.35, 0), 1.4, 0.1), Cell("shoes", {}, 35.0, (0, 0.06, 0.05), 0.8, 0.25),
-]  # fmt: skip
+def cells(group: str) -> list[Cell]:
+    """The pictures of a group of poses.yaml: "sheet", "faces" or "close"."""
+    rows = yaml.safe_load((ROOT / "tools" / "poses.yaml").read_text("utf-8"))[group]
+    return [
+        Cell(
+            row["label"],
+            {
+                joint: [(axis, float(degrees)) for axis, degrees in turns]
+                for joint, turns in row.get("turns", {}).items()
+            },
+            float(row["camera"]["heading"]),
+            tuple(row["camera"]["at"]),
+            float(row["camera"]["from"]),
+            float(row["camera"]["rise"]),
+        )
+        for row in rows
+    ]
 
 
 def posed(character: Character, turns: dict[str, list[tuple[str, float]]]) -> np.ndarray:
@@ -96,7 +73,7 @@ def posed(character: Character, turns: dict[str, list[tuple[str, float]]]) -> np
 
 
 @njit(cache=True)
-def _draw(xy, z, normal, uv, triangles, texture, color, light, eye_dir, depth, out):  # noqa: PLR0913
+def _draw(xy, z, normal, uv, triangles, texture, color, light, eye_dir, depth, out):
     h, w = depth.shape
     th, tw = texture.shape[0], texture.shape[1]
     for t in range(len(triangles)):
@@ -199,11 +176,11 @@ def _outline(depth: np.ndarray, out: np.ndarray) -> None:
     out[edge] *= 0.25
 
 
-def sheet(character: Character, cells: list[Cell], columns: int, width: int, height: int) -> Image.Image:
+def sheet(character: Character, pictures: list[Cell], columns: int, width: int, height: int) -> Image.Image:
     """All cells in a grid, each with its label."""
-    rows = -(-len(cells) // columns)
+    rows = -(-len(pictures) // columns)
     page = Image.new("RGB", (columns * width, rows * height), BACKGROUND)
-    for i, cell in enumerate(cells):
+    for i, cell in enumerate(pictures):
         x, y = i % columns * width, i // columns * height
         page.paste(picture(character, cell, width, height), (x, y))
         ImageDraw.Draw(page).text((x + 6, y + 4), cell.label, fill=(220, 220, 230))
@@ -211,18 +188,14 @@ def sheet(character: Character, cells: list[Cell], columns: int, width: int, hei
 
 
 def main(arguments: list[str]) -> None:
-    """Draw what the arguments name; by default the pose sheet and the close-ups of the package's dancer."""
+    """Draw what the arguments name; by default the pose sheet of the package's dancer."""
     data = ROOT / "dancetutor_cli/character/data/dancer.glb"
     character = read_character(Path(arguments[0]) if arguments else data)
     target = Path(arguments[1]) if len(arguments) > 1 else ROOT / "build" / "pose_sheet.png"
-    names = arguments[2:] or ["sheet"]
-    cells = {"sheet": SHEET, "faces": FACES, "close": CLOSE}.get(names[0]) or [
-        c for c in SHEET + FACES + CLOSE if c.label in names
-    ]
+    group = arguments[2] if len(arguments) > 2 else "sheet"
     target.parent.mkdir(parents=True, exist_ok=True)
-    columns = min(4, len(cells))
-    size = (400, 400) if names[0] != "sheet" else (360, 460)
-    sheet(character, cells, columns, *size).save(target)
+    size = (360, 460) if group == "sheet" else (400, 400)
+    sheet(character, cells(group), 4, *size).save(target)
     print(target)
 
 

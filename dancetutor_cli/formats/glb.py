@@ -128,10 +128,11 @@ class _Writer:
         attributes = {
             "POSITION": self.accessor(positions, _VERTICES, **bounds),
             "NORMAL": self.accessor(np.asarray(mesh.normals, dtype="<f4"), _VERTICES),
-            "TEXCOORD_0": self.accessor(np.asarray(mesh.uv, dtype="<f4"), _VERTICES),
             "JOINTS_0": self.accessor(joints, _VERTICES),
             "WEIGHTS_0": self.accessor(weights, _VERTICES),
         }
+        if mesh.material.texture is not None:
+            attributes["TEXCOORD_0"] = self.accessor(np.asarray(mesh.uv, dtype="<f4"), _VERTICES)
         indices = mesh.triangles.reshape(-1).astype("<u2" if small else "<u4")
         primitive = {
             "attributes": attributes,
@@ -178,13 +179,15 @@ class _Writer:
         keep = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
         times = times[keep]
         clock = self.accessor(times, min=[float(times[0])], max=[float(times[-1])])
-        once = self.accessor(times[:1], min=[float(times[0])], max=[float(times[0])])
+        once: list[int] = []  # the first time alone, for what is turned but never moves; made when it is needed
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []
 
         def channel(node: int, path: str, values: NDArray[Any], moves: bool, **more: Any) -> None:
             output = self.accessor(values if moves else values[:1], **more)
-            samplers.append({"input": clock if moves else once, "output": output, "interpolation": "LINEAR"})
+            if not moves and not once:
+                once.append(self.accessor(times[:1], min=[float(times[0])], max=[float(times[0])]))
+            samplers.append({"input": clock if moves else once[0], "output": output, "interpolation": "LINEAR"})
             channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
 
         for j in range(len(motion.skeleton.names)):
@@ -219,5 +222,5 @@ def _png(pixels: NDArray[np.uint8]) -> bytes:
 
     opaque = bool((pixels[..., 3] == 255).all())
     out = io.BytesIO()
-    Image.fromarray(pixels[..., :3] if opaque else pixels).save(out, "PNG", optimize=True)
+    Image.fromarray(pixels[..., :3] if opaque else pixels).save(out, "PNG", compress_level=7)
     return out.getvalue()
