@@ -83,10 +83,10 @@ def write_motion(path: Path, motion: Motion) -> None:
 
         write_npz(path, motion)
     else:
-        from dancetutor_cli.character import default_character
+        from dancetutor_cli.character import load_dancer
         from dancetutor_cli.formats.glb import write_glb
 
-        write_glb(path, default_character(), motion)
+        write_glb(path, load_dancer(), motion)
 
 
 def _check_target(path: Path) -> None:
