@@ -8,7 +8,7 @@ from fractions import Fraction
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 
 _NUMBER = re.compile(r"\s*([+-]?)(?:(\d+)(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?\d+))?(.*)", re.DOTALL | re.ASCII)
-_LARGEST = 3.5e38  # beyond it the games' floats are infinite, which they read as 0
+_LARGEST = 35 * 10**37  # beyond it the games' floats are infinite, which they read as 0
 _DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
 
 
@@ -29,11 +29,13 @@ def number(text: str) -> tuple[Fraction, bool]:
     if power < -_DIGITS - 39:
         return Fraction(0), clean
     digits = int(whole + decimals or "0")
-    power -= len(decimals)
-    value = Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
-    if value > _LARGEST:
+    if sign == "-":
+        digits = -digits
+    scale = power - len(decimals)
+    value = Fraction(digits * 10**scale) if scale >= 0 else Fraction(digits, 10**-scale)
+    if len(whole) + power > 30 and abs(value) > _LARGEST:
         return Fraction(0), False
-    return (-value if sign == "-" else value), clean
+    return value, clean
 
 
 def beat(text: str) -> tuple[Fraction, bool]:

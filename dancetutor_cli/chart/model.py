@@ -61,6 +61,8 @@ class NoteTable:
 class RowTable:
     """Every row of the note data as written, also the empty ones, in file order; arrays of one length.
 
+    Of routine charts (`&`) these are the first player's.
+
     start, end : int64, byte span of the trimmed row text in `Song.data` (comment not included)
     line : int32, 1-based
     tick : int64, 1/48 beats
@@ -104,7 +106,8 @@ class Chart:
 
     index : place among all charts of the file, from 0
     steps_type : lower case, e.g. "dance-single"
-    difficulty : "Beginner", "Easy", "Medium", "Hard", "Challenge" or "Edit" as the games name it
+    difficulty : "Beginner", "Easy", "Medium", "Hard", "Challenge" or "Edit" as the games name it; but a second chart
+        of one steps type and difficulty keeps its name (the games show one of them as an Edit)
     meter : never negative
     columns : number of columns of the steps type; 0 if the type is unknown
     notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
@@ -134,7 +137,12 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Song:
-    """One .sm or .ssc file. `data` are its bytes; everything else was read from them."""
+    """One .sm or .ssc file. `data` are its bytes; everything else was read from them.
+
+    encoding : "ascii", "utf-8", "utf-8-sig", or a guess: "cp932", "cp949", "cp1252"
+    title, subtitle, artist, music : on one line and safe to print (no control characters, no terminal escapes)
+    tags : upper-case name -> first value, decoded, safe to print but for line ends; of equal names the last
+    """
 
     path: Path
     format: str  # "sm" or "ssc"

@@ -48,7 +48,7 @@ def scan(data: bytes) -> list[Tag]:
 
 def _tag(data: bytes, begin: int, params: list[tuple[int, int]]) -> Tag:
     (a, b), *values = params
-    return Tag(plain(data[a:b]).decode("latin-1").strip().upper(), begin, tuple(values))
+    return Tag(plain(data[a:b]).decode("latin-1").upper(), begin, tuple(values))
 
 
 def _first_on_line(data: bytes, start: int, at: int) -> bool:

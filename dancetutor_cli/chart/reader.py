@@ -18,6 +18,7 @@ from dancetutor_cli.errors import ChartError, FileError
 
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")
+EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
 _LARGEST_METER = 2**31 - 1
 _NUL_TEXT = re.compile(rb"\A\s*(?:[^\0]\0){4}|\A\s*(?:\0[^\0]){4}")
 
@@ -49,7 +50,9 @@ def parse(data: bytes, path: Path) -> Song:
     tags = [Tag(_ALIASES.get(tag.name, tag.name), tag.start, tag.spans) for tag in msd.scan(data)]
     if not tags:
         raise ChartError(path, "no charts: the file has no tags like #TITLE:...;", 1)
-    reader = (_Ssc if path.suffix.lower() == ".ssc" else _Sm)(data, path, tags)
+    suffix = path.suffix.lower()
+    is_ssc = suffix == ".ssc" or (suffix == EDIT_SUFFIX and any(tag.name == "NOTEDATA" for tag in tags))
+    reader = (_Ssc if is_ssc else _Sm)(data, path, tags)
     song = reader.song()
     if not song.charts:
         raise reader.no_charts()
@@ -122,7 +125,9 @@ class _Reader:
         meter = _meter(tags.get("METER", ""), line, warnings)
         description = text.one_line(tags.get("DESCRIPTION", ""))
         difficulty, said = names.difficulty(tags.get("DIFFICULTY", ""), description, meter, self.format == "sm")
-        if not said:
+        if self.path.suffix.lower() == EDIT_SUFFIX:
+            difficulty = "Edit"
+        elif not said:
             message = f"difficulty '{text.shown(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
         routine, trimmed = names.is_routine(kind), self.format == "sm"
@@ -252,7 +257,9 @@ class _Ssc(_Reader):
                     self.warnings.append(ReadWarning("notedata-without-notes", message, self.lines(opened)))
                 current, opened = current if current is not None else [], tag.start
             elif tag.name == "NOTES":
-                if current is not None:
+                if current is None:
+                    self.skip("NOTES stands outside NOTEDATA", tag.start)
+                else:
                     groups.append((current, tag))
                 current = None
             else:

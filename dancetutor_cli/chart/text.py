@@ -45,15 +45,16 @@ def _fits(data: bytes, encoding: str) -> bool:
 def decode(value: bytes, encoding: str) -> str:
     """A value as text, safe to print: bytes that do not fit become U+FFFD, line ends and tabs stay."""
     text = value.decode("utf-8" if encoding == "utf-8-sig" else encoding, errors="replace")
-    return text if text.isascii() and text.isprintable() else _safe(text)
-
-
-def _safe(text: str) -> str:
-    if "\x1b" in text:
-        text = _ESCAPE.sub("", text)
-    if text.isprintable():
+    if _is_plain(text):
+        return text
+    text = _ESCAPE.sub("", text)
+    if _is_plain(text):
         return text
     return "".join(c for c in text if c in "\r\n\t" or unicodedata.category(c) not in _DROPPED)
+
+
+def _is_plain(text: str) -> bool:
+    return text.isprintable() or text.replace("\n", "").replace("\r", "").replace("\t", "").isprintable()
 
 
 def one_line(text: str) -> str:

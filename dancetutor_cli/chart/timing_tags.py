@@ -17,6 +17,7 @@ TIMING_TAGS = frozenset({
     "SCROLLS", "LABELS",
 })  # fmt: skip
 _PAIRS = ("BPMS", "STOPS", "DELAYS", "WARPS", "FAKES")
+_SSC_ONLY = ("WARPS", "FAKES")
 _LONG = 3600  # seconds; a stop longer than this is named
 SPLIT_TIMING_VERSION = Fraction(7, 10)  # older .ssc: no timing of a chart's own, warps say where they end
 
@@ -42,8 +43,12 @@ def read(tags: Mapping[str, Text], source: Source, offset: Fraction, warnings: l
     raw = segments.Raw(offset=offset)
     for name, into in zip(_PAIRS, (raw.bpms, raw.stops, raw.delays, raw.warps, raw.fakes), strict=True):
         if tag := tags.get(name):
-            negative = source.sm and name in ("BPMS", "STOPS")
             warn = segments.warner(warnings, tag.line)
+            if source.sm and name in _SSC_ONLY:
+                if tag.value.strip():
+                    warn("odd-timing", f"{name} is ignored: the games read it only in .ssc files")
+                continue
+            negative = source.sm and name in ("BPMS", "STOPS")
             into.extend(segments.pairs(tag.value, name, negative, warn))
     if tag := tags.get("OFFSET"):
         raw.offset = _offset(tag, warnings)

@@ -30,7 +30,7 @@ def tags(data: bytes) -> list[tuple[str, list[bytes]]]:
     ("data", "expected"),
     [
         (b"#A:b;", [("A", [b"b"])]),
-        (b"x#a : b : c;y;:#D;", [("A", [b" b ", b" c"]), ("D", [])]),
+        (b"x#a: b : c;y;:#D ;", [("A", [b" b ", b" c"]), ("D ", [])]),
         (b"#A:b\n #C:d", [("A", [b"b\n "]), ("C", [b"d"])]),
         (b"#A:#B:c;", [("A", [b""]), ("B", [b"c"])]),
         (b"#A: \t#B:c;", [("A", [b" \t"]), ("B", [b"c"])]),
@@ -193,3 +193,16 @@ def test_songs_survive_pickling() -> None:
     again = pickle.loads(pickle.dumps(song))
     assert again.charts[0].label == song.charts[0].label
     assert again.charts[0].notes.tick.tolist() == song.charts[0].notes.tick.tolist()
+
+
+@pytest.mark.parametrize("data", [CHART, SSC])
+def test_edit_files_of_either_form(data: bytes) -> None:
+    song = read(b"#SONG:pack/song;" + data, "x.edit")
+    assert song.charts[0].difficulty == "Edit"
+    assert song.format == ("ssc" if data is SSC else "sm")
+
+
+def test_notes_outside_notedata_are_named() -> None:
+    song = read(SSC + b"#NOTES:\n0100\n;", "x.ssc")
+    assert len(song.charts) == 1
+    assert any(w.code == "chart-skipped" for w in song.warnings)

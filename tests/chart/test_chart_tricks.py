@@ -192,3 +192,10 @@ def test_one_segment_of_any_sort_splits_the_timing(own: str) -> None:
     song = ssc("#VERSION:0.83;#BPMS:0=120;", own)
     assert song.charts[0].timing.bpm_at(0) == 60
     assert "split-timing-without-bpms" in codes(song)
+
+
+def test_warps_and_fakes_are_only_for_ssc() -> None:
+    song = sm(BPMS="0=120", WARPS="4=4", FAKES="8=1")
+    assert song.timing == Timing(((0, Fraction(120)),))
+    assert "odd-timing" in codes(song)
+    assert codes(sm(BPMS="0=120", WARPS="")) == set()
