@@ -39,6 +39,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         where = f"{error.filename}: " if error.filename else ""
         _say(f"{where}{error.strerror or error}")
         status = 2
+    except Exception as error:
+        # A mistake of the program, not of the user: still one line, with the way to the whole story.
+        if os.environ.get("DANCETUTOR_TRACEBACK"):
+            raise
+        _say(f"internal error: {type(error).__name__}: {error}; set DANCETUTOR_TRACEBACK=1 to see where, and report it")
+        status = 2
     sys.exit(status if isinstance(status, int) else 0)
 
 
