@@ -83,6 +83,7 @@ class Look:
 
     cameras: dict[str, CameraLook]
     free_field: float
+    follow_seconds: float
     light: LightLook
     toon: ToonLook
     stage: StageLook
@@ -96,6 +97,7 @@ def read_look(path: Path) -> Look:
             raise FileError(path, f"cameras.{name}: field must be 1..120 degrees and elevation -89.99..89.99")
     positive = {
         "free_field": look.free_field,
+        "follow_seconds": look.follow_seconds,
         "toon.soft": look.toon.soft,
         "stage.tile": look.stage.tile,
         "stage.pool": look.stage.pool,
