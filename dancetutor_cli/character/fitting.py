@@ -188,9 +188,10 @@ def _in_rest_pose(character: Character) -> Character:
             placed[j] = placed[p] + quat.rotate(turns[p], rest[j] - rest[p])
         moves[j, :3, :3] = quat.to_matrix(turns[j])
         moves[j, :3, 3] = placed[j] - moves[j, :3, :3] @ rest[j]
-    placed[:, 1] += (lift := rest[skeleton.index("l_talocrural"), 1] - placed[skeleton.index("l_talocrural"), 1])
-    moves[:, 1, 3] += lift
-    return _with_rest(character, placed, moves)
+    posed = _with_rest(character, placed, moves)
+    down = np.array([0.0, _ground(posed, _rest_vertices(posed)), 0.0])
+    moves[:, :3, 3] -= down
+    return _with_rest(character, placed - down, moves)
 
 
 def _foot_turn(skeleton: Skeleton, side: str) -> Array:

@@ -21,6 +21,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 
 STRETCH = 0.995  # of the leg's length: the knee never locks
+SINK = 0.3  # seconds over which a character with short legs sinks into a wide stance
 HAND_BLEND = 0.25  # seconds over which a hand leaves its own way for the panel
 _LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
 _LEFT_HAND = 2  # play.model.Limb
@@ -78,17 +79,45 @@ def _under_ball(skeleton: Skeleton, side: str) -> Array:
 
 
 def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Array:
-    """Root positions (f, 3): her height in proportion to the legs, pulled to where every target is in reach."""
-    root = motion.root.copy()
-    root[:, 1] *= own.rest[0, 1] / motion.skeleton.rest[0, 1]
+    """Root positions (f, 3): her height and her sway between the feet in proportion to the legs, within their reach.
+
+    She sinks for a wide stance, early and smoothly; only what is left is a pull towards the target.
+    """
+    share = min(1.0, own.rest[0, 1] / motion.skeleton.rest[0, 1])
+    middle = np.mean([target for _, chain, target, _ in limbs if chain is _LEG], axis=0)
+    root = middle + (motion.root - middle) * share
+    root[:, 1] = motion.root[:, 1] * own.rest[0, 1] / motion.skeleton.rest[0, 1]
     places, _ = world_transforms(own, local_rotations(own, turned), np.zeros_like(root))
+    starts = [places[:, own.index(f"{side}_{chain[0]}")] for side, chain, _, _ in limbs]
+    reach = [STRETCH * sum(_lengths(own, side, chain)) for side, chain, _, _ in limbs]
+    sink = np.zeros(len(root))
+    for start, length, (_, chain, target, _) in zip(starts, reach, limbs, strict=True):
+        if chain is _LEG:
+            way = root + start - target
+            aside = np.minimum(np.hypot(way[:, 0], way[:, 2]), 0.85 * length)
+            sink = np.maximum(sink, way[:, 1] - np.sqrt(length**2 - aside**2))
+    root[:, 1] -= _early(motion.times, sink)
     for _ in range(16):
-        for side, chain, target, weight in limbs:
-            way = root + places[:, own.index(f"{side}_{chain[0]}")] - target
+        for start, length, (_, _, target, weight) in zip(starts, reach, limbs, strict=True):
+            way = root + start - target
             distance = np.linalg.norm(way, axis=1)
-            over = weight * np.maximum(distance - STRETCH * sum(_lengths(own, side, chain)), 0.0)
+            over = weight * np.maximum(distance - length, 0.0)
             root = root - way * (over / np.maximum(distance, 1e-9))[:, None]
     return root
+
+
+def _early(times: Array, values: Array) -> Array:
+    """A smooth curve (f,) that is nowhere below `values`: their maximum over `SINK` seconds around, then averaged."""
+    rate = 120.0
+    half = max(1, round(SINK * rate / 2))
+    grid = np.arange(times[0], times[-1] + 1 / rate, 1 / rate)
+    dense = np.maximum(np.interp(grid, times, values), 0.0)
+    at = np.minimum(np.searchsorted(grid, times), len(grid) - 1)
+    np.maximum.at(dense, at, values)
+    window = 2 * half + 1
+    highest = np.lib.stride_tricks.sliding_window_view(np.pad(dense, 2 * half, mode="edge"), window).max(axis=1)
+    bell = np.hanning(window + 2)[1:-1]
+    return np.asarray(np.interp(times, grid, np.convolve(highest, bell / bell.sum(), mode="valid")))
 
 
 def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tuple[float, float]:
