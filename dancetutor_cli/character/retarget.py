@@ -85,7 +85,7 @@ def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Ar
     """
     share = min(1.0, own.rest[0, 1] / motion.skeleton.rest[0, 1])
     middle = np.mean([target for _, chain, target, _ in limbs if chain is _LEG], axis=0)
-    root = middle + (motion.root - middle) * share
+    root: Array = middle + (motion.root - middle) * share
     root[:, 1] = motion.root[:, 1] * own.rest[0, 1] / motion.skeleton.rest[0, 1]
     places, _ = world_transforms(own, local_rotations(own, turned), np.zeros_like(root))
     starts = [places[:, own.index(f"{side}_{chain[0]}")] for side, chain, _, _ in limbs]
