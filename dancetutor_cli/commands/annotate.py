@@ -170,6 +170,7 @@ class _Talk:
     dry_run: bool
     files: Counter[str] = field(default_factory=Counter)
     lacking: bool = False
+    unselected: list[str] = field(default_factory=list)
 
     def begin(self) -> None:
         if "rows" in self.order.styles and not self.order.strip:
@@ -185,7 +186,11 @@ class _Talk:
             click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
             return
         self.files["changed" if outcome.changed else "unchanged"] += 1
-        self.lacking |= bool(outcome.lacks)
+        if outcome.unselected:
+            self.unselected.append(f"{outcome.source}: {', '.join(outcome.unselected)}")
+        self.lacking |= bool(outcome.lacks or outcome.problems)
+        for problem in outcome.problems:
+            click.echo(_safe(problem) if self.check else f"warning: {_safe(problem)}", err=not self.check)
         if self.check:
             for lack in outcome.lacks:
                 click.echo(_safe(lack))
@@ -203,6 +208,9 @@ class _Talk:
 
     def end(self) -> int:
         total = sum(self.files.values())
+        if self.unselected and len(self.unselected) == total - self.files["failed"]:
+            has = _safe("; ".join(self.unselected[:20]))
+            raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
         parts = ", ".join(f"{n} {name}" for name, n in sorted(self.files.items()) if n)
         if total > 1:
             click.echo(f"{total} files: {parts}", err=self.order.diff)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, groupby
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.feet.model import FeetProblem
@@ -17,7 +19,7 @@ _NAMES = {
     Limb.LEFT_HAND: "the left hand",
     Limb.RIGHT_HAND: "the right hand",
 }
-_REACH = math.sqrt(2) + 1e-6  # panel widths: heel and toe of one foot reach two panels that touch at a corner
+_Near = NDArray[np.bool_] | None  # (c, c): which panels one foot can press together
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +47,7 @@ def contradictions(chart: Chart, said: Iterable[Said]) -> tuple[list[Said], list
     if not ordered:
         return [], []
     pad = load_pad(chart.steps_type)
-    panels = [] if pad is None else [(panel.x, panel.y) for panel in pad.panels]
+    near = None if pad is None else pad.neighbours
     ends = _hold_ends(chart)
     held: dict[int, tuple[Said, int]] = {}
     good: list[Said] = []
@@ -53,11 +55,11 @@ def contradictions(chart: Chart, said: Iterable[Said]) -> tuple[list[Said], list
     for tick, group in groupby(ordered, key=lambda s: s.tick):
         row = list(group)
         held = {limb: (s, end) for limb, (s, end) in held.items() if end > tick}
-        if wrong := _row_problem(row, panels):
+        if wrong := _row_problem(row, near):
             problems.append(wrong)
             continue
         for s in row:
-            if s.limb in held and (wrong := _hold_problem(s, held[s.limb][0], panels)):
+            if s.limb in held and (wrong := _hold_problem(s, held[s.limb][0], near)):
                 problems.append(wrong)
                 continue
             good.append(s)
@@ -73,30 +75,28 @@ def _hold_ends(chart: Chart) -> dict[tuple[int, int], int]:
     return dict(zip(places, notes.end[at].tolist(), strict=True))
 
 
-def _row_problem(row: Sequence[Said], panels: Sequence[tuple[float, float]]) -> FeetProblem | None:
+def _row_problem(row: Sequence[Said], near: _Near) -> FeetProblem | None:
     for a, b in combinations(row, 2):
         if a.limb != b.limb:
             continue
         name = _NAMES[Limb(a.limb)]
-        if _far(a.column, b.column, panels):
+        if _far(a.column, b.column, near):
             return _problem("feet-far", f"{name} cannot be on columns {a.column} and {b.column} at once", b)
         if Part.TOE not in (a.part, b.part) or a.part == b.part:
             return _problem("feet-twice", f"{name} is named twice; write a bracket with its toe, like (Ll)", b)
     return None
 
 
-def _hold_problem(step: Said, hold: Said, panels: Sequence[tuple[float, float]]) -> FeetProblem | None:
+def _hold_problem(step: Said, hold: Said, near: _Near) -> FeetProblem | None:
     """A step by a limb that holds another panel; a foot may reach a panel that is near with its other part."""
     name = _NAMES[Limb(step.limb)]
-    if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, panels):
+    if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, near):
         return _problem("feet-far", f"{name} cannot step on column {step.column} while it holds {hold.column}", step)
     return None
 
 
-def _far(a: int, b: int, panels: Sequence[tuple[float, float]]) -> bool:
-    if a >= len(panels) or b >= len(panels):
-        return False
-    return math.dist(panels[a], panels[b]) > _REACH
+def _far(a: int, b: int, near: _Near) -> bool:
+    return near is not None and max(a, b) < len(near) and not near[a, b]
 
 
 def _problem(code: str, what: str, at: Said) -> FeetProblem:

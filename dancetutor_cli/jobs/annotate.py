@@ -48,12 +48,18 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a file. lacks, notes : lines for people; changed : the files that are or would be different."""
+    """What became of a file: lines for people, and which files are or would be different.
+
+    problems : contradictions in what people said about feet; lacks : what is missing or stale
+    unselected : the charts of a file of which none was meant
+    """
 
     source: Path
     error: str | None = None
     notes: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
     lacks: tuple[str, ...] = ()
+    unselected: tuple[str, ...] = ()
     counts: tuple[tuple[str, int], ...] = ()
     changed: tuple[Path, ...] = ()
     diff: tuple[str, ...] = ()
@@ -103,6 +109,7 @@ class _Work:
         self.item, self.order, self.song, self.beside = item, order, song, beside
         self.changes: list[Change] = []
         self.lacks: list[Lack] = []
+        self.problems: list[Lack] = []
         self.notes: list[str] = []
         self.errors: list[str] = []
         self.counts: Counter[str] = Counter()
@@ -117,7 +124,7 @@ class _Work:
         preset = load_preset(self.order.preset)
         added = EDIT in self.order.styles and self.order.into_file
         base = self._without_added() if added else self.song
-        feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes))
+        feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes, self.problems))
         plan = planning.mark(base, feet, self.order.styles, self.order.force)
         if added:
             planning.add_charts(base, self.song, plan, feet)
@@ -149,6 +156,7 @@ class _Work:
 
     def outcome(self) -> Outcome:
         """Bring the changes to the disk if that is wanted, and say what became of the file."""
+        selection = self.order.selection
         if self.order.write:
             for change in self.changes:
                 self._bring(change)
@@ -156,7 +164,9 @@ class _Work:
             self.item.source,
             error="; ".join(self.errors) or None,
             notes=tuple(self.notes),
+            problems=tuple(problem.at(self.item.source) for problem in self.problems),
             lacks=tuple(lack.at(self.item.source) for lack in self.lacks),
+            unselected=() if selection.is_all or self._charts(self.song) else tuple(c.label for c in self.song.charts),
             counts=tuple(sorted(self.counts.items())),
             changed=tuple(change.path for change in self.changes if change.needed),
             diff=tuple(_diff(self.changes)) if self.order.diff else (),

@@ -40,11 +40,13 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """Something that `--check` reports. line : 1-based place in the chart file, None: about another file."""
+    """Something that `--check` reports. line, column : 1-based place in the chart file, None: about another file."""
 
     message: str
     line: int | None = None
+    column: int | None = None
 
     def at(self, path: Path) -> str:
-        """For people: file, line and what lacks."""
-        return f"{path}{'' if self.line is None else f':{self.line}'}: {self.message}"
+        """For people: file, place and what lacks."""
+        place = "".join(f":{n}" for n in (self.line, self.column) if n is not None)
+        return f"{path}{place}: {self.message}"

@@ -32,16 +32,16 @@ class Plan:
     counts: Counter[str] = field(default_factory=Counter)
 
 
-def solve_charts(song: Song, charts: Sequence[Chart], preset: Preset, notes: list[str]) -> Iterator[ChartFeet]:
-    """The feet of each chart that has a pad; what people said about them wrongly goes to `notes`."""
+def solve_charts(
+    song: Song, charts: Sequence[Chart], preset: Preset, notes: list[str], problems: list[Lack]
+) -> Iterator[ChartFeet]:
+    """The feet of each chart that has a pad; contradictions in what people said about them go to `problems`."""
     from dancetutor_cli.play import solve_chart
 
     padless = set()
     for chart in charts:
-        overrides, _, problems = overrides_for(song, chart)
-        for problem in problems:
-            place = "".join(f":{n}" for n in (problem.line, problem.column) if n is not None)
-            notes.append(f"{song.path}{place}: {problem.message}")
+        overrides, _, wrong = overrides_for(song, chart)
+        problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
         play = solve_chart(chart, preset, overrides)
         if play is None:
             padless.add(chart.steps_type)
