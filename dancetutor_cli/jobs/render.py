@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Protocol
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs import film as work
+from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.pool import Task, Workers, open_workers
-from dancetutor_cli.video.encoder import Encoding, join
+from dancetutor_cli.video.encoder import Encoding
 
 
 class Progress(Protocol):
@@ -75,50 +75,12 @@ def make_film(
         work.write_plan(plan, plan_file)
         parts = work.segments(plan.clock.frames, encoding, folder)
         progress.begin(plan.clock.frames, encoding.fps)
-        for task in work.tasks(plan_file, parts, encoding):
-            workers.submit(task)
-        sound = _sound(prepared, encoding, folder)
+        for part in parts:
+            workers.submit(Task(part.number, work.render_segment, (plan_file, part, encoding)))
+        sound = work.write_sound(prepared, encoding, folder)
         for done in workers.done():
             if done.error is not None:
                 raise done.error
-        finish(parts, encoding, sound, folder, output)
+        work.finish(parts, encoding, sound, folder, output)
         work.forget()
     return prepared
-
-
-def _sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | None:
-    from dancetutor_cli.video import sound
-
-    if encoding.target != "mp4" or prepared.sound is None:
-        return None
-    path = folder / "sound.wav"
-    sound.write_wav(sound.mix(prepared.sound, prepared.plan.clock), path)
-    return path
-
-
-def finish(parts: list[work.Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
-    """Join the segments and put the result in its place."""
-    if encoding.target == "png":
-        _place_pictures(parts[0].path, output)
-        return
-    film = folder / f"film.{encoding.target}"
-    join([part.path for part in parts], encoding, sound, folder, film)
-    try:
-        film.replace(output)
-    except OSError as error:
-        raise FileError(output, f"cannot be written: {error.strerror}") from error
-
-
-def _place_pictures(source: Path, target: Path) -> None:
-    """Move all pictures into the target folder, then remove those of an earlier, longer film."""
-    try:
-        target.mkdir(exist_ok=True)
-        names = set()
-        for picture in sorted(source.iterdir()):
-            picture.replace(target / picture.name)
-            names.add(picture.name)
-        for old in target.glob("frame_[0-9][0-9][0-9][0-9][0-9][0-9].png"):
-            if old.name not in names:
-                old.unlink()
-    except OSError as error:
-        raise FileError(target, f"cannot be written: {error.strerror}") from error

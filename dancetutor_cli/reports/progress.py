@@ -55,6 +55,20 @@ class FilmProgress:
         self.bar.start()
         self.task = self.bar.add_task(self.name, total=self.frames, speed="")
 
+    def add(self, frames: int) -> None:
+        """That many more frames are to be drawn."""
+        self.frames += frames
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, total=self.frames)
+
+    def say(self, line: str) -> None:
+        """Write a line without breaking the bar."""
+        if self.bar is not None:
+            self.bar.console.print(line, markup=False, highlight=False)
+        else:
+            sys.stderr.write(f"{line}\n")
+            sys.stderr.flush()
+
     def advance(self, frames: int) -> None:
         """That many more frames are drawn."""
         self.done += frames

@@ -35,7 +35,7 @@ class HighwayGeometry:
 
     @property
     def left(self) -> float:
-        """x of the first lane's left edge: more room on the right, where words stand, than for the measures' numbers."""
+        """x of the first lane; more room is left on the right, where words stand, than for the measure numbers."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
         return self.box[0] + 0.33 * spare
 

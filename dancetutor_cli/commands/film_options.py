@@ -1,0 +1,137 @@
+"""The options that say what a film looks and sounds like, and the request that they make."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from dancetutor_cli.commands.selection import Selection
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.film_request import Practice, Request
+    from dancetutor_cli.video.encoder import Target
+    from dancetutor_cli.video.layout import Layout
+
+QUALITIES = ("draft", "good", "best")
+RENDERERS = ("auto", "cpu", "gl")
+GIF_FPS, GIF_SIDE = 25, 480  # of GIF and WebP, where nothing else is asked for
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+
+class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
+    """A size in pixels, as 1280x720."""
+
+    name = "WxH"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
+        match = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", str(value).strip().lower())
+        if not match:
+            self.fail(f"'{value}' is no size; write it as 1280x720", param, ctx)
+        width, height = int(match[1]), int(match[2])
+        if not (64 <= width <= 7680 and 64 <= height <= 7680):
+            self.fail(f"{width}x{height} is not possible; 64 to 7680 pixels each way", param, ctx)
+        return width, height
+
+
+_OPTIONS = (
+    click.option("--size", type=_Size(), help="Default: the layout's, 1280x720; a GIF's is smaller."),
+    click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
+    click.option(
+        "--section", metavar="START:END", help="Only this part: seconds, or beats (16b:32b) or measures (4m:8m)."
+    ),
+    click.option(
+        "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."
+    ),
+    click.option(
+        "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
+    ),
+    click.option("--scroll", metavar="C600|X2|M600", help="Speed of the notes [default: the layout's]."),
+    click.option("--down", is_flag=True, help="The notes fall instead of rise."),
+    click.option(
+        "--quality",
+        type=click.Choice(QUALITIES),
+        default="good",
+        show_default=True,
+        help="draft is quick, best is smooth.",
+    ),
+    click.option(
+        "--renderer",
+        type=click.Choice(RENDERERS),
+        default="auto",
+        show_default=True,
+        help="What draws: gl needs OpenGL.",
+    ),
+    click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, as 0.5,0.75,1; the pitch stays."),
+    click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate]."),
+    click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run."),
+    click.option("--assist-tick", is_flag=True, help="A clap on each step."),
+    click.option("--metronome", is_flag=True, help="A tick on each beat."),
+    click.option(
+        "--sync-offset", type=float, default=0.0, metavar="MS", help="Play the music this much later (ITG charts: 9)."
+    ),
+    click.option("--font", type=click.Path(path_type=Path), help="A font file, for titles in other scripts."),
+    click.option("--mute", is_flag=True, help="Leave the sound out."),
+)
+
+
+def film_options(command: _Command) -> _Command:
+    """Add the options of a film; `film_request` makes a request of their values."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
+    from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.video.encoder import even_size
+    from dancetutor_cli.video.film_look import FilmLook
+    from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.video.scroll import parse_scroll
+
+    layout = load_layout(options["layout"])
+    wanted = options["size"] or _default_size(layout.size, kind)
+    size = even_size(wanted) if kind == "mp4" else wanted
+    if size != wanted:
+        click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
+    scroll = parse_scroll(options["scroll"]) if options["scroll"] else None
+    look = FilmLook(
+        layout,
+        size,
+        options["quality"],
+        options["renderer"],
+        options["camera"],
+        scroll,
+        options["down"],
+        options["font"],
+    )
+    return Request(
+        path=file,
+        selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
+        look=look,
+        fps=options["fps"] or (GIF_FPS if kind in ("gif", "webp") else 30),
+        preset=options["preset"],
+        section=options["section"],
+        sync=options["sync_offset"] / 1000,
+        mute=options["mute"],
+        practice=_practice(options, layout),
+    )
+
+
+def _practice(options: dict[str, Any], layout: Layout) -> Practice:
+    from dancetutor_cli.jobs.film_request import Practice, parse_rates
+    from dancetutor_cli.video.layout import PracticePart
+
+    usual = layout.practice or PracticePart()
+    rates = parse_rates(options["rate"]) if options["rate"] else usual.rates
+    count_in = usual.count_in if options["count_in"] is None else options["count_in"]
+    return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"])
+
+
+def _default_size(size: tuple[int, int], kind: Target) -> tuple[int, int]:
+    if kind not in ("gif", "webp"):
+        return size
+    return round(size[0] * GIF_SIDE / max(size) / 2) * 2, round(size[1] * GIF_SIDE / max(size) / 2) * 2

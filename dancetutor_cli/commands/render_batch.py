@@ -1,0 +1,123 @@
+"""The part of `render` that makes the films of a whole folder."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import click
+
+from dancetutor_cli.commands.film_options import film_request
+from dancetutor_cli.errors import FileError, UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.batch import Outcome
+    from dancetutor_cli.jobs.film_list import BatchRequest, Unreadable
+    from dancetutor_cli.reports.progress import FilmProgress
+
+
+def render_batch(
+    path: Path, output: Path | None, frames: Path | None, longest: float | None, quiet: bool, options: dict[str, Any]
+) -> None:
+    """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
+    from dancetutor_cli.jobs.batch import Batch
+    from dancetutor_cli.jobs.film_list import film_list
+    from dancetutor_cli.jobs.pool import default_jobs, open_workers
+    from dancetutor_cli.reports.progress import FilmProgress
+
+    batch = _batch(path, output, frames, longest, options)
+    films, unreadable = film_list(batch)
+    if not films and not unreadable:
+        raise UsageError(f"{path}: no chart matches, so there is nothing to render")
+    _make_folder(batch.folder)
+    outcomes: list[Outcome] = []
+    jobs = options["jobs"] or default_jobs()
+    with ExitStack() as stack:
+        results = _open_results(options["results"], stack)
+        for bad in unreadable:
+            _write(results, {"path": str(bad.path), "chart": None, "status": "failed", "error": bad.error})
+        progress = stack.enter_context(FilmProgress(f"{len(films)} films", quiet))
+        progress.begin(0, batch.request.fps)
+        workers = open_workers(jobs, lambda _key, count: progress.advance(count))
+        stack.callback(workers.close)
+        for outcome in Batch(films, workers, progress.add).run():
+            outcomes.append(outcome)
+            _write(results, outcome.as_json())
+            _tell(outcome, progress, quiet, len(outcomes), len(films))
+    _sum_up(outcomes, unreadable, quiet)
+
+
+def _batch(
+    path: Path, output: Path | None, frames: Path | None, longest: float | None, options: dict[str, Any]
+) -> BatchRequest:
+    from dancetutor_cli.jobs.film_list import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
+    from dancetutor_cli.video.encoder import Encoding
+
+    request = film_request(path, options, "png" if frames else "mp4")
+    look = request.look
+    return BatchRequest(
+        paths=(path,),
+        request=request,
+        encoding=Encoding("png" if frames else "mp4", look.size, request.fps, look.quality),
+        folder=frames or output or Path("videos"),
+        name=options["name"] or DEFAULT_NAME,
+        meters=parse_meters(options["meter"]) if options["meter"] else None,
+        shard=parse_shard(options["shard"]) if options["shard"] else (1, 1),
+        longest=longest,
+    )
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(folder, f"cannot be used as a folder: {error.strerror}") from error
+
+
+def _open_results(path: Path | None, stack: ExitStack) -> TextIO | None:
+    if path is None:
+        return None
+    if str(path) == "-":
+        return sys.stdout
+    try:
+        return stack.enter_context(path.open("w", encoding="utf-8"))
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror}") from error
+
+
+def _write(results: TextIO | None, line: dict[str, Any]) -> None:
+    if results is not None:
+        results.write(json.dumps(line, ensure_ascii=False) + "\n")
+        results.flush()
+
+
+def _tell(outcome: Outcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
+    from dancetutor_cli.reports.safe import safe
+
+    name = outcome.job.output.name
+    text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
+    if not quiet or outcome.status == "failed":
+        progress.say(safe(f"[{number}/{count}] {name} {text}"))
+    for warning in outcome.warnings if not quiet else ():
+        progress.say(safe(f"  warning: {warning}"))
+
+
+def _sum_up(outcomes: list[Outcome], unreadable: list[Unreadable], quiet: bool) -> None:
+    """The table of what failed, and the exit status."""
+    counts = Counter(outcome.status for outcome in outcomes)
+    failed = [outcome for outcome in outcomes if outcome.status == "failed"]
+    if not quiet:
+        parts = [f"{counts[name]} {name}" for name in ("done", "skipped", "failed") if counts[name]]
+        parts += [f"{len(unreadable)} unreadable"] if unreadable else []
+        click.echo(", ".join(parts), err=True)
+    if failed or unreadable:
+        from dancetutor_cli.reports.failures import failures_table
+
+        rows = [(str(bad.path), "", bad.error) for bad in unreadable]
+        rows += [(str(one.job.request.path), one.job.label, one.error or "") for one in failed]
+        failures_table(rows)
+        sys.exit(2)

@@ -1,0 +1,102 @@
+"""Many films: what is wanted, what is done already, and the work list that any workers may take apart.
+
+Each chart's film is prepared, drawn in segments and joined by pieces of work of their own, so that all workers stay
+busy to the end of a pack. Finished segments stay when a run is interrupted; finished films are known by a hash of
+everything that they are made of, and are not made again.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs.film_work import FilmJob, Opened, Outcome
+from dancetutor_cli.jobs.pool import Done, Task, Workers
+
+__all__ = ["Batch", "FilmJob", "Outcome"]
+
+
+@dataclass
+class _Film:
+    """A film in work. waiting : segments that are not drawn yet."""
+
+    job: FilmJob
+    began: float
+    opened: Opened | None = None
+    waiting: int = 0
+    error: DancetutorError | None = None
+
+
+@dataclass
+class Batch:
+    """Runs film jobs on workers; yields one outcome per job as they end, whatever happens to single ones.
+
+    ahead : films opened at a time; the next one is prepared while the last segments of the one before are drawn
+    """
+
+    jobs: Sequence[FilmJob]
+    workers: Workers
+    opened: Callable[[int], None] = lambda frames: None
+    ahead: int = 2
+    _films: dict[int, _Film] = field(default_factory=dict)
+    _queue: deque[int] = field(default_factory=deque)
+
+    def run(self) -> Iterator[Outcome]:
+        """Do it all. The order of outcomes depends on the workers; the films do not."""
+        self._queue = deque(range(len(self.jobs)))
+        self._fill()
+        for done in self.workers.done():
+            outcome = self._ended(done)
+            self._fill()
+            if outcome is not None:
+                yield outcome
+
+    def _fill(self) -> None:
+        """Open films until enough are in work. One whose last segments are being drawn does not count."""
+        while self._queue and sum(1 for film in self._films.values() if self._is_fresh(film)) < self.ahead:
+            number = self._queue.popleft()
+            self._films[number] = _Film(self.jobs[number], time.monotonic())
+            self.workers.submit(Task(("open", number), film_work.open_film, (self.jobs[number],)))
+
+    @staticmethod
+    def _is_fresh(film: _Film) -> bool:
+        return film.opened is None or film.waiting > 1
+
+    def _ended(self, done: Done) -> Outcome | None:
+        kind, number = done.key[:2]
+        film = self._films[number]
+        if done.error is not None:
+            film.error = film.error or done.error
+        if kind == "open":
+            return self._after_open(number, film, done)
+        if kind == "segment":
+            film.waiting -= 1
+            return self._after_segments(number, film) if film.waiting == 0 else None
+        return self._outcome(number, film)
+
+    def _after_open(self, number: int, film: _Film, done: Done) -> Outcome | None:
+        if film.error is not None or done.result.skipped:
+            film.opened = done.result
+            return self._outcome(number, film)
+        opened: Opened = done.result
+        film.opened, film.waiting = opened, len(opened.missing)
+        self.opened(sum(part.last - part.first for part in opened.missing))
+        for part in opened.missing:
+            arguments = (opened.plan, part, film.job.encoding)
+            self.workers.submit(Task(("segment", number, part.number), film_work.render_segment, arguments))
+        return None if opened.missing else self._after_segments(number, film)
+
+    def _after_segments(self, number: int, film: _Film) -> Outcome | None:
+        if film.error is not None:
+            return self._outcome(number, film)
+        self.workers.submit(Task(("close", number), film_work.close_film, (film.job, film.opened)))
+        return None
+
+    def _outcome(self, number: int, film: _Film) -> Outcome:
+        del self._films[number]
+        seconds = time.monotonic() - film.began
+        return film_work.outcome(film.job, film.opened, film.error, seconds)

@@ -1,0 +1,255 @@
+"""The pieces of work of films: open one, draw and encode one of its segments, close it."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dancetutor_cli.errors import DancetutorError, FileError
+from dancetutor_cli.files import write_atomic
+from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.pool import Report
+from dancetutor_cli.video.encoder import Encoding, join
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.film_plan import Prepared
+    from dancetutor_cli.video.blit import Frame
+    from dancetutor_cli.video.film import Film, FilmPlan
+
+SEGMENT_SECONDS = 4.0  # of film; the same whatever the number of workers, so that the files are the same too
+STATE = ".dancetutor"  # folder beside the films of a batch: what is done, and what is in work
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A stretch of a film that one worker draws and encodes: frames first..last - 1 into `path`, a file or folder."""
+
+    number: int
+    first: int
+    last: int
+    path: Path
+
+
+@dataclass(frozen=True, slots=True)
+class FilmJob:
+    """A film of a batch. label : the chart's, for people; output : the file (for "png" the folder) it becomes."""
+
+    request: Request
+    label: str
+    output: Path
+    encoding: Encoding
+    longest: float | None = None
+
+    @property
+    def record(self) -> Path:
+        """The file that says what the finished film was made of."""
+        return self.output.parent / STATE / f"{self.output.name}.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A film ready to be drawn. missing : segments that no earlier run has finished; skipped : the film is done."""
+
+    key: str
+    folder: Path
+    plan: Path
+    parts: tuple[Segment, ...]
+    missing: tuple[Segment, ...]
+    sound: Path | None
+    frames: int
+    warnings: tuple[str, ...]
+    skipped: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a film job ended. status : "done", "skipped" or "failed"."""
+
+    job: FilmJob
+    status: str
+    error: str | None
+    warnings: tuple[str, ...]
+    frames: int
+    seconds: float
+
+    def as_json(self) -> dict[str, Any]:
+        """One line of the results."""
+        return {
+            "path": str(self.job.request.path),
+            "chart": self.job.label,
+            "index": self.job.request.selection.index,
+            "output": str(self.job.output),
+            "status": self.status,
+            "error": self.error,
+            "warnings": list(self.warnings),
+            "frames": self.frames,
+            "seconds": round(self.seconds, 3),
+        }
+
+
+def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> Outcome:
+    """What became of a job."""
+    if error is not None:
+        return Outcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
+    assert opened is not None
+    status = "skipped" if opened.skipped else "done"
+    return Outcome(job, status, None, opened.warnings, opened.frames, seconds)
+
+
+def open_film(report: Report, job: FilmJob) -> Opened:
+    """Everything before the first frame. What an earlier run has left of the same film is used."""
+    from dancetutor_cli.jobs.film_key import film_key
+
+    subject = look_up(job.request)
+    frames = subject.clock.frames
+    if job.longest is not None and max(subject.clock.seconds, subject.written) > job.longest:
+        raise FileError(job.request.path, f"{job.label}: too long for a batch; render it alone, or say --yes")
+    key = film_key(job.request, subject, job.encoding)
+    folder = job.output.parent / STATE / f"{job.output.name}.{key[:12]}"
+    plan = folder / "plan.pickle"
+    if _recorded(job) == key:
+        return Opened(key, folder, plan, (), (), None, frames, subject.warnings, skipped=True)
+    from dancetutor_cli.jobs.film_plan import prepare
+
+    for old in folder.parent.glob(f"{_escaped(job.output.name)}.????????????"):
+        if old != folder:
+            shutil.rmtree(old, ignore_errors=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    prepared = prepare(job.request, subject)
+    write_plan(prepared.plan, plan)
+    sound = write_sound(prepared, job.encoding, folder)
+    parts = tuple(segments(frames, job.encoding, folder))
+    missing = tuple(part for part in parts if job.encoding.target == "png" or not part.path.exists())
+    return Opened(key, folder, plan, parts, missing, sound, frames, (*subject.warnings, *prepared.warnings))
+
+
+def _escaped(name: str) -> str:
+    return "".join(f"[{c}]" if c in "[]*?" else c for c in name)
+
+
+def _recorded(job: FilmJob) -> str | None:
+    """The key of the finished film that is there, if any."""
+    try:
+        record = json.loads(job.record.read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    there = job.output.exists() and isinstance(record, dict)
+    return record.get("key") if there and record.get("size") == _size(job.output) else None
+
+
+def _size(output: Path) -> int:
+    return sum(1 for _ in output.iterdir()) if output.is_dir() else output.stat().st_size
+
+
+def close_film(report: Report, job: FilmJob, opened: Opened) -> None:
+    """Join the segments, put the film in its place, and note what it was made of."""
+    finish(list(opened.parts), job.encoding, opened.sound, opened.folder, job.output)
+    record = {"schema": 1, "key": opened.key, "size": _size(job.output), "chart": job.label, "frames": opened.frames}
+    write_atomic(job.record, (json.dumps(record, ensure_ascii=False, indent=1) + "\n").encode())
+    shutil.rmtree(opened.folder, ignore_errors=True)
+
+
+def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
+    """Cut a film of `frames` frames into segments, whose files lie in `folder`."""
+    step = max(1, round(SEGMENT_SECONDS * encoding.fps))
+    out = []
+    for number, first in enumerate(range(0, frames, step)):
+        name = "frames" if encoding.target == "png" else f"segment_{number:05d}{encoding.suffix}"
+        out.append(Segment(number, first, min(first + step, frames), folder / name))
+    return out
+
+
+def write_plan(plan: FilmPlan, path: Path) -> None:
+    """Put a film's plan where every worker can read it; once, and not once for each segment."""
+    path.write_bytes(pickle.dumps(plan, protocol=pickle.HIGHEST_PROTOCOL))
+
+
+@lru_cache(maxsize=1)
+def _film(path: Path) -> Film:
+    """The film of a plan's file; kept while segments of one film follow each other."""
+    from dancetutor_cli.video.film import Film
+
+    plan = pickle.loads(path.read_bytes())
+    return Film(plan)
+
+
+def forget() -> None:
+    """Let go of the film that this process has drawn."""
+    _film.cache_clear()
+
+
+def warm_up(report: Report) -> None:
+    """Import in a fresh worker what drawing needs, while the film is still being prepared."""
+    import dancetutor_cli.video.dancer
+    import dancetutor_cli.video.film  # noqa: F401
+
+
+def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encoding) -> int:
+    """Draw and encode one segment; returns its number. The segment's file appears whole or not at all."""
+    from dancetutor_cli.video.encoder import encode_segment
+
+    film = _film(plan)
+    part = segment.path
+    if encoding.target != "png":
+        part = segment.path.with_name(f".{segment.path.name}.part{encoding.suffix}")
+    encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
+    if part != segment.path:
+        part.replace(segment.path)
+    return segment.number
+
+
+def _counted(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
+    """Pass frames on, and tell every few of them."""
+    waiting = 0
+    for frame in frames:
+        yield frame
+        waiting += 1
+        if waiting == 4:
+            report(waiting)
+            waiting = 0
+    report(waiting)
+
+
+def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | None:
+    """The sound track as a WAV file in `folder`; None for a silent film."""
+    from dancetutor_cli.video import sound
+
+    if encoding.target != "mp4" or prepared.sound is None:
+        return None
+    path = folder / "sound.wav"
+    sound.write_wav(sound.mix(prepared.sound, prepared.plan.clock), path)
+    return path
+
+
+def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
+    """Join the segments and put the result in its place."""
+    if encoding.target == "png":
+        _place_pictures(parts[0].path, output)
+        return
+    film = folder / f"film.{encoding.target}"
+    join([part.path for part in parts], encoding, sound, folder, film)
+    try:
+        film.replace(output)
+    except OSError as error:
+        raise FileError(output, f"cannot be written: {error.strerror}") from error
+
+
+def _place_pictures(source: Path, target: Path) -> None:
+    """Move all pictures into the target folder, then remove those of an earlier, longer film."""
+    try:
+        target.mkdir(exist_ok=True)
+        names = set()
+        for picture in sorted(source.iterdir()):
+            picture.replace(target / picture.name)
+            names.add(picture.name)
+        for old in target.glob("frame_[0-9][0-9][0-9][0-9][0-9][0-9].png"):
+            if old.name not in names:
+                old.unlink()
+    except OSError as error:
+        raise FileError(target, f"cannot be written: {error.strerror}") from error
