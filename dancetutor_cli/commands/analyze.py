@@ -61,6 +61,8 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
 @click.option("--statistics", is_flag=True, help="Print how often each rule was found.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
+@click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
 @click.option(
     "--stdin-filename",
     type=click.Path(path_type=Path),
@@ -95,7 +97,8 @@ def command(**options: Any) -> int:  # fmt: skip
 
 
 def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.jobs.analyze import analyze_file
+    from dancetutor_cli.jobs.analyze_all import analyze_all
+    from dancetutor_cli.jobs.cache import ResultCache, default_folder
     from dancetutor_cli.reports.formats import open_report
     from dancetutor_cli.reports.tally import Tally
 
@@ -103,10 +106,11 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     tasks = [run.task(path, data) for path, data in sources]
-    report = open_report(options["format_name"], run.preset_name(first))
+    report = open_report(options["format_name"], tasks[0].preset.name)
     report.begin()
-    for task in tasks:
-        result = run.without_known(analyze_file(task))
+    cache = None if options["no_cache"] else ResultCache(default_folder())
+    for raw in analyze_all(tasks, options["jobs"], cache):
+        result = run.without_known(raw)
         tally.add(result)
         report.add(result)
     report.end(tally)

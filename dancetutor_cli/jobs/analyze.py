@@ -17,20 +17,20 @@ from dancetutor_cli.lint.settings import Settings
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.play import Preset
+    from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
     """What to do with one file. Pickles, so that another process can do it.
 
-    preset : name or file of the cost preset
+    preset : the cost preset
     want_rows : whether the result shall carry every row, for JSON
     data : the bytes to read in place of the file's, for standard input
     """
 
     path: Path
-    preset: str
+    preset: Preset
     selection: Selection
     settings: Settings
     want_rows: bool = False
@@ -69,13 +69,15 @@ def load_song(task: Task) -> Song:
 
 def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartSubject]:
     """Each of the charts with its play."""
+    from dancetutor_cli.feet import overrides_for
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, solve_chart
+    from dancetutor_cli.play import solve_chart
 
-    preset: Preset = load_preset(task.preset)
     for chart in charts:
-        yield ChartSubject(song, chart, solve_chart(chart, preset), load_pad(chart.steps_type))
+        overrides, ignores, problems = overrides_for(song, chart)
+        play = solve_chart(chart, task.preset, overrides)
+        yield ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores, problems)
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
@@ -113,6 +115,11 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         stream_measures=dense.stream_measures,
         arrows="" if subject.pad is None else arrows(subject.pad),
     )
+
+
+def failed(task: Task, message: str) -> FileResult:
+    """The result of a task that broke down."""
+    return _unreadable(task, FileError(task.path, message))
 
 
 def _unreadable(task: Task, error: FileError) -> FileResult:

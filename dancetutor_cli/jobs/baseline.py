@@ -15,7 +15,7 @@ from dancetutor_cli.files import write_atomic
 from dancetutor_cli.lint.model import Finding
 
 SCHEMA = 1
-# path of the chart file relative to the baseline's folder, chart, rule, beat in 1/48 (or the line, for a file's finding)
+# path of the chart file relative to the baseline's folder, chart, rule, beat in 1/48 (the line, for a file's finding)
 Key = tuple[str, str, str, int]
 
 

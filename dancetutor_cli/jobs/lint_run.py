@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
@@ -17,6 +18,9 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
+
+if TYPE_CHECKING:
+    from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,7 @@ class LintRun:
 
     request: Request
     _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
+    _presets: dict[str, Preset] = field(default_factory=dict)
     _baseline: Baseline | None = None
     _found: list[Key] = field(default_factory=list)
 
@@ -57,17 +62,14 @@ class LintRun:
             self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
         return self._by_source[source]
 
-    def preset(self, path: Path) -> str:
-        """Name or file of the cost preset for a file."""
-        from dancetutor_cli.play import DEFAULT_PRESET
+    def preset(self, path: Path) -> Preset:
+        """The cost preset for a file; UsageError if there is no such preset."""
+        from dancetutor_cli.play import DEFAULT_PRESET, load_preset
 
-        return self.request.preset or self.configuration(path).preset or DEFAULT_PRESET
-
-    def preset_name(self, path: Path) -> str:
-        """Name of the cost preset for a file; UsageError if there is no such preset."""
-        from dancetutor_cli.play import load_preset
-
-        return load_preset(self.preset(path)).name
+        name = self.request.preset or self.configuration(path).preset or DEFAULT_PRESET
+        if name not in self._presets:
+            self._presets[name] = load_preset(name)
+        return self._presets[name]
 
     def task(self, path: Path, data: bytes | None = None) -> Task:
         """The piece of work for a file."""

@@ -1,7 +1,24 @@
-"""What a path means: folders and packs, pairs of .sm and .ssc, selection of charts, the song's music."""
+"""What a path means: folders and packs, pairs of .sm and .ssc, selection of charts, the song's music.
 
-from dancetutor_cli.library.files import find_files, twin
-from dancetutor_cli.library.music import music_file
-from dancetutor_cli.library.selection import select, select_one
+Names are looked up when they are used, so that finding files imports neither the reader of charts nor numpy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dancetutor_cli.library.files import find_files, twin
+    from dancetutor_cli.library.music import music_file
+    from dancetutor_cli.library.selection import select, select_one
 
 __all__ = ["find_files", "music_file", "select", "select_one", "twin"]
+_MODULES = {"files": ("find_files", "twin"), "music": ("music_file",), "selection": ("select", "select_one")}
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _MODULES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -13,6 +13,11 @@ from dancetutor_cli.lint.settings import Settings
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
+# Rule -> what SMEditor calls such findings in the `ignores` of data.sme.
+_EDITOR_CODES = {
+    "DT201": "DS", "DT209": "DS", "DT206": "FS", "DT208": "FS", "DT211": "FS", "DT212": "FS", "DT207": "AM",
+}  # fmt: skip
+
 
 def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about the file as a whole, in order of line and rule."""
@@ -33,7 +38,13 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
         rule = all_rules()[code]
         if issubclass(rule, ChartRule | ReaderRule):
             findings += rule(options).check(subject)
-    return _in_order(findings)
+    return _in_order(finding for finding in findings if not _silenced(finding, subject))
+
+
+def _silenced(finding: Finding, subject: ChartSubject) -> bool:
+    """Whether the author told the editor that this finding is not wanted in this row."""
+    code = _EDITOR_CODES.get(finding.rule)
+    return bool(code and finding.beat is not None and subject.ignores.silenced(round(finding.beat * 48), code))
 
 
 def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:

@@ -86,6 +86,11 @@ class Settings:
         """The same with one more layer on top."""
         return replace(self, layers=(*self.layers, layer))
 
+    def fingerprint(self) -> str:
+        """The same text for the same settings, in every process."""
+        layers = [(x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules) for x in self.layers]
+        return repr((self.stream_rows, layers))
+
     def for_file(self, path: PurePath) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""
         return _resolve(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.feet import FeetProblem, Ignores
 from dancetutor_cli.lint.feet import Feet
 from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.pads import Pad
@@ -34,12 +35,17 @@ class FileSubject:
 
 @dataclass(frozen=True)
 class ChartSubject:
-    """One chart; `play` and `pad` are None where the steps type has no pad."""
+    """One chart; `play` and `pad` are None where the steps type has no pad.
+
+    ignores, problems : findings people do not want to see, and what is wrong in what they said about the feet
+    """
 
     song: Song
     chart: Chart
     play: Play | None
     pad: Pad | None = None
+    ignores: Ignores = field(default_factory=Ignores)
+    problems: tuple[FeetProblem, ...] = ()
 
     @cached_property
     def feet(self) -> Feet | None:

@@ -1,0 +1,62 @@
+"""Many files: results from the cache, the rest from this process or from worker processes, always in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.jobs.analyze import Task, analyze_file, failed
+from dancetutor_cli.jobs.result import FileResult
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.cache import ResultCache
+
+# Below this number of files the start of workers costs more than they save.
+_WORTH_WORKERS = 8
+
+
+def analyze_all(tasks: Sequence[Task], jobs: int | None, cache: ResultCache | None) -> Iterator[FileResult]:
+    """The result of every task, in the order of the tasks, as early as they are known.
+
+    jobs : worker processes for what is not in the cache; None: one for each core, 1: this process does it
+    """
+    keys = [cache.key(task) if cache else None for task in tasks]
+    known = {n: found for n, key in enumerate(keys) if cache and key and (found := cache.get(key)) is not None}
+    missing = [n for n in range(len(tasks)) if n not in known]
+    if cache and missing:
+        cache.prune()
+    work = _in_workers if jobs != 1 and len(missing) >= _WORTH_WORKERS else _here
+    fresh = work([tasks[n] for n in missing], jobs)
+    done: dict[int, FileResult] = dict(known)
+    for n in range(len(tasks)):
+        while n not in done:
+            place, result = next(fresh)
+            done[missing[place]] = result
+            key = keys[missing[place]]
+            if cache and key and result.error is None:
+                cache.put(key, result)
+        yield done.pop(n)
+
+
+def _here(tasks: Sequence[Task], _: int | None) -> Iterator[tuple[int, FileResult]]:
+    for place, task in enumerate(tasks):
+        yield place, analyze_file(task)
+
+
+def _in_workers(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, FileResult]]:
+    from dancetutor_cli.jobs.pool import Task as Work
+    from dancetutor_cli.jobs.pool import default_jobs, open_workers
+
+    workers = open_workers(jobs or default_jobs(), lambda key, n: None)
+    try:
+        for place, task in enumerate(tasks):
+            workers.submit(Work(place, _analyze, (task,)))
+        for done in workers.done():
+            result = done.result if done.error is None else failed(tasks[done.key], str(done.error))
+            yield done.key, result
+    finally:
+        workers.close()
+
+
+def _analyze(_: Callable[[int], None], task: Task) -> FileResult:
+    return analyze_file(task)

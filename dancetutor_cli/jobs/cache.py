@@ -1,0 +1,128 @@
+"""Results of `analyze` that need not be found again: one small file each, by the hash of all that a result depends on.
+
+Imports neither numpy nor numba: an unchanged file is reported without them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import dancetutor_cli
+from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.result import FileResult
+from dancetutor_cli.resources import PACKAGE, config_path
+
+_CHARTS = (".sm", ".ssc")
+_ROOMS = ("chart", "library", "pads", "feet", "play", "lint", "jobs")
+_KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
+
+
+class ResultCache:
+    """A folder of pickled results. A file that cannot be read or written is no result, never an error."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def key(self, task: Task) -> str | None:
+        """The hash of what the task's result depends on, or None if it cannot be kept."""
+        if task.want_rows or task.data is not None:
+            return None
+        try:
+            data = task.path.read_bytes()
+        except OSError:
+            return None
+        digest = hashlib.sha256(data)
+        asked = f"{task.path}|{task.path.absolute()}|{task.preset}|{task.selection}"
+        for part in (_program(), asked, task.settings.fingerprint(), *_beside(task.path)):
+            digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))
+        return digest.hexdigest()
+
+    def get(self, key: str) -> FileResult | None:
+        """The result kept under a key."""
+        path = self._path(key)
+        try:
+            result = pickle.loads(path.read_bytes())
+            if time.time() - path.stat().st_mtime > _KEEP_SECONDS / 2:
+                path.touch()
+        except Exception:  # whatever a damaged pickle raises
+            return None
+        return result if isinstance(result, FileResult) else None
+
+    def put(self, key: str, result: FileResult) -> None:
+        """Keep a result."""
+        path = self._path(key)
+        with suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, name = tempfile.mkstemp(dir=path.parent)
+            with os.fdopen(handle, "wb") as file:
+                pickle.dump(result, file, protocol=pickle.HIGHEST_PROTOCOL)
+            Path(name).replace(path)
+
+    def prune(self) -> None:
+        """Remove what nobody asked for in a long time."""
+        with suppress(OSError):
+            for path in self._folder.glob("*/*"):
+                if time.time() - path.stat().st_mtime > _KEEP_SECONDS:
+                    path.unlink(missing_ok=True)
+
+    def _path(self, key: str) -> Path:
+        return self._folder / key[:2] / key[2:]
+
+
+def default_folder() -> Path:
+    """Where this system keeps caches; DANCETUTOR_CACHE names another folder."""
+    if named := os.environ.get("DANCETUTOR_CACHE"):
+        return Path(named) / "analyze"
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "dancetutor" / "analyze"
+
+
+@cache
+def _program() -> str:
+    """The program itself: its version, and size and time of the files that make results, to notice a checkout at work."""
+    parts = [dancetutor_cli.__version__]
+    for root in (*(PACKAGE / room for room in _ROOMS), config_path("")):
+        parts += [f"{path}{stat.st_size}{stat.st_mtime_ns}" for path, stat in _files(str(root))]
+    return hashlib.sha256("".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def _files(folder: str) -> Iterator[tuple[str, os.stat_result]]:
+    for entry in sorted(os.scandir(folder), key=lambda e: e.name):
+        if entry.is_dir():
+            if entry.name != "__pycache__":
+                yield from _files(entry.path)
+        elif entry.name.endswith((".py", ".yaml")):
+            yield entry.path, entry.stat()
+
+
+def _beside(path: Path) -> Iterator[str]:
+    """What else in its folder a result depends on: music, pictures and data.sme by size and time, the other format."""
+    yield _listing(path.parent)
+    for suffix in _CHARTS:
+        other = path.with_suffix(suffix)
+        if other != path and other.is_file():
+            yield hashlib.sha256(other.read_bytes()).hexdigest()
+
+
+@cache
+def _listing(folder: Path) -> str:
+    lines = []
+    for entry in sorted(os.scandir(folder), key=lambda e: e.name):
+        if entry.is_file() and not entry.name.lower().endswith(_CHARTS):
+            stat = entry.stat()
+            lines.append(f"{entry.name} {stat.st_size} {stat.st_mtime_ns}")
+    return "\n".join(lines)

@@ -1,0 +1,38 @@
+"""How long whole processes take above a bare start of the same Python: help, one chart."""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DANCETUTOR = Path(sys.executable).with_name("dancetutor")
+DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.sm"
+RUNS = 15
+Row = tuple[str, float, str, str, str]
+
+
+def seconds(command: Sequence[object], runs: int = RUNS) -> float:
+    """Median wall time of a command; the first run fills caches and does not count."""
+    words = [str(word) for word in command]
+    times = []
+    for _ in range(runs + 1):
+        start = time.perf_counter()
+        subprocess.run(words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        times.append(time.perf_counter() - start)
+    return statistics.median(times[1:])
+
+
+def measure() -> list[Row]:
+    """Rows for tools/bench.py."""
+    bare = seconds([sys.executable, "-c", "pass"])
+    one = [DANCETUTOR, "analyze", DEMO, "--steps-type", "dance-single", "--difficulty", "hard"]
+    return [
+        ("bare Python", bare, "s", "", ""),
+        ("--help, above that", seconds([DANCETUTOR, "--help"]) - bare, "s", "0.1", ""),
+        ("one chart, above that", seconds(one) - bare, "s", "0.5", ""),
+    ]
