@@ -42,10 +42,15 @@ _TOKEN = re.compile(r"[ \t]*(?:\((?P<group>[^()]*)\)|(?P<letter>[^()]))")
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """The letters of one row, and where they stand: `at` is the offset in the marker's text."""
+    """The letters of one row. places : offset of each in the marker's text"""
 
     letters: str
-    at: int
+    places: tuple[int, ...]
+
+    @property
+    def at(self) -> int:
+        """Where the row's letters begin."""
+        return self.places[0]
 
 
 class NotationError(ValueError):
@@ -79,14 +84,15 @@ def _tokens(text: str) -> Iterator[Token]:
         if match is None:
             raise NotationError(f"'{text[at]}' without its other bracket", at)
         name = "letter" if match["group"] is None else "group"
-        letters = match[name].replace(" ", "")
-        for offset, character in enumerate(match[name]):
-            if character not in LETTERS and character != " ":
-                at = match.start(name) + offset
-                raise NotationError(f"'{_printable(character)}' is no foot; use {' '.join('LRlr<>.')}", at)
-        if not letters:
+        places = []
+        for place, character in enumerate(match[name], match.start(name)):
+            if character in LETTERS:
+                places.append(place)
+            elif character not in " \t":
+                raise NotationError(f"'{_printable(character)}' is no foot; use {' '.join('LRlr<>.')}", place)
+        if not places:
             raise NotationError("brackets without letters", match.start(name))
-        yield Token(letters, match.start(name))
+        yield Token("".join(text[place] for place in places), tuple(places))
         at = match.end()
 
 

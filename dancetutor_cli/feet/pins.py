@@ -60,7 +60,7 @@ def pinned(song: Song, chart: Chart) -> tuple[list[Said], list[FeetProblem]]:
             continue
         ticks = chart.rows.tick[rows.row[mine]].tolist()
         for tick, token, cells in zip(ticks, tokens, columns, strict=True):
-            said += _said(tick, token, cells, pin.line, column + token.at)
+            said += _said(tick, token, cells, pin.line, column)
     return said, problems
 
 
@@ -85,13 +85,14 @@ def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
             raise NotationError(text, token.at)
 
 
-def _said(tick: int, token: Token, columns: list[int], line: int, place: int) -> Iterator[Said]:
-    for letter, column in zip(token.letters, columns, strict=True):
+def _said(tick: int, token: Token, columns: list[int], line: int, start: int) -> Iterator[Said]:
+    """What one token says. start : column of the marker's text in its line"""
+    for letter, place, column in zip(token.letters, token.places, columns, strict=True):
         if letter in MEANING:
             limb, part = MEANING[letter]
             if part is Part.WHOLE and limb in _TOE and _TOE[limb] in token.letters:
                 part = Part.HEEL
-            yield Said(tick, column, limb, part, "pinned", line, place)
+            yield Said(tick, column, limb, part, "pinned", line, start + place)
 
 
 _TOE = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
