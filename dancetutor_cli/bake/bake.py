@@ -71,13 +71,25 @@ def bake(
     DancetutorError if the play has no steps or the section is empty.
     """
     settings = settings or default_settings()
-    plan = Planner(play, stage.panels_on_ground(pad), _clock(chart), settings).run()
+    plan = plan_of(chart, play, pad, settings)
     start, end = section or (min(0.0, plan.first - LEAD_IN), plan.last + LEAD_OUT)
     if not start < end:
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
         )
     return bake_plan(plan, fps, start, end, settings)
+
+
+def plan_of(chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None) -> Plan:
+    """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
+    settings = settings or default_settings()
+    return Planner(play, stage.panels_on_ground(pad), _clock(chart), settings).run()
+
+
+def mines_of(play: Play, pad: Pad) -> Array:
+    """Second and place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
+    row, column = np.nonzero(play.rows.mines)
+    return np.column_stack((play.rows.second[row], stage.panels_on_ground(pad)[column]))
 
 
 def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: MotionSettings) -> Motion:

@@ -48,7 +48,7 @@ def command(
     The motion goes to a .glb file, which any glTF viewer plays, or to a .npz file of numpy arrays.
     """
     from dancetutor_cli import chart as charts
-    from dancetutor_cli.bake import bake, report
+    from dancetutor_cli.bake import bake, mines_of, report
     from dancetutor_cli.pads import load_pad
     from dancetutor_cli.play import load_preset, solve_chart
 
@@ -66,7 +66,7 @@ def command(
     write_motion(target, motion)
     click.echo(f"{target}: {len(motion.times)} frames, {motion.times[-1] - motion.times[0]:.1f} s, {chart.label}")
     if report_to is not None:
-        _print_report(report(motion), report_to)
+        _print_report(report(motion, mines_of(play, pad)), report_to)
 
 
 def default_name(song: Song, chart: Chart) -> str:

@@ -35,7 +35,8 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
-PULL_ROUNDS = 12  # rounds of pulling the body after a pinned palm
+ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +172,9 @@ def _torso(
     rest_mid = scale(add(lo, ro), 0.5)
     p1 = add(root, qrot(turn, _vec(offsets[joints[_VL5]])))
     q1, q2 = qlerp(turn, chest, 0.34), qlerp(turn, chest, 0.67)
-    p2 = add(p1, qrot(q1, o10))
-    p3 = add(p2, qrot(q2, o4))
+    # a back that is pushed together always rounds backward: without this it would snap from side to side
+    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
+    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
     middle = scale(add(left, right), 0.5)
     p2, p3, p4 = _chain(p1, p2, p3, middle, length(o10), length(o4), length(rest_mid))
     q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
@@ -210,8 +212,8 @@ def _solve(
                     break
                 both = add(gl, gr)
                 place = _pull_root(add(place, scale(both, follow)), turn, hips, goals, reach)
-                left = add(sl, add(scale(gl, 1.2), scale(gr, 0.4)))
-                right = add(sr, add(scale(gr, 1.2), scale(gl, 0.4)))
+                left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
+                right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
                 q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
         root[f, 0], root[f, 1], root[f, 2] = place
         _put(out[joints[0]], turn)

@@ -36,7 +36,7 @@ class Limit:
 LIMITS: dict[str, Limit] = {
     "l_hip": Limit((-130, 40), (-45, 65), (-55, 60)),
     "l_knee": Limit((-8, 155), (-2, 2), (-2, 2)),
-    "l_talocrural": Limit((-42, 60), (-38, 38), (-45, 45)),
+    "l_talocrural": Limit((-46, 60), (-38, 38), (-45, 45)),
     "l_metatarsal": Limit((-65, 40), (-3, 3), (-3, 3)),
     "vl5": Limit((-25, 50), (-30, 30), (-30, 30)),
     "vt10": Limit((-25, 50), (-30, 30), (-35, 35)),
@@ -44,7 +44,7 @@ LIMITS: dict[str, Limit] = {
     "l_sternoclavicular": Limit(cone=25.0, twist=(-25, 25)),
     "l_shoulder": Limit(cone=140.0, twist=(-100, 100)),
     "l_elbow": Limit(twist=(-3, 3), cone=155.0),
-    "l_radiocarpal": Limit(cone=92.0, twist=(-95, 95)),
+    "l_radiocarpal": Limit(cone=97.0, twist=(-95, 95)),
     "vc4": Limit((-45, 40), (-35, 35), (-50, 50)),
     "skullbase": Limit((-50, 40), (-35, 35), (-55, 55)),
     "l_eyeball_joint": Limit(cone=40.0),
