@@ -94,8 +94,8 @@ def _built(raw: segments.Raw, warnings: list[ReadWarning], line: int) -> Timing:
         if abs(value) > _LONG:
             warn("odd-timing", f"stop of {float(value):g} s at beat {float(beat):g} is more than an hour")
     if negatives.has_tricks(raw):
-        if any(value < 0 for _, value in (*raw.bpms, *raw.stops)):
-            warn("negative-timing", "negative BPMs or stops: read as warps")
+        if any(value < 0 for _, value in raw.stops) or not all(0 < v <= segments.FAST_BPM for _, v in raw.bpms):
+            warn("negative-timing", "negative or endless BPMs or stops: read as warps")
         raw = negatives.to_warps(raw)
     if not raw.bpms:
         warn("no-bpm", "no usable BPM: 60 is taken")

@@ -150,6 +150,7 @@ def test_ampersand_splits_only_routines() -> None:
     both = read(text, b"dance-routine")
     assert [n[:2] for n in notes(both)] == [(0, 0), (0, 7), (96, 1)]
     assert "several-players" in codes(both)
+    assert len(read(text[:-1] + b"&\n11111111\n;", b"pump-routine").notes) == 3  # there is no third player
     assert [n[:2] for n in notes(read(b"\n1000\n&\n0001\n;"))] == [(0, 0), (128, 3)]
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -206,3 +208,13 @@ def test_notes_outside_notedata_are_named() -> None:
     song = read(SSC + b"#NOTES:\n0100\n;", "x.ssc")
     assert len(song.charts) == 1
     assert any(w.code == "chart-skipped" for w in song.warnings)
+
+
+def test_reading_imports_nothing_slow() -> None:
+    code = (
+        "import sys, dancetutor_cli.chart, dancetutor_cli.library; print(*sorted(m.split('.')[0] for m in sys.modules))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(run.stdout.split())
+    assert "numpy" in loaded
+    assert not loaded & {"numba", "scipy", "click", "rich", "yaml", "PIL"}

@@ -107,6 +107,13 @@ def test_a_warp_without_end_takes_the_rest_of_the_song() -> None:
     assert not timing.judged(np.array([192, 10_000, 1_000_000])).any()
 
 
+@pytest.mark.parametrize("first", ["99999999", "-120"])
+def test_a_first_bpm_that_is_none_gives_way_to_the_next(first: str) -> None:
+    song = sm(BPMS=f"0={first},4=150")  # ITGmania starts no warp before the first change
+    assert song.timing == Timing(((0, Fraction(150)),))
+    assert "negative-timing" in codes(song)
+
+
 def test_stop_before_beat_0_moves_the_offset() -> None:
     timing = sm(BPMS="0=120", STOPS="-4=1", OFFSET="0.5").timing
     assert timing.offset == Fraction(-1, 2)
