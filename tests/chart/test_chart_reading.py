@@ -154,6 +154,7 @@ def test_encodings(encoding: str, words: str) -> None:
     [
         ("\x1b[2Jred\x1b[0m", "red"),
         ("\x1b]0;title\x07x", "x"),
+        ("\x1b]0 unfinished", "0 unfinished"),
         ("a\x00b\x08c", "abc"),
         ("a\u202eb\u200bc", "abc"),
         ("曲　名", "曲 名"),
