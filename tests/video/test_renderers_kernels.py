@@ -8,7 +8,7 @@ import renderers_scene as rs
 
 from dancetutor_cli.video.cpu.background import quantise
 from dancetutor_cli.video.cpu.ground import blur
-from dancetutor_cli.video.cpu.raster import BACK, FRONT, SNAP, clear, fill, skin
+from dancetutor_cli.video.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, clear, fill, skin
 from dancetutor_cli.video.cpu.surfaces import arrow_distance
 from dancetutor_cli.video.geometry import pack
 
@@ -20,14 +20,14 @@ def _random_triangles(seed, count, spread):
     middle = rng.uniform(-10, 70, (count, 1, 2))
     points = np.concatenate([middle + rng.normal(0, spread, (count, 3, 2)), rng.uniform(0.1, 2.0, (count, 3, 1))], 2)
     points[..., :2] = np.round(points[..., :2] * SNAP) / SNAP
-    return points.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+    points = np.concatenate([points, np.zeros((count, 3, 1))], 2)  # turned neither to nor from the viewer
+    return points.reshape(-1, 4), np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
 
 
 def _drawn(points, triangles, keep):
-    depth, ids = np.zeros((HEIGHT, WIDTH), np.float32), np.full((HEIGHT, WIDTH), -1, np.int32)
-    spans = np.tile(np.array([WIDTH, 0]), (HEIGHT, 1))
-    fill(points, triangles, keep, 0, depth, ids, spans)
-    return depth, ids, spans
+    nearest, spans = np.zeros((HEIGHT, WIDTH), np.int64), np.tile(np.array([WIDTH, 0]), (HEIGHT, 1))
+    fill(points, triangles, keep, 0, nearest, spans)
+    return (nearest >> 32) / DEPTH_UNIT, (nearest & 0xFFFFFFFF) - 1, nearest, spans
 
 
 def _reference(points, triangles, keep):
@@ -35,7 +35,7 @@ def _reference(points, triangles, keep):
     y, x = np.mgrid[:HEIGHT, :WIDTH] + 0.5
     depth, ids, edge = np.zeros((HEIGHT, WIDTH)), np.full((HEIGHT, WIDTH), -1), np.full((HEIGHT, WIDTH), np.inf)
     for number, corners in enumerate(points[triangles]):
-        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = corners
+        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = corners[:, :3]
         # With y downwards, counter-clockwise triangles have a negative area.
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
         if area == 0 or (area > 0) == (keep == FRONT):
@@ -53,7 +53,7 @@ def _reference(points, triangles, keep):
 @pytest.mark.parametrize(("seed", "count", "spread"), [(1, 6, 30), (2, 60, 8), (3, 400, 2)])
 def test_fill_agrees_with_barycentric_coordinates(seed, count, spread, keep):
     points, triangles = _random_triangles(seed, count, spread)
-    depth, ids, _ = _drawn(points, triangles, keep)
+    depth, ids, _, _ = _drawn(points, triangles, keep)
     expected_depth, expected_ids, edge = _reference(points, triangles, keep)
     clear_cut = edge > 1e-9
     assert clear_cut.mean() > 0.9 and (expected_ids[clear_cut] >= 0).sum() > 20
@@ -73,24 +73,24 @@ def test_triangles_that_share_edges_leave_no_gap_and_do_not_overlap_much():
         (r * n + c, r * n + c + 1, (r + 1) * n + c, (r + 1) * n + c + 1) for r in range(n - 1) for c in range(n - 1)
     ]
     triangles = np.array([t for a, b, c, d in cells for t in ((a, c, b), (b, c, d))], np.int32)
-    _, ids, _ = _drawn(points, triangles, FRONT)
+    _, ids, _, _ = _drawn(points, triangles, FRONT)
     assert (ids[5:35, 5:55] >= 0).all() and (ids[:5] < 0).all() and (ids[:, 55:] < 0).all()
 
 
 def test_spans_hold_all_that_is_drawn_and_clear_forgets_it():
     points, triangles = _random_triangles(7, 5, 6)
-    depth, ids, spans = _drawn(points, triangles, FRONT)
+    _, ids, nearest, spans = _drawn(points, triangles, FRONT)
     for row in range(HEIGHT):
         used = np.flatnonzero(ids[row] >= 0)
         if len(used):
             assert spans[row, 0] <= used[0] and used[-1] < spans[row, 1]
-    clear(depth, ids, spans)
-    assert (depth == 0).all() and (ids == -1).all() and (spans == [WIDTH, 0]).all()
+    clear(nearest, spans)
+    assert (nearest == 0).all() and (spans == [WIDTH, 0]).all()
 
 
 def test_vertices_behind_the_camera_are_left_out():
     points = np.array([[5.0, 5, 1], [5, 30, 1], [30, 5, 0]])
-    _, ids, _ = _drawn(points, np.array([[0, 1, 2]], np.int32), FRONT)
+    _, ids, _, _ = _drawn(points, np.array([[0, 1, 2]], np.int32), FRONT)
     assert (ids == -1).all()
 
 

@@ -12,7 +12,9 @@ import numpy as np
 from numba import njit
 
 SNAP = 16.0
+DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m
 FRONT, BACK = 1, -1
+_AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 
 @njit(cache=True)
@@ -71,9 +73,12 @@ def project(world: Any, camera: Any, samples: float, near: float, points: Any) -
 
 @njit(cache=True)
 def project_hull(
-    world: Any, camera: Any, samples: float, near: float, width: float, focal: float, out: Any
+    world: Any, camera: Any, eye: Any, samples: float, near: float, width: float, focal: float, out: Any
 ) -> None:  # pragma: no cover
-    """As `project`, but moved outward on the picture by `width` pixels, and a centimetre away from the camera."""
+    """As `project`, but moved outward on the picture by `width` pixels, and a centimetre away from the camera.
+
+    out (v, 4): the last column is the cosine between normal and the direction to the eye
+    """
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]
@@ -91,6 +96,8 @@ def project_hull(
         out[v, 0] = np.floor((px + dx * grow) * samples * SNAP + 0.5) / SNAP
         out[v, 1] = np.floor((py + dy * grow) * samples * SNAP + 0.5) / SNAP
         out[v, 2] = 1.0 / (w + 0.01)
+        vx, vy, vz = eye[0] - x, eye[1] - y, eye[2] - z
+        out[v, 3] = (nx * vx + ny * vy + nz * vz) / np.sqrt(vx * vx + vy * vy + vz * vz)
 
 
 @njit(cache=True)
@@ -106,16 +113,29 @@ def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) ->
         out[v, 2] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z + 100.0
 
 
-@njit(cache=True)
-def fill(
-    points: Any, triangles: Any, keep: int, offset: int, depth: Any, ids: Any, spans: Any
-) -> None:  # pragma: no cover
-    """Draw triangles into `depth` (greatest wins) and their number + `offset` into `ids`.
+@njit(cache=True, inline="always")
+def _within(edge: float, step: float, low: float, high: float) -> Any:  # pragma: no cover
+    """The part of low..high in which ``edge + k * step`` is not negative; an empty one has high < low.
 
-    points (v, 3): x, y in samples, depth; a triangle with a depth of 0 is left out. keep: FRONT or BACK.
+    Both are multiples of 1 / SNAP**2 and far below 2**26, so that a rounded division cannot pass a whole number.
+    """
+    if step > 0.0:
+        return max(low, -edge / step), high
+    if step < 0.0:
+        return low, min(high, -edge / step)
+    return low, high if edge >= 0.0 else -1.0
+
+
+@njit(cache=True)
+def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, spans: Any) -> None:  # pragma: no cover
+    """Draw triangles into `nearest`, int64: the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and
+    the number + `offset` + 1 of that triangle in its lower half; 0 where there is nothing.
+
+    points (v, 3): x, y in samples, 1 / depth; a triangle with a 0 there is left out. keep: FRONT or BACK; for backs
+    points (v, 4) has a column from `project_hull`, and those that only the front could hide are left out.
     spans (rows, 2): grown to the first column drawn on and the one after the last, in each row
     """
-    height, width = depth.shape
+    height, width = nearest.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
@@ -125,6 +145,8 @@ def fill(
         if area * keep <= 0.0:
             continue
         if z0 == 0.0 or z1 == 0.0 or z2 == 0.0:
+            continue
+        if keep == BACK and points[a, 3] < _AWAY and points[b, 3] < _AWAY and points[c, 3] < _AWAY:
             continue
         left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
         right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
@@ -141,21 +163,23 @@ def fill(
         e0 = (px - x1) * sx0 + (py - y1) * sy0
         e1 = (px - x2) * sx1 + (py - y2) * sy1
         e2 = (px - x0) * sx2 + (py - y0) * sy2
-        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / -area
-        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / -area
-        zrow = z0 + (px - x0) * zx + (py - y0) * zy
-        number = t + offset
+        unit = DEPTH_UNIT / -area
+        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) * unit
+        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) * unit
+        zrow = z0 * DEPTH_UNIT + (px - x0) * zx + (py - y0) * zy
+        number = t + offset + 1
         for y in range(top, bottom + 1):
             spans[y, 0] = min(spans[y, 0], left)
             spans[y, 1] = max(spans[y, 1], right + 1)
-            f0, f1, f2, z = e0, e1, e2, zrow
-            for x in range(left, right + 1):
-                if f0 >= 0.0 and f1 >= 0.0 and f2 >= 0.0 and z > depth[y, x]:
-                    depth[y, x] = z
-                    ids[y, x] = number
-                f0 += sx0
-                f1 += sx1
-                f2 += sx2
+            low, high = _within(e0, sx0, 0.0, float(right - left))
+            low, high = _within(e1, sx1, low, high)
+            low, high = _within(e2, sx2, low, high)
+            first = int(np.ceil(low))
+            z = zrow + first * zx
+            for x in range(left + first, left + int(np.floor(high)) + 1):
+                key = (int(z) << 32) | number
+                if key > nearest[y, x]:
+                    nearest[y, x] = key
                 z += zx
             e0 += sy0
             e1 += sy1
@@ -183,27 +207,26 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
             continue
         zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / -area
         zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / -area
+        px = left + 0.5
         for y in range(top, bottom + 1):
             py = y + 0.5
-            for x in range(left, right + 1):
-                px = x + 0.5
-                if (
-                    (px - x1) * (y2 - y1) - (py - y1) * (x2 - x1) >= 0.0
-                    and (px - x2) * (y0 - y2) - (py - y2) * (x0 - x2) >= 0.0
-                    and (px - x0) * (y1 - y0) - (py - y0) * (x1 - x0) >= 0.0
-                ):
-                    z = z0 + (px - x0) * zx + (py - y0) * zy
-                    if z > depth[y, x]:
-                        depth[y, x] = z
+            low, high = _within((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1), y2 - y1, 0.0, float(right - left))
+            low, high = _within((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2), y0 - y2, low, high)
+            low, high = _within((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), y1 - y0, low, high)
+            first = int(np.ceil(low))
+            z = z0 + (px + first - x0) * zx + (py - y0) * zy
+            for x in range(left + first, left + int(np.floor(high)) + 1):
+                if z > depth[y, x]:
+                    depth[y, x] = z
+                z += zx
 
 
 @njit(cache=True)
-def clear(depth: Any, ids: Any, spans: Any) -> None:  # pragma: no cover
+def clear(nearest: Any, spans: Any) -> None:  # pragma: no cover
     """Forget what `fill` has drawn: the rows of `spans`, and the spans."""
-    height, width = depth.shape
+    height, width = nearest.shape
     for y in range(height):
         for x in range(spans[y, 0], spans[y, 1]):
-            depth[y, x] = 0.0
-            ids[y, x] = -1
+            nearest[y, x] = 0
         spans[y, 0] = width
         spans[y, 1] = 0

@@ -54,10 +54,10 @@ class CpuRenderer:
         self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
         self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)
-        self._points, self._hull, self._light_points = (np.empty((count, 3)) for _ in range(3))
+        self._points, self._light_points, self._hull = (np.empty((count, n)) for n in (3, 3, 4))
         width, height = size
         shape = (height * self._samples, width * self._samples)
-        self._depth, self._ids = np.zeros(shape, np.float32), np.full(shape, -1, np.int32)
+        self._nearest = np.zeros(shape, np.int64)
         self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
@@ -123,20 +123,21 @@ class CpuRenderer:
         matrix = camera.matrix(self._size)
         focal = camera.focal * self._size[1]
         outline = self._scene.look.toon.outline_width * self._size[1] / 720.0
+        eye = np.array(camera.position)
         project(self._world, matrix, float(samples), NEAR, self._points)
-        project_hull(self._world, matrix, float(samples), NEAR, outline, focal, self._hull)
-        clear(self._depth, self._ids, self._spans)
+        project_hull(self._world, matrix, eye, float(samples), NEAR, outline, focal, self._hull)
+        clear(self._nearest, self._spans)
         count = len(triangles)
-        fill(self._points, triangles, FRONT, 0, self._depth, self._ids, self._spans)
-        fill(self._hull, triangles, BACK, count, self._depth, self._ids, self._spans)
+        fill(self._points, triangles, FRONT, 0, self._nearest, self._spans)
+        fill(self._hull, triangles, BACK, count, self._nearest, self._spans)
         light_vertices(
-            self._world, self._points, mesh.uv, mesh.material, np.array(camera.position), cast.axes, cast.origin,
+            self._world, self._points, mesh.uv, mesh.material, eye, cast.axes, cast.origin,
             cast.scale, self._vertex,
         )  # fmt: skip
         _, _, forward = camera.axes()
         distance = ((self._world[0, :3] - camera.position) * forward).sum()
         self._toon[PER_METRE] = focal / max(distance, NEAR)
         resolve(
-            self._out, samples, self._ids, self._depth, self._spans, count, triangles, mesh.patch, mesh.density,
+            self._out, samples, self._nearest, self._spans, count, triangles, mesh.patch, mesh.density,
             self._vertex, *self._skins, self._shadow, self._toon,
         )  # fmt: skip

@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.video.cpu.surfaces import smooth
 from dancetutor_cli.video.look import ToonLook
 from dancetutor_cli.video.textures import LEVELS
 
@@ -18,7 +17,8 @@ Array = NDArray[np.float64]
 # Places in the rows that `light_vertices` writes, one row of 64 bytes for each vertex.
 _X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = range(12)
 # Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
-_BANDS, _SOFT, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
+_BANDS, _STEEP, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
+_RIM_WIDTH = 0.2
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
@@ -28,7 +28,8 @@ def toon_numbers(toon: ToonLook, cast: bool) -> Array:
     The last, `PER_METRE`, is for the pixels that a metre of the dancer has, which changes with the camera.
     """
     shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
-    numbers = [*toon.bands, toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast), 0.0]
+    starts = [edge - toon.soft for edge in toon.bands]  # each edge is a step from here, 1 / steepness wide
+    numbers = [*starts, 0.5 / toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast), 0.0]
     return np.array(numbers, dtype=np.float64)
 
 
@@ -55,6 +56,13 @@ def light_vertices(
         out[v, _SV] = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
         out[v, _HEIGHT] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
         out[v, _U], out[v, _V], out[v, _MATERIAL] = uv[v, 0], uv[v, 1], material[v]
+
+
+@njit(cache=True, inline="always")
+def _step(t: float) -> float:  # pragma: no cover
+    """0 below 0, 1 above 1, a cubic between."""
+    t = min(1.0, max(0.0, t))
+    return t * t * (3.0 - 2.0 * t)
 
 
 @njit(cache=True, inline="always")
@@ -107,28 +115,27 @@ def _colour(
     """Colour 0..1 of the triangle of vertices a, b, c at a place in samples; dense : texels a metre, a little less."""
     x0, y0, x1, y1 = vertex[a, _X], vertex[a, _Y], vertex[b, _X], vertex[b, _Y]
     x2, y2 = vertex[c, _X], vertex[c, _Y]
-    # Weights on the picture, kept inside of the triangle: a pixel's middle may lie just outside.
-    inverse = 1.0 / ((x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0))
-    w0 = max(((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1)) * inverse, 0.0)
-    w1 = max(((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2)) * inverse, 0.0)
-    w2 = max(1.0 - w0 - w1, 0.0)
-    w0, w1, w2 = w0 * vertex[a, _W], w1 * vertex[b, _W], w2 * vertex[c, _W]
+    # Weights on the picture, kept inside of the triangle (a pixel's middle may lie just outside), then in space.
+    w0 = max((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1), 0.0) * vertex[a, _W]
+    w1 = max((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2), 0.0) * vertex[b, _W]
+    w2 = max((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), 0.0) * vertex[c, _W]
     total = 1.0 / (w0 + w1 + w2)
     w0, w1, w2 = w0 * total, w1 * total, w2 * total
     to_light = vertex[a, _TO_LIGHT] * w0 + vertex[b, _TO_LIGHT] * w1 + vertex[c, _TO_LIGHT] * w2
     facing = vertex[a, _FACING] * w0 + vertex[b, _FACING] * w1 + vertex[c, _FACING] * w2
     up = vertex[a, _UP] * w0 + vertex[b, _UP] * w1 + vertex[c, _UP] * w2
-    sun, soft = 1.0, toon[_SOFT]
-    if toon[_CAST] > 0.0 and to_light > toon[_BANDS] - soft:
+    sun = 1.0
+    if toon[_CAST] > 0.0 and to_light > toon[_BANDS]:
         su = vertex[a, _SU] * w0 + vertex[b, _SU] * w1 + vertex[c, _SU] * w2
         sv = vertex[a, _SV] * w0 + vertex[b, _SV] * w1 + vertex[c, _SV] * w2
         height = vertex[a, _HEIGHT] * w0 + vertex[b, _HEIGHT] * w1 + vertex[c, _HEIGHT] * w2
         sun = _sunlit(shadow, su, sv, height + 100.0)
-    half = smooth(toon[_BANDS] - soft, toon[_BANDS] + soft, to_light) * sun
-    full = smooth(toon[_BANDS + 1] - soft, toon[_BANDS + 1] + soft, to_light) * sun
+    half = _step((to_light - toon[_BANDS]) * toon[_STEEP]) * sun
+    full = _step((to_light - toon[_BANDS + 1]) * toon[_STEEP]) * sun
     level = toon[_LEVELS] + (toon[_LEVELS + 1] - toon[_LEVELS]) * half
     level = (level + (toon[_LEVELS + 2] - toon[_LEVELS + 1]) * full) * (0.95 + 0.05 * up)
-    rim = toon[_RIM] * smooth(toon[_RIM + 1], toon[_RIM + 1] + 0.2, 1.0 - facing) * (0.6 + 0.4 * up)
+    rim = 1.0 - facing - toon[_RIM + 1]
+    rim = toon[_RIM] * _step(rim * (1.0 / _RIM_WIDTH)) * (0.6 + 0.4 * up) if rim > 0.0 else 0.0
     m = int(vertex[a, _MATERIAL])
     u = vertex[a, _U] * w0 + vertex[b, _U] * w1 + vertex[c, _U] * w2
     v = vertex[a, _V] * w0 + vertex[b, _V] * w1 + vertex[c, _V] * w2
@@ -146,13 +153,12 @@ def _colour(
 
 @njit(cache=True)
 def resolve(
-    out: Any, samples: int, ids: Any, depth: Any, spans: Any, count: int, triangles: Any, patch: Any,
+    out: Any, samples: int, nearest: Any, spans: Any, count: int, triangles: Any, patch: Any,
     density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any,
 ) -> None:  # fmt: skip  # pragma: no cover
     """Put the samples on the picture.
 
-    ids : triangle of each sample, -1 for none, those from `count` on are outline; depth : 1 / depth of each sample;
-    spans : the columns of samples in use in each row of them.
+    nearest, spans : what `raster.fill` has drawn; triangles from `count` on are outline.
     One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
     total = samples * samples
@@ -168,10 +174,10 @@ def resolve(
             k = 0
             for j in range(samples):
                 for i in range(samples):
-                    seen[k] = ids[row * samples + j, column * samples + i]
-                    if seen[k] >= 0:
-                        depths[k] = depth[row * samples + j, column * samples + i]
-                        covered += 1
+                    key = nearest[row * samples + j, column * samples + i]
+                    seen[k] = (key & 0xFFFFFFFF) - 1
+                    depths[k] = key >> 32
+                    covered += key != 0
                     k += 1
             if covered == 0:
                 continue
