@@ -79,8 +79,6 @@ class TestBadInput:
     def test_no_such_difficulty(self, name: str, tmp_path: Path) -> None:
         song = shutil.copytree(SONG.parent, tmp_path / "song") / SONG.name
         before = files_of(tmp_path)
-        if name == "annotate":
-            pytest.skip("annotate writes all charts of a file and selects none")
         assert_one_clear_line(
             run([name, song, "--steps-type", "dance-double", "--difficulty", "easy"], tmp_path), "hard"
         )
@@ -97,7 +95,8 @@ class TestBadInput:
 
     def test_unknown_preset(self, name: str, tmp_path: Path) -> None:
         copy = shutil.copytree(SONG.parent, tmp_path / "song") / SONG.name
-        assert_one_clear_line(run([name, copy, "--preset", "gpt"], tmp_path), "gpt", "thesis")
+        chart = (copy, "--steps-type", "dance-single", "--difficulty", "easy")
+        assert_one_clear_line(run([name, *chart, "--preset", "gpt"], tmp_path), "gpt", "thesis")
 
 
 @pytest.mark.parametrize(("name", "suffix"), [("animate", "npz"), ("animate", "glb"), ("render", "mp4")])
