@@ -120,8 +120,8 @@ def open_film(report: Report, job: FilmJob) -> Opened:
     for old in folder.parent.glob(f"{_escaped(job.output.name)}.????????????"):
         if old != folder:
             shutil.rmtree(old, ignore_errors=True)
-    folder.mkdir(parents=True, exist_ok=True)
     prepared = prepare(job.request, subject)
+    folder.mkdir(parents=True, exist_ok=True)
     write_plan(prepared.plan, plan)
     sound = write_sound(prepared, job.encoding, folder)
     parts = tuple(segments(frames, job.encoding, folder))

@@ -82,9 +82,8 @@ def attempt(task: Task, report: Report) -> Done:
         where = f"{error.filename}: " if error.filename else ""
         return Done(task.key, error=UnavailableError(f"{where}{error.strerror or error}"))
     except Exception as error:
-        return Done(
-            task.key, error=WorkFailedError(f"{type(error).__name__}: {error} (this is a fault of the program)")
-        )
+        said = (str(error).strip().splitlines() or [""])[-1][:300]
+        return Done(task.key, error=WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}"))
 
 
 class SerialWorkers:

@@ -76,7 +76,7 @@ class FilmProgress:
         speed = self.done / self.fps / max(1e-6, now - self.began) if self.fps else 0.0
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, advance=frames, speed=f"{speed:.2f}x")
-        elif not self.quiet and self.fps and now - self.told >= EVERY:
+        elif not self.quiet and self.fps and self.done and now - self.told >= EVERY:
             self.told = now
             left = (self.frames - self.done) / self.fps / max(speed, 1e-6)
             seconds = f"{self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s"
