@@ -19,6 +19,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_points
 
 Array = NDArray[np.float64]
+LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
 FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
 SLAP = 0.8  # metres per second with which a palm meets the floor at least
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
@@ -41,6 +42,7 @@ def arm_targets(
     upright = quat.swing_twist(chest, UP)[1]
     hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
     wrists = shoulders + quat.rotate(upright[:, None], hang) + lag
+    wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
     out = np.array([[1.0], [-1.0]]) * np.array([0.7, 0.0, 0.0]) + np.array([0.0, -0.25, -0.75])
     elbows = quat.rotate(upright[:, None], out)
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
@@ -113,18 +115,22 @@ def _press(
     skeleton: Skeleton, settings: MotionSettings,
 ) -> None:  # fmt: skip
     down, side = settings.hands.reach_down, press.side
-    near = np.flatnonzero((at > press.start - down) & (at < press.end + down))
+    near = np.flatnonzero((at > press.start - press.lead) & (at < press.end + down))
     if not len(near):
         return
     t = at[near]
     middle = shoulders[near].mean(axis=1)
     panel = np.array([press.target[0], 0.0, press.target[1]])
-    fingers = panel - middle[np.argmin(np.abs(t - press.start))]
+    note = np.argmin(np.abs(t - press.start))
+    away, across = panel - middle[note], shoulders[near[note], 0] - shoulders[near[note], 1]
+    front = np.array([-across[2], 0.0, across[0]]) / np.hypot(across[0], across[2])
+    # a hand behind the body keeps its fingers to the front: no wrist turns round
+    fingers = front + 0.8 * away if np.dot(away, front) > 0 else front + 0.3 * away
     fingers[1] = 0.0
     fingers /= max(float(np.linalg.norm(fingers)), 1e-6)
     hand = palm_down(skeleton, side, fingers)
     wrist = panel - quat.rotate(hand, palm_points(skeleton)[side].offset)
-    going = np.clip((t - press.start + down) / down, 0.0, 1.0)
+    going = np.clip((t - press.start + press.lead) / press.lead, 0.0, 1.0)
     leaving = np.clip((t - press.end) / down, 0.0, 1.0)
     across = smooth(going) * (1.0 - smooth(leaving))
     # straight down at a definite speed, so that the touch has a time; up again softly

@@ -69,11 +69,12 @@ def body_path(
     else:
         mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
     ground = mass_ground - above[:, [0, 2]]
-    yaw = smooth_path(_yaw_target(plan.turns, times)[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
+    turned = _yaw_target(plan.turns, times) + _turned_for_hands(plan.presses, times, settings)
+    yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
     bent = _bent(plan.presses, deeper, times, settings)
     mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
-    chest, head = _looking(yaw, ground, rate, settings)
+    chest, head = _looking(yaw, plan.presses, times, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
@@ -166,12 +167,26 @@ def _wrapped(angle: Array) -> Array:
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
-def _looking(yaw: Array, ground: Array, rate: float, settings: MotionSettings) -> tuple[Array, Array]:
+def _turned_for_hands(presses: tuple[Press, ...], times: Array, settings: MotionSettings) -> Array:
+    """How far (n,) the body turns to the side of a hand that reaches behind it, radians."""
+    out = np.zeros(len(times))
+    for press in presses:
+        if press.turn != 0.0:
+            out += press.turn * press_share(press, times, settings.hands.reach_down)
+    return out
+
+
+def _looking(
+    yaw: Array, presses: tuple[Press, ...], times: Array, ground: Array, rate: float, settings: MotionSettings
+) -> tuple[Array, Array]:
     """Chest and head keep to the screen as far as they can (thesis 5.7); when the body turns past, they whip round."""
     look = settings.look
     ones = np.ones(len(yaw))
     gap = _wrapped(screen_yaw(ground, settings) - yaw)
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
+    for press in (p for p in presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
+        share = press_share(press, times, settings.hands.reach_down)
+        torso = torso + share * (np.copysign(np.radians(look.torso_limit), press.turn) - torso)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     chest = yaw + follow(smooth_path(torso[:, None], ones, rate, 0.05), rate, controller)[:, 0]
     gap = _wrapped(screen_yaw(ground, settings) - chest)
@@ -215,7 +230,10 @@ def _tilt(
             down = settings.hands.reach_down
             near = (times > press.start - down) & (times < press.end + down)
             to = np.array(press.target) - ground[near] + 0.15 * forward[near]
-            to /= np.maximum(np.linalg.norm(to, axis=1, keepdims=True), 0.05)
+            off = _wrapped(np.arctan2(to[:, 0], to[:, 1]) - chest[near])
+            most = np.radians(settings.hands.bend_aside)
+            way = chest[near] + np.clip(off, -most, most)
+            to = np.column_stack((np.sin(way), np.cos(way)))
             s = smooth((times[near] - press.start + down) / down) * smooth((press.end + down - times[near]) / down)
             tilt[near] = tilt[near] + s[:, None] * (np.radians(settings.hands.bend) * to - tilt[near])
     return smooth_path(tilt, np.ones(len(times)), rate, 0.05)

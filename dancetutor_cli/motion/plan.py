@@ -307,8 +307,19 @@ class Planner:
         panel = _pair(self.panels[column])
         if limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
             end = max(time + self.settings.hands.press, end if end < np.inf else 0.0)
-            self.presses.append(Press(time, end, limb - Limb.LEFT_HAND, panel))
+            side = limb - Limb.LEFT_HAND
+            before = [p.end for p in self.presses if p.side == side]
+            lead = min(self.settings.hands.reach_down, max(time - before[-1], SHORTEST) if before else np.inf)
+            self.presses.append(Press(time, end, side, panel, self._turn_to_panel(side, panel), lead))
         self.contacts.append(Contact(time, end, limb, column, kind, int(self.play.part[i, column]), i, panel))
+
+    def _turn_to_panel(self, side: int, panel: tuple[float, float]) -> float:
+        """How far the body turns to the hand's side, radians, for a panel that is not before it."""
+        hands = self.settings.hands
+        away = np.array(panel) - (self.feet[0].ball + self.feet[1].ball) / 2
+        off = (np.arctan2(away[0], away[1]) - self._turned_to() + np.pi) % (2 * np.pi) - np.pi
+        beyond = np.clip(abs(np.degrees(off)) - hands.turn_from, 0.0, hands.turn_most)
+        return float(np.radians(beyond) * (1.0 if side == 0 else -1.0))
 
     def _ended(self, contact: Contact) -> Contact:
         """A tap ends when its foot leaves the panel."""

@@ -84,6 +84,9 @@ class HandSettings:
     press: float
     pelvis: float
     bend: float
+    bend_aside: float
+    turn_from: float
+    turn_most: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,12 +58,18 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """A palm is on a panel from `start` to `end`; side 0 left, 1 right; target (x, z)."""
+    """A palm is on a panel from `start` to `end`; side 0 left, 1 right; target (x, z).
+
+    turn : radians that the body turns to the hand's side for it, because the panel lies behind; positive left
+    lead : seconds that the hand has for the way down, after its last panel
+    """
 
     start: float
     end: float
     side: int
     target: tuple[float, float]
+    turn: float = 0.0
+    lead: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
