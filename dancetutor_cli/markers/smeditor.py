@@ -65,6 +65,8 @@ def _rewrite(path: Path, old: bytes | None, new: dict[_Key, list[list[Any]]]) ->
         listed = written.setdefault(steps_type, [])
         listed.extend({"overrides": []} for _ in range(place + 1 - len(listed)))
         listed[place] = {"overrides": added}
+    if before is not None and not any(entry["overrides"] for entries in written.values() for entry in entries):
+        return before.encode("utf-8")  # every foot is theirs already
     data[OURS] = {"parity": written} if before is None else {"parity": written, "before": before}
     return _compact(data).encode("utf-8")
 
