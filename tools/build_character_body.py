@@ -18,6 +18,7 @@ from build_character_sdf import (
     ellipsoid,
     grow,
     half_space,
+    near,
     stack,
     tube,
 )
@@ -122,13 +123,14 @@ def hand() -> Shape:
             a, s = np.radians(bend), np.radians(spread)
             points.append(points[-1] + bone * (np.cos(a) * (np.cos(s) * ARM + np.sin(s) * FRONT) + np.sin(a) * PALM))
             bend += 17 + 2 * k
-        fingers.append(tube(points, [radius * f for f in (1.06, 1.0, 0.92, 0.74)], steps=3))
+        fingers.append(tube(points, [radius * f for f in (1.06, 1.0, 0.94, 0.82)], steps=3))
     thumb_at = [(0.012, 0.016, 0.006), (0.040, 0.044, 0.015), (0.066, 0.056, 0.021), (0.090, 0.062, 0.023)]
     thumb = tube(
         [on_arm(wrist + a, f + 0.006, palm=n) for a, f, n in thumb_at], [0.0165, 0.0142, 0.0112, 0.0085], steps=3
     )
     inner = cone(on_arm(wrist + 0.03, -0.012, palm=0.008), on_arm(wrist + 0.062, 0.010, palm=0.006), 0.012, 0.012)
-    return blend(0.010, blend(0.014, *palm, inner), blend(0.0015, *fingers), thumb)
+    whole = blend(0.010, blend(0.014, *palm, inner), blend(0.0015, *fingers), thumb)
+    return near(whole, (0.46, 0.86, -0.06), (0.68, 1.07, 0.10))
 
 
 def arm() -> Shape:
@@ -184,7 +186,8 @@ def shoe_upper() -> Shape:
         (0.142, 0.0425, 0.046, 0.048, -0.019),
     ]
     collar = common(stack((x, 0, 0), UP, FRONT, rows), half_space((0, 0.132, 0), (0, 1, -0.12)), 0.004)
-    whole = blend(0.03, blend(0.035, toe, middle), heel, collar)
+    last = ellipsoid((x, 0.025, 0.040), (0.0350, 0.032, 0.105))
+    whole = blend(0.03, blend(0.035, toe, middle), heel, collar, last)
     hollow = ellipsoid((x, 0.148, -0.019), (0.0365, 0.026, 0.040))
     return common(carve(whole, hollow, 0.004), half_space((0, 0.012, 0), -UP), 0.004)
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 from build_character_body import REST
 from build_character_loft import Lofted, rope
-from build_character_sdf import Array, Shape, blend, both, cone, ellipsoid, scaled, tube
+from build_character_sdf import Array, Shape, blend, both, carve, cone, ellipsoid, scaled, tube
 
 EYE = REST["l_eyeball_joint"]
 EYE_RADIUS = 0.0367
-LID_EDGE, LOWER_EDGE = 34.0, -36.0  # degrees of elevation on the eyeball; the lid closes by their difference
+LID_EDGE, LOWER_EDGE = 29.0, -37.0  # degrees of elevation on the eyeball; the lid closes by their difference
 LARGER, ABOUT = 1.08, np.array([0.0, 1.53, 0.0])  # the head is drawn at life size and then made larger
 BRAID = [REST[f"braid{k}"] for k in (1, 2, 3, 4)]
 BRAID_TIP = np.array([0.0, 1.205, -0.153])
@@ -39,7 +39,8 @@ def head() -> Shape:
     rim = both(ellipsoid((0.0640, 1.5860, 0.0420), (0.0210, 0.0330, 0.0300)))  # the outer corners of the eyes
     skull = blend(0.020, skull, rim)
     nose = cone((0, 1.574, 0.0865), (0, 1.5595, 0.0955), 0.0040, 0.0066)
-    return scaled(blend(0.014, skull, nose), ABOUT, LARGER)  # the hair covers her ears
+    sockets = both(ellipsoid((0.0365, 1.5860, 0.0920), (0.0250, 0.0215, 0.0270)))
+    return scaled(carve(blend(0.014, skull, nose), sockets, 0.005), ABOUT, LARGER)  # the hair covers her ears
 
 
 def hair() -> Shape:

@@ -116,7 +116,7 @@ def lid(p: Array, n: Array) -> Array:
     edge = np.where(upper, np.abs(elevation - head.LID_EDGE) - 4.0, np.abs(elevation - head.LOWER_EDGE) - 1.2)
     lash = inside(edge, 0.6) * np.where(upper, 1, 0.0)
     rope = (radius > head.EYE_RADIUS + np.where(upper, 0.00215, 0.00135)) & (edge < 8)
-    return over(over(base, LASH, lash), np.where(upper, 1.0, 1.0)[:, None] * LASH, rope * np.where(upper, 1.0, 0.75))
+    return over(over(base, LASH, lash), LASH, rope * np.where(upper, 1.0, 0.35))
 
 
 def eye(side: int) -> Paint:

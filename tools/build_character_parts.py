@@ -96,22 +96,23 @@ def surfaces() -> dict[str, Callable[[], Lofted]]:
     """Makers of the parts that are modelled with distance functions: shape, box, grid, edge length."""
     leg = ramp(
         [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
-        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0245, 0.0245, 0.0200, 0.028],
+        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0255, 0.0255, 0.0205, 0.030],
         lambda p: p[:, 1],
     )
     arm = ramp(
-        [0.0, 0.20, 0.24, 0.29, 0.33, 0.44, 0.50, 0.57],
-        [0.022, 0.0195, 0.0150, 0.0150, 0.0195, 0.0160, 0.0112, 0.0079],
+        [0.0, 0.20, 0.24, 0.29, 0.33, 0.44, 0.50, 0.57, 0.63, 0.65],
+        [0.022, 0.0195, 0.0150, 0.0150, 0.0195, 0.0160, 0.0112, 0.0079, 0.0074, 0.0062],
         _along_arm,
     )
+    hairline = ramp([-0.02, 0.045], [0.0195, 0.0108], lambda p: p[:, 2])
     shoe_box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
     braid_box = ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08))
     return {
         "leggings": of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg),
         "arm": of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm),
         "neck": of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)),
-        "hair": of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, even(0.0165)),
-        "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0104)),
+        "hair": of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, hairline),
+        "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0110)),
         "shoe": of_shape(body.shoe_upper(), shoe_box, 0.003, even(0.0140)),
     }
 
@@ -166,5 +167,5 @@ def lid(upper: bool) -> Lofted:
 
 def eye(side: int) -> Lofted:
     """The left (1) or right (-1) eyeball."""
-    points, normals, triangles = head.ball(head.EYE_RADIUS, 18, 12)
+    points, normals, triangles = head.ball(head.EYE_RADIUS, 16, 11)
     return points + head.EYE * [side, 1, 1], normals, triangles

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]
+MARGIN = 0.04  # metres around a box in which a shape is evaluated; larger than any fillet
 
 
 def ellipsoid(centre: ArrayLike, radii: ArrayLike, turn: Array | None = None) -> Shape:
@@ -184,6 +185,19 @@ def mirrored(shape: Shape) -> Shape:
 def both(shape: Shape) -> Shape:
     """A shape modelled on the left (+X), on both sides."""
     return lambda p: shape(np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], axis=1))
+
+
+def near(shape: Shape, low: ArrayLike, high: ArrayLike) -> Shape:
+    """A shape known to lie in a box, evaluated only there: elsewhere the box's distance, never too large, stands in."""
+    lo, hi = np.asarray(low, float), np.asarray(high, float)
+
+    def distance(p: Array) -> Array:
+        out = np.sqrt((np.maximum(np.maximum(lo - p, p - hi), 0) ** 2).sum(1)) + MARGIN
+        inside = out < 2 * MARGIN
+        out[inside] = shape(p[inside])
+        return out
+
+    return distance
 
 
 def scaled(shape: Shape, about: ArrayLike, factor: float) -> Shape:

@@ -14,7 +14,7 @@ RIGHT = np.array([1.0, 0.0, 0.0])
 
 
 def hem() -> Lofted:
-    curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.005, -0.012), RIGHT, FRONT, 40)
+    curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.005, -0.012), RIGHT, FRONT, 36)
     return band(curve, out, 0.026, 0.0070)
 
 
@@ -24,7 +24,7 @@ def cuff() -> Lofted:
 
 
 def collar() -> Lofted:
-    curve = _neck_curve(36)
+    curve = _neck_curve(30)
     normal = gradient(body.shirt_cloth(), curve)
     outside = gradient(body.neckline(), curve)  # away from the neck: the ribbing leans onto the shirt
     across = np.cross(np.roll(curve, -1, 0) - np.roll(curve, 1, 0), normal)
@@ -70,9 +70,9 @@ def sole() -> Lofted:
     """White rubber with a flat bottom on y = 0, higher at the toe, where it is the shoe's cap."""
     x = HIP[0]
     out = [
-        (0.0000, 0.1830), (0.0200, 0.1760), (0.0345, 0.1600), (0.0425, 0.1380), (0.0460, 0.1100), (0.0450, 0.0820),
-        (0.0410, 0.0500), (0.0385, 0.0150), (0.0380, -0.0200), (0.0360, -0.0450), (0.0280, -0.0640), (0.0150, -0.0745),
-        (0.0000, -0.0765),
+        (0.0000, 0.1830), (0.0200, 0.1760), (0.0345, 0.1600), (0.0425, 0.1380), (0.0465, 0.1100), (0.0465, 0.0820),
+        (0.0450, 0.0500), (0.0435, 0.0150), (0.0430, -0.0200), (0.0405, -0.0450), (0.0315, -0.0650), (0.0165, -0.0765),
+        (0.0000, -0.0790),
     ]  # fmt: skip
     inner = [(-w * (1.03 if z > 0.06 else 0.98), z) for w, z in out[-2:0:-1]]
     ring = spline([*out, *inner, out[0]], 1)[:-1]
@@ -133,7 +133,7 @@ def hair_ties() -> Lofted:
         here, after = head.braid_line(np.array([t, t + 0.02]))
         along = (after - here) / np.linalg.norm(after - here)
         across = np.cross(along, RIGHT)
-        a = np.linspace(0, 2 * np.pi, 12, endpoint=False)[:, None]
+        a = np.linspace(0, 2 * np.pi, 10, endpoint=False)[:, None]
         out_way = np.cos(a) * RIGHT + np.sin(a) * across
         out.append(band(here + radius * out_way, out_way, width, 0.010 if radius > 0.02 else 0.007))
     return joined(*out)
