@@ -117,16 +117,43 @@ class Feet:
             late = rows.second[steps.row[moved + 1]] - ended
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
-    def mines_under_held(self) -> Iterator[tuple[int, int]]:
-        """Row and column of every mine on a panel that a foot holds at that moment."""
+    def mines_under_held(self) -> Iterator[tuple[int, int, int]]:
+        """Row, column and foot of every mine under a foot that cannot step aside: held by its other panel, or by
+        the other foot's hold.
+        """
+        rows, play = self._play.rows, self._play
+        mines = np.argwhere(rows.mines).tolist()
+        heads = [self._heads_of(foot) for foot in (0, 1)] if mines else []
+        for row, column in mines:
+            for foot in (0, 1):
+                own, other = (self._holding(heads[limb], row) for limb in (foot, 1 - foot))
+                bracket = own is not None and rows.steps[own, column] and play.limb[own, column] == foot
+                if bracket or (other is not None and row and play.feet[row - 1, foot] == column):
+                    yield row, column, foot
+
+    def _heads_of(self, foot: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Rows in which a foot presses a hold, and the ticks at which it may let go."""
+        holds = np.where(self._play.limb == foot, self._play.rows.hold_end, -1).max(axis=1)
+        row = np.flatnonzero(holds >= 0)
+        return row, holds[row]
+
+    def _holding(self, heads: tuple[NDArray[np.int64], NDArray[np.int64]], row: int) -> int | None:
+        """The row of the hold that is down in a later row, or None."""
+        at = int(np.searchsorted(heads[0], row)) - 1
+        return int(heads[0][at]) if at >= 0 and heads[1][at] > self._play.rows.tick[row] else None
+
+    def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
+        """Row, column and time (s) since the end of a foot's hold on its panel, of each mine that comes so soon."""
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
             feet = (play.limb[:, column] == Limb.LEFT_FOOT) | (play.limb[:, column] == Limb.RIGHT_FOOT)
-            heads = np.flatnonzero(feet & (rows.steps[:, column] == StepKind.HOLD))
+            ends = rows.hold_end[feet & (rows.steps[:, column] == StepKind.HOLD), column]
+            seconds = self._timing.seconds(ends)
             for row in np.flatnonzero(rows.mines[:, column]).tolist():
-                head = int(np.searchsorted(heads, row)) - 1
-                if head >= 0 and rows.hold_end[heads[head], column] > rows.tick[row]:
-                    yield row, column
+                before = int(np.searchsorted(ends, rows.tick[row], side="right")) - 1
+                late = float(rows.second[row] - seconds[before]) if before >= 0 else np.inf
+                if late <= max_seconds + _EPSILON:
+                    yield row, column, late
 
     def mines_before_steps(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since a mine on the same panel, of each step for which a foot has to come."""

@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Song
 
 
-def picture_fault(song: Song, tag: str, sizes: Sequence[str]) -> str | None:
+def picture_fault(song: Song, tag: str, sizes: Sequence[str], *, required: bool) -> str | None:
     """What is wrong with the picture of a tag, or None. `sizes` as "418x164"; empty: every size is right."""
     name = song.tags.get(tag, "").strip()
     if not name:
-        return f"#{tag} is empty"
+        return f"#{tag} is empty" if required else None
     folder = song.path.resolve().parent
     path = (folder / name.replace("\\", "/")).resolve()
     if not path.is_relative_to(folder.parent):

@@ -28,6 +28,11 @@ class FileSubject:
         for warning in self.song.warnings:
             yield warning.code, warning.message, self.place(warning.line)
 
+    def tag_place(self, name: str) -> dict[str, Any]:
+        """Where a tag of the song stands, if it is found as written."""
+        at = self.song.data.upper().find(f"#{name}:".encode())
+        return self.place(None if at < 0 else self.song.data.count(b"\n", 0, at) + 1)
+
     def place(self, line: int | None = None) -> dict[str, Any]:
         """Where a finding about the file stands, as keyword arguments of `Finding`."""
         return {"line": line, "column": None if line is None else 1}

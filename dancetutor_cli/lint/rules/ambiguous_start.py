@@ -13,11 +13,23 @@ if TYPE_CHECKING:
 
 
 class AmbiguousStart(ChartRule):
-    """The first steps can be played as well with the feet exchanged: players will start on different feet.
+    """The first step can be played as well with the other foot: players will start on different feet.
+
+    Needs a cost preset with margins; a play with the other foot that costs the same is a tie.
 
     Bad:
 
-        TODO
+        0100  L
+        0010  R
+        0100  L
+        0010  R
+
+    Better: a panel of one side says which foot begins.
+
+        1000  L
+        0100  R
+        0010  L
+        0001  R
     """
 
     code = "DT207"

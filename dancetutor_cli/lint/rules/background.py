@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class BackgroundSize(FileRule):
     """#BACKGROUND is empty, names a file that is not there, or a picture of an unusual size.
 
-    `sizes`: the sizes that are accepted, as "1920x1080"; an empty list accepts every size.
+    `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "1920x1080"; an
+    empty list accepts every size.
 
     Bad: #BACKGROUND:nowhere.png; Better: a picture of 1920x1080 beside the song.
     """
@@ -26,6 +27,6 @@ class BackgroundSize(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""
-        fault = picture_fault(subject.song, "BACKGROUND", self.options["sizes"])
+        fault = picture_fault(subject.song, "BACKGROUND", self.options["sizes"], required=self.options["required"])
         if fault:
-            yield self.finding(fault, subject.place())
+            yield self.finding(fault, subject.tag_place("BACKGROUND"))

@@ -13,14 +13,14 @@ class BrokenHold(ReaderRule):
         2000
         0000
         1000
-        0003
+        3000
 
     Better:
 
-        2000
+        2000  L
         3000
-        1000
-        0001
+        1000  L
+        0001  R
     """
 
     code = "DT106"

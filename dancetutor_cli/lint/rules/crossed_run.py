@@ -13,13 +13,23 @@ if TYPE_CHECKING:
 
 
 class CrossedRun(ChartRule):
-    """The feet stay crossed over many rows, so the dancer plays with her side or back to the screen.
+    """The feet stay crossed over many rows, so the dancer plays with her side or her back to the screen.
 
     `max_rows`: the longest run of rows with crossed feet that is not reported.
 
-    Bad:
+    Bad (max_rows = 2):
 
-        TODO
+        0100  R
+        0001  L
+        0010  R
+        0001  L
+
+    Better (max_rows = 2):
+
+        0100  R
+        0001  L
+        0100  R
+        1000  L
     """
 
     code = "DT205"

@@ -20,7 +20,17 @@ class Crossover(ChartRule):
 
     Bad:
 
-        TODO
+        1000  L
+        0100  R
+        0001  L
+        0100  R
+
+    Better:
+
+        1000  L
+        0001  R
+        0100  L
+        0001  R
     """
 
     code = "DT204"

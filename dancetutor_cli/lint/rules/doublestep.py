@@ -13,22 +13,22 @@ if TYPE_CHECKING:
 class Doublestep(MoveRule):
     """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
 
-    Players expect left and right in turn; a doublestep in a stream makes them stumble and is mostly an accident of
-    the pattern before it. Doublesteps that a hold forces are not reported.
+    Players expect left and right in turn; a doublestep makes them stumble, and is mostly an accident of the pattern
+    before it. Doublesteps that a hold forces are not reported.
 
-    Bad: the left foot has to play two different arrows:
+    Bad:
 
-        <  .  .  .   L
-        .  .  .  >   R
-        <  .  .  .   L
-        .  v  .  .   L
+        1000  L
+        0001  R
+        1000  L
+        0010  L
 
-    Better: the right foot comes in between:
+    Better:
 
-        <  .  .  .   L
-        .  .  .  >   R
-        <  .  .  .   L
-        .  .  ^  .   R
+        1000  L
+        0001  R
+        0100  L
+        0010  R
     """
 
     code = "DT201"

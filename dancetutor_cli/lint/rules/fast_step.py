@@ -15,11 +15,21 @@ if TYPE_CHECKING:
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
-    `max_speed`: panel widths per second. The straight way from panel to panel counts.
+    `max_speed`: panel widths per second, on the straight way from panel to panel.
 
-    Bad:
+    Bad (max_speed = 2): the left foot crosses the whole pad in half a second.
 
-        TODO
+        1000  L
+        0001  L
+        0000
+        0000
+
+    Better (max_speed = 2):
+
+        1000  L
+        0001  R
+        0000
+        0000
     """
 
     code = "DT305"

@@ -19,7 +19,17 @@ class Footswitch(ChartRule):
 
     Bad:
 
-        TODO
+        1000  L
+        0100  R
+        0100  L
+        0001  R
+
+    Better:
+
+        1000  L
+        0100  R
+        0010  L
+        0001  R
     """
 
     code = "DT212"

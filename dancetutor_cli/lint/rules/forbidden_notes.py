@@ -17,18 +17,18 @@ class ForbiddenNotes(ChartRule):
 
     `kinds`: any of mine, roll, hold, lift, fake, jump, hand (three or more steps at once), keysound.
 
-    Bad where mines are not allowed:
+    Bad (kinds = [mine]):
 
-        1000
+        1000  L
         00M0
-        0001
+        0001  R
         0000
 
-    Better:
+    Better (kinds = [mine]):
 
-        1000
+        1000  L
         0000
-        0001
+        0001  R
         0000
     """
 

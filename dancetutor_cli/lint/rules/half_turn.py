@@ -13,11 +13,21 @@ if TYPE_CHECKING:
 
 
 class HalfTurn(ChartRule):
-    """Between two rows the body turns by 180 degrees: from facing one side of the room to facing the other.
+    """Between two rows the body turns by 180 degrees at once, from facing one side of the room to facing the other.
 
     Bad:
 
-        TODO
+        0100  L
+        0010  R
+        0110  RL
+        0000
+
+    Better:
+
+        0100  L
+        0010  R
+        0110  LR
+        0000
     """
 
     code = "DT304"

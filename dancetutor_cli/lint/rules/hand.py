@@ -11,15 +11,23 @@ if TYPE_CHECKING:
 
 
 class Hand(MoveRule):
-    """Both feet are busy, so a hand has to press a panel.
+    """Both feet are busy, so a hand has to press a panel, in a chart whose players do not use hands yet.
 
-    Bad in an easy chart: three panels at once:
+    Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
 
-        <  v  .  >
+    Bad:
 
-    Better: a jump:
+        1000  L
+        0100  R
+        1101  L>R
+        0000
 
-        <  .  .  >
+    Better:
+
+        1000  L
+        0100  R
+        1001  LR
+        0000
     """
 
     code = "DT302"

@@ -17,7 +17,9 @@ class HiddenNote(ChartRule):
 
     That may be a gimmick. Notes in a run count once.
 
-    Bad: taps inside #WARPS or #FAKES. Better: fake notes (F), or none.
+    Bad: taps inside #WARPS or #FAKES.
+
+    Better: fake notes (F), or none.
     """
 
     code = "DT402"

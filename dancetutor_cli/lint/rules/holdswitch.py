@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class Holdswitch(ChartRule):
     """A hold has to be handed from one foot to the other while it lasts.
 
-    Bad:
+    Bad: the left foot holds and is needed on a panel the right foot cannot reach.
 
-        TODO
+    Better: end the hold before that step.
     """
 
     code = "DT211"

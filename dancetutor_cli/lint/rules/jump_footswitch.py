@@ -11,16 +11,21 @@ if TYPE_CHECKING:
 
 
 class JumpFootswitch(MoveRule):
-    """In this jump a foot that already stands on one of its panels has to change to the other one.
+    """In this jump a foot that already stands on one of its panels has to change to another one.
 
-    Bad: the right foot stands on the up arrow and must leave it in mid-air:
+    Bad:
 
-        <  .  .  .   L
-        .  .  ^  .   R
-        .  v  .  .   L
-        <  .  ^  .   must be shared the other way round
+        1000  L
+        0010  R
+        0001  R
+        1001  RL
 
-    Better: a jump on the panels that the feet stand on, or on two new ones.
+    Better:
+
+        1000  L
+        0010  R
+        0001  R
+        1001  LR
     """
 
     code = "DT206"

@@ -19,7 +19,17 @@ class JumpSpin(ChartRule):
 
     Bad:
 
-        TODO
+        1000  L
+        0100  R
+        0001  L
+        0011  RL
+
+    Better:
+
+        1000  L
+        0100  R
+        0010  L
+        1001  LR
     """
 
     code = "DT203"

@@ -17,9 +17,19 @@ class LowBracket(ChartRule):
 
     `least_meter`: the meter from which on brackets are expected.
 
-    Bad:
+    Bad (least_meter = 10):
 
-        TODO
+        1000  L
+        0011  Rr
+        1000  L
+        0001  R
+
+    Better (least_meter = 10):
+
+        1000  L
+        0001  R
+        1000  L
+        0001  R
     """
 
     code = "DT210"

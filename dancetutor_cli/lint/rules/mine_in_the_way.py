@@ -17,9 +17,19 @@ class MineInTheWay(ChartRule):
 
     `max_seconds`: mines at most this long before the step count; the games' mine window is about 0.07 s.
 
-    Bad:
+    Bad (max_seconds = 0.6):
 
-        TODO
+        1000  L
+        000M
+        0001  R
+        0000
+
+    Better (max_seconds = 0.6):
+
+        1000  L
+        00M0
+        0001  R
+        0000
     """
 
     code = "DT307"

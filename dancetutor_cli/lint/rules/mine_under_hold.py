@@ -13,11 +13,23 @@ if TYPE_CHECKING:
 
 
 class MineUnderHold(ChartRule):
-    """A mine comes on the panel of a foot that is held down there: it cannot be dodged.
+    """A mine comes under a foot that cannot step aside, because the other foot is held down, or a bracket's other half is.
+
+    The dancer has to stand on one leg, on a held panel, until the mine is past.
 
     Bad:
 
-        TODO
+        0001  R
+        2000  L
+        000M
+        3000
+
+    Better:
+
+        0001  R
+        2000  L
+        00M0
+        3000
     """
 
     code = "DT303"
@@ -25,5 +37,6 @@ class MineUnderHold(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine."""
-        for row, column in subject.feet.mines_under_held() if subject.feet else ():
-            yield self.finding("a mine under a foot that is held down on this panel", subject.at_row(row, column))
+        for row, column, foot in subject.feet.mines_under_held() if subject.feet else ():
+            message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
+            yield self.finding(message, subject.at_row(row, column))

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 class NoPad(ChartRule):
     """This steps type has no entry in configs/pads.yaml: the chart is read, but its feet are not known.
 
+    Bad: a kb7-single chart, which is played with fingers.
+
     Better: add the pad's panels to configs/pads.yaml, or leave such charts out with --steps-type.
     """
 

@@ -12,17 +12,17 @@ class OddNotes(ReaderRule):
 
     Bad:
 
-        100
-        00010
+        1000  L
+        001
         0x00
-        0001
+        0001  R
 
     Better:
 
-        1000
-        0001
-        0100
-        0001
+        1000  L
+        0010  R
+        0100  L
+        0001  R
     """
 
     code = "DT102"

@@ -17,9 +17,19 @@ class OffGrid(ChartRule):
 
     `grid`: the quantisations that are usual, as players name them (16 for 16ths). Rows in a run count once.
 
-    Bad: rows of 192 in a measure, the note in the second of them.
+    Bad (grid = [3]):
 
-    Better: on the first.
+        1000  L
+        0001  R
+        0000
+        0000
+
+    Better (grid = [4]):
+
+        1000  L
+        0001  R
+        0000
+        0000
     """
 
     code = "DT401"

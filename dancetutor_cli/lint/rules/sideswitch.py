@@ -17,7 +17,17 @@ class Sideswitch(ChartRule):
 
     Bad:
 
-        TODO
+        1000  L
+        0001  R
+        0001  L
+        0100  R
+
+    Better:
+
+        1000  L
+        0001  R
+        0100  L
+        0100  R
     """
 
     code = "DT208"

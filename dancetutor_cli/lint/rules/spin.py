@@ -13,19 +13,19 @@ if TYPE_CHECKING:
 class Spin(MoveRule):
     """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins.
 
-    Bad: a crossover that is not unwound but continued:
+    Bad: the crossover goes on in place of being unwound.
 
-        .  v  .  .   L
-        .  .  .  >   R
-        .  .  ^  .   L
-        <  .  .  .   R
+        1000  L
+        0100  R
+        0001  L
+        0010  R
 
-    Better: back the way it came:
+    Better: back the way it came.
 
-        .  v  .  .   L
-        .  .  .  >   R
-        .  v  .  .   L
-        <  .  .  .   R
+        1000  L
+        0100  R
+        0001  L
+        0100  R
     """
 
     code = "DT202"

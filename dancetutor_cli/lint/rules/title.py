@@ -26,6 +26,6 @@ class Title(FileRule):
         for tag in ("TITLE", "ARTIST"):
             value = subject.song.tags.get(tag, "")
             if not value.strip():
-                yield self.finding(f"#{tag} is empty", subject.place())
+                yield self.finding(f"#{tag} is empty", subject.tag_place(tag))
             elif value != value.strip():
-                yield self.finding(f"#{tag} has blanks at its ends", subject.place())
+                yield self.finding(f"#{tag} has blanks at its ends", subject.tag_place(tag))

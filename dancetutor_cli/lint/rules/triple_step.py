@@ -15,11 +15,21 @@ if TYPE_CHECKING:
 class TripleStep(ChartRule):
     """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
 
-    `max_seconds`: only steps at most this far apart count.
+    Steps while the other foot is held down do not count. `max_seconds`: only steps at most this far apart count.
 
     Bad:
 
-        TODO
+        0001  R
+        1000  L
+        0100  L
+        0010  L
+
+    Better:
+
+        0001  R
+        1000  L
+        0100  R
+        0010  L
     """
 
     code = "DT209"

@@ -13,14 +13,19 @@ if TYPE_CHECKING:
 class Unplayable(MoveRule):
     """No limb is left for a step of this row: both feet and both hands press something already.
 
-    Bad: a jump while two feet and one hand hold (M marks what stays down):
+    Bad: five panels at once.
 
-        2  2  2  .
-        .  .  .  1   the second hand is the last limb
-        .  .  .  .
-        (a fifth panel of a double at the same time: unplayable)
+        10000000  L
+        11111000  LRLR?
+        10000000  L
+        00010000  R
 
-    Better: end a hold before the row.
+    Better: two panels.
+
+        10000000  L
+        10001000  LR
+        10000000  L
+        00010000  R
     """
 
     code = "DT301"

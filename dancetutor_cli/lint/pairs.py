@@ -1,0 +1,59 @@
+"""How the .ssc of a song differs from the .sm beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dancetutor_cli.chart import Chart, Song, load
+from dancetutor_cli.errors import FileError
+
+Key = tuple[str, str, str]
+
+
+def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
+    """Message, line and chart of everything that the .sm beside a .ssc has otherwise; nothing for a .sm."""
+    from dancetutor_cli.library import twin
+
+    other_path = twin(song.path) if song.format == "ssc" else None
+    if other_path is None:
+        return
+    name = other_path.name
+    try:
+        other = load(other_path)
+    except FileError as error:
+        yield f"{name} cannot be read: {error.message}", None, None
+        return
+    here, there = _by_key(song), _by_key(other)
+    for key, chart in here.items():
+        if key not in there:
+            yield f"{chart.label} is not in {name}", chart.line, chart.index
+        elif what := _difference(chart, there[key]):
+            yield f"{chart.label} has other {what} in {name}", chart.line, chart.index
+    for key, chart in there.items():
+        if key not in here:
+            yield f"{chart.label} of {name} is missing here", None, None
+
+
+def _by_key(song: Song) -> dict[Key, Chart]:
+    """Charts by type and difficulty, and by their place among those that share both."""
+    found: dict[Key, Chart] = {}
+    for chart in song.charts:
+        place = 0
+        while (key := (chart.steps_type, chart.difficulty, str(place))) in found:
+            place += 1
+        found[key] = chart
+    return found
+
+
+def _difference(a: Chart, b: Chart) -> str:
+    """What is not the same in two charts: "notes", "a meter" or "times"; "" if nothing."""
+    fields = ("tick", "column", "kind", "end")
+    if any(not np.array_equal(getattr(a.notes, name), getattr(b.notes, name)) for name in fields):
+        return "notes"
+    if a.meter != b.meter:
+        return "a meter"
+    if np.abs(a.timing.seconds(a.notes.tick) - b.timing.seconds(b.notes.tick)).max(initial=0.0) > 0.001:
+        return "times"
+    return ""
