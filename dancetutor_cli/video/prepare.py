@@ -73,6 +73,13 @@ def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast
     return Cast(axes, np.array(corner), scale)
 
 
+def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> float:
+    """How large a metre is on the picture where the dancer's root is."""
+    forward = camera.axes()[2]
+    depth = float(((joints[0, :3, 3] - camera.position) * forward).sum())
+    return camera.focal * size[1] / max(depth, NEAR)
+
+
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
     """Rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue), (2, 9)."""
     out = np.zeros((2, 9))

@@ -16,6 +16,7 @@ from dancetutor_cli.video.look import Look, default_look
 from dancetutor_cli.video.stage import PadLike, Stage, build_stage, pad_extent
 
 Array = NDArray[np.float64]
+FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
 SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
 _HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # how far that line reaches beyond ankle and ball, (x, z) at rest
 
@@ -84,8 +85,9 @@ def check_state(scene: Scene, state: FrameState) -> None:
         raise UsageError(f"frame: joints have shape {state.joints.shape}, the character needs ({joints}, 4, 4)")
     if len(state.lit) != scene.panels or len(state.lit_by) != scene.panels:
         raise UsageError(f"frame: lit and lit_by need one entry for each of the pad's {scene.panels} panels")
-    if state.joints is not None and not np.isfinite(state.joints).all():
-        raise UsageError("frame: the joints have places that are not numbers; bake the motion again")
+    # NaN fails the comparison too.
+    if state.joints is not None and not np.abs(state.joints).max() < FAR_AWAY:
+        raise UsageError("frame: the joints have places that are no place on Earth; bake the motion again")
 
 
 def foot_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:

@@ -134,7 +134,7 @@ def test_an_unknown_camera_lists_those_that_exist():
         ("field: 28", "field: 0", "field must be"),
         ("tile: 0.84", "tile: 0", "stage.tile"),
         ("elevation: 62", "elevation: 5", "light.elevation"),
-        ("outline_width: 1.5", "outline_width: thick", "outline_width"),
+        ("outline_width: 0.005", "outline_width: thick", "outline_width"),
     ],
 )
 def test_a_wrong_look_names_the_key(tmp_path, old, new, message):

@@ -242,6 +242,7 @@ def test_states_that_do_not_fit_are_usage_errors(cpu, scene):
         replace(good, joints=good.joints[:3]),
         replace(good, lit=np.zeros(9)),
         replace(good, joints=good.joints * np.nan),
+        replace(good, joints=good.joints * 1e200),
     ):
         with pytest.raises(UsageError, match="frame"):
             cpu.frame(bad)

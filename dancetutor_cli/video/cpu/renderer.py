@@ -32,12 +32,15 @@ from dancetutor_cli.video.prepare import (
     ground_box,
     joints_of,
     panel_lights,
+    pixels_per_metre,
     place_cast,
     shown,
     skin_matrices,
 )
 from dancetutor_cli.video.renderer import Quality
 from dancetutor_cli.video.scene import SOLE_RADIUS, FrameState, Scene, check_state
+
+Array = NDArray[np.float64]
 
 
 class CpuRenderer:
@@ -81,7 +84,7 @@ class CpuRenderer:
         triangles = mesh.triangles[:count]
         self._draw_shadow(triangles, cast)
         self._draw_ground(state, background, shift, cast)
-        self._draw_dancer(triangles, camera, cast)
+        self._draw_dancer(triangles, joints, camera, cast)
         return self._out
 
     def close(self) -> None:
@@ -118,11 +121,12 @@ class CpuRenderer:
             look.light.shadow if cast.scale else 0.0, lit, lit_colour, feet_on_floor(self._scene, state), numbers,
         )  # fmt: skip
 
-    def _draw_dancer(self, triangles: NDArray[np.int32], camera: Camera, cast: Cast) -> None:
+    def _draw_dancer(self, triangles: NDArray[np.int32], joints: Array, camera: Camera, cast: Cast) -> None:
         samples, mesh = self._samples, self._mesh
         matrix = camera.matrix(self._size)
         focal = camera.focal * self._size[1]
-        outline = self._scene.look.toon.outline_width * self._size[1] / 720.0
+        per_metre = pixels_per_metre(camera, joints, self._size)
+        outline = self._scene.look.toon.outline_width * per_metre
         eye = np.array(camera.position)
         project(self._world, matrix, float(samples), NEAR, self._points)
         project_hull(self._world, matrix, eye, float(samples), NEAR, outline, focal, self._hull)
@@ -134,9 +138,7 @@ class CpuRenderer:
             self._world, self._points, mesh.uv, mesh.material, eye, cast.axes, cast.origin,
             cast.scale, self._vertex,
         )  # fmt: skip
-        _, _, forward = camera.axes()
-        distance = ((self._world[0, :3] - camera.position) * forward).sum()
-        self._toon[PER_METRE] = focal / max(distance, NEAR)
+        self._toon[PER_METRE] = per_metre
         resolve(
             self._out, samples, self._nearest, self._spans, count, triangles, mesh.patch, mesh.density,
             self._vertex, *self._skins, self._shadow, self._toon,

@@ -1,4 +1,8 @@
-"""Colours of the stage, one rule for each kind of surface; gl/shaders/surfaces.glsl has the same rules."""
+"""Colours of the stage, one rule for each kind of surface.
+
+numba notices a changed kernel by its own file only: after a change here, `make clean` (or touch background.py and
+ground.py, which call these).
+"""
 
 from __future__ import annotations
 

@@ -34,6 +34,7 @@ from dancetutor_cli.video.prepare import (
     joints_of,
     panel_lights,
     pixel_box,
+    pixels_per_metre,
     place_cast,
     shown,
     skin_matrices,
@@ -108,7 +109,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._draw_shadow(light, cast, part)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
         self._draw_ground(state, standing, shift, cast, light, bounds)
-        self._draw_dancer(part, camera, cast, light, bounds)
+        self._draw_dancer(part, joints, camera, cast, light, bounds)
         return self._read()
 
     def close(self) -> None:
@@ -176,7 +177,9 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         _scissor(ground_box(self._scene, state.camera, self._size, bounds, cast))
         _cover(program)
 
-    def _draw_dancer(self, part: Shown, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]) -> None:
+    def _draw_dancer(
+        self, part: Shown, joints: Array, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]
+    ) -> None:
         corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
         box = pixel_box(camera, bounds[0] + corners * (bounds[1] - bounds[0]), self._size)
         if box[0] >= box[2] or box[1] >= box[3]:
@@ -204,7 +207,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             skin=_SKIN_UNIT,
         )
         _bind_texture(_SHADOW_UNIT, self._map.texture)
-        for outline, culled in ((0.0, GL.GL_BACK), (look.outline_width * height / 720.0, GL.GL_FRONT)):
+        wide = look.outline_width * pixels_per_metre(camera, joints, self._size)
+        for outline, culled in ((0.0, GL.GL_BACK), (wide, GL.GL_FRONT)):
             program.set_uniform("outline", float(outline))
             GL.glCullFace(culled)
             for primitive, skin, tint in self._primitives:
