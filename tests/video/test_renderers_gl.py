@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -149,3 +150,19 @@ def test_gl_loads_no_window_library(needs_gl):
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment)
     assert run.returncode == 0, run.stderr
     assert run.stdout.strip() == "[]"
+
+
+@pytest.mark.gl
+def test_arguments_by_reference_are_known_to_pyopengl(needs_gl):
+    """As on Python 3.12, where their type has a name that PyOpenGL 3.1.0 does not know."""
+    from dancetutor_cli.video.gl import compat
+
+    compat.load_pyrender()
+    from OpenGL.plugins import FormatHandler
+
+    kind = type(ctypes.byref(ctypes.c_int()))
+    for plugin in FormatHandler.all():
+        plugin.check = [name for name in plugin.check or [] if not name.endswith(".CArgObject")]
+    assert FormatHandler.match(kind) is None
+    compat._register_references()
+    assert FormatHandler.match(kind).load().__name__ == "CtypesParameterHandler"

@@ -6,14 +6,15 @@ Call `load_pyrender` instead of importing pyrender.
 - pyrender 0.1.45 uses ``np.infty``, which NumPy 2.0 took away.
 - pyrender 0.1.45 imports its viewer window with pyglet, and with it libXrender, on import; pyglet 2 has not even got
   what it asks for. A module in its place has the one name that pyrender wants.
-- Python 3.12 made byref() return ``_ctypes.CArgObject``, for which PyOpenGL 3.1.0 has no format handler: arguments
-  passed by reference fail with "No array-type handler". It is registered as what it is, a plain pointer.
+- Python 3.12 moved the type of byref() to ``_ctypes.CArgObject``, for which PyOpenGL 3.1.0 has no format handler:
+  arguments passed by reference fail with "No array-type handler". It is registered under its new name.
 - PyOpenGL checks for errors after each call, which costs more than the call. It is switched off (`renderer` asks once a
   frame); PyOpenGL 3.1.0 then leaves out a name in OpenGL.raw.EGL._errors that its own EGL modules want.
 """
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 import types
@@ -56,22 +57,11 @@ def load_pyrender() -> Any:
 
 
 def _register_references() -> None:
-    if sys.version_info < (3, 12):
-        return
-    from OpenGL.arrays import formathandler
-
-    known = (
-        formathandler.FormatHandler.HANDLER_REGISTRY if hasattr(formathandler.FormatHandler, "HANDLER_REGISTRY") else {}
-    )
-    import ctypes
-
-    reference = type(ctypes.byref(ctypes.c_int()))
-    if reference in known:
-        return
+    """Add the type of byref() to those that PyOpenGL's handler for ctypes arguments takes, if it is not there."""
     from OpenGL.plugins import FormatHandler
 
-    FormatHandler(
-        "dancetutor_reference",
-        "OpenGL.arrays.ctypesparameters.CtypesParameterHandler",
-        [f"{reference.__module__}.{reference.__qualname__}"],
-    )
+    kind = type(ctypes.byref(ctypes.c_int()))
+    name = f"{kind.__module__}.{kind.__name__}"
+    handler = FormatHandler.by_name("ctypesparameter")
+    if handler is not None and name not in handler.check:
+        handler.check.append(name)
