@@ -1,4 +1,4 @@
-"""Preset `thesis` is exact: it agrees with a slow solver written from the cost-model page, on real and random charts."""
+"""Preset `thesis` is exact: a slow solver written from the cost-model page agrees, on real and random charts."""
 
 from __future__ import annotations
 
