@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,6 +53,7 @@ def bake(
     fps: float = 60.0,
     section: tuple[float, float] | None = None,
     settings: MotionSettings | None = None,
+    rate: float = 1.0,
 ) -> Motion:
     """Make the dancer play a chart.
 
@@ -61,6 +63,8 @@ def bake(
     fps : frames per second of the result, which gets extra keys at every contact
     section : (start, end) in seconds of the music; None: from before the first step to after the last
     settings : numbers of the motion, None for those of `configs/motion.yaml`
+    rate : speed at which the music is played; the play's rows are already at it, and all times are those of
+        the music as played, so jumps keep real gravity
 
     Returns
     -------
@@ -71,7 +75,7 @@ def bake(
     DancetutorError if the play has no steps or the section is empty.
     """
     settings = settings or default_settings()
-    plan = plan_of(chart, play, pad, settings)
+    plan = plan_of(chart, play, pad, settings, rate)
     start, end = section or (min(0.0, plan.first - LEAD_IN), plan.last + LEAD_OUT)
     if not start < end:
         raise DancetutorError(
@@ -80,10 +84,10 @@ def bake(
     return bake_plan(plan, fps, start, end, settings)
 
 
-def plan_of(chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None) -> Plan:
+def plan_of(chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None, rate: float = 1.0) -> Plan:
     """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
     settings = settings or default_settings()
-    return Planner(play, stage.panels_on_ground(pad), _clock(chart), settings).run()
+    return Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
 
 
 def mines_of(play: Play, pad: Pad) -> Array:
@@ -202,9 +206,9 @@ def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
     return centre_of_mass(skeleton, *world_transforms(skeleton, rotations, root))
 
 
-def _clock(chart: Chart):  # type: ignore[no-untyped-def]
+def _clock(chart: Chart, rate: float) -> Callable[[int], float]:
     def second(tick: int) -> float:
-        return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0])
+        return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate
 
     return second
 

@@ -10,63 +10,76 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
-from dancetutor_cli.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import Report
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.jobs.bake import Asked, BakeTask
     from dancetutor_cli.motion.model import Motion
 
-SUFFIXES = (".npz", ".glb")
-AFTER = 2.5  # seconds after the last row that a section may still reach
+SUFFIXES = (".glb", ".npz", ".bvh", ".json")
 _TABLE = "-"  # the value of --report without a file
+_FILE = click.Path(path_type=Path)
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="A .npz or .glb file; default: SONG-difficulty.glb."
-)
+@click.argument("file", type=_FILE)
+@click.option("-o", "--output", type=_FILE, help="A .glb, .npz, .bvh or .json file; default: SONG-difficulty.glb.")
 @click.option("--fps", type=click.FloatRange(1, 1000), default=60.0, show_default=True, help="Frames per second.")
 @click.option("--section", metavar="START:END", help="Only this part: seconds, or beats (16b:32b) or measures (4m:8m).")
 @click.option(
+    "--rate", type=click.FloatRange(0.5, 1.5), default=1.0, show_default=True, help="Speed of the music she dances to."
+)
+@click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
+@click.option(
     "--report", "report_to", is_flag=False, flag_value=_TABLE, metavar="[FILE.json]", help="Measure the motion."
 )
+@click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @selection_options
 @preset_option
 def command(
-    file: Path,
-    output: Path | None,
-    fps: float,
-    section: str | None,
-    report_to: str | None,
-    preset: str,
-    **selection: Any,
-) -> None:
+    file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None,
+    report_to: str | None, plot: Path | None, preset: str, **selection: Any,
+) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
 
-    The motion goes to a .glb file, which any glTF viewer plays, or to a .npz file of numpy arrays.
+    The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
+    capture; .json, only the moves: what moves when, from where to where.
     """
-    from dancetutor_cli import chart as charts
-    from dancetutor_cli.bake import bake, mines_of, report
-    from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, solve_chart
+    from dancetutor_cli.jobs.bake import BakeTask, ask
 
-    song = charts.load(file)
-    chart = Selection(**selection).one(song)
-    target = output or Path(default_name(song, chart))
-    _check_target(target)
-    play, pad = solve_chart(chart, load_preset(preset)), load_pad(chart.steps_type)
-    if play is None or pad is None:
-        raise UsageError(f"{file}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake")
-    if not (play.limb >= 0).any():
-        raise DancetutorError(f"{file}: {chart.label}: the chart has no steps, so there is nothing to dance")
-    end = float(play.rows.second[-1]) + AFTER
-    motion = bake(chart, play, pad, fps=fps, section=_seconds(section, chart, end))
-    write_motion(target, motion)
-    click.echo(f"{target}: {len(motion.times)} frames, {motion.times[-1] - motion.times[0]:.1f} s, {chart.label}")
-    if report_to is not None:
-        _print_report(report(motion, mines_of(play, pad)), report_to)
+    if output is not None:
+        _check_target(output, SUFFIXES)
+    if plot is not None:
+        _check_target(plot, (".svg", ".png"))
+    task = BakeTask(file, Selection(**selection), preset, fps, section, rate, play_file)
+    asked = ask(task)
+    target = output or Path(default_name(asked.song, asked.chart))
+    _check_target(target, SUFFIXES)
+    _bake_and_write(asked, task, target, report_to, plot)
+
+
+def _bake_and_write(asked: Asked, task: BakeTask, target: Path, report_to: str | None, plot: Path | None) -> None:
+    from dancetutor_cli.jobs.bake import bake_asked, plan_asked
+
+    label = asked.chart.label
+    if target.suffix.lower() == ".json":
+        from dancetutor_cli.formats.moves_json import write_moves
+
+        plan = plan_asked(asked, task)
+        write_moves(target, plan, asked.song.title, label, *(asked.section or (-1e9, 1e9)))
+        click.echo(f"{target}: the moves of {label}")
+    if target.suffix.lower() == ".json" and report_to is None and plot is None:
+        return
+    motion = bake_asked(asked, task)
+    if target.suffix.lower() != ".json":
+        write_motion(target, motion)
+        click.echo(f"{target}: {len(motion.times)} keys, {motion.times[-1] - motion.times[0]:.1f} s, {label}")
+    if report_to is not None or plot is not None:
+        from dancetutor_cli.bake import mines_of, report
+
+        _report(report(motion, mines_of(asked.play, asked.pad)), report_to, plot)
 
 
 def default_name(song: Song, chart: Chart) -> str:
@@ -82,6 +95,10 @@ def write_motion(path: Path, motion: Motion) -> None:
         from dancetutor_cli.formats.npz import write_npz
 
         write_npz(path, motion)
+    elif path.suffix.lower() == ".bvh":
+        from dancetutor_cli.formats.bvh import write_bvh
+
+        write_bvh(path, motion)
     else:
         from dancetutor_cli.character import load_dancer
         from dancetutor_cli.formats.glb import write_glb
@@ -89,25 +106,32 @@ def write_motion(path: Path, motion: Motion) -> None:
         write_glb(path, load_dancer(), motion)
 
 
-def _check_target(path: Path) -> None:
+def _check_target(path: Path, suffixes: tuple[str, ...]) -> None:
     """Refuse before the work what could not be written after it."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"{path}: the name must end in {' or '.join(SUFFIXES)}")
+    if path.suffix.lower() not in suffixes:
+        raise UsageError(f"{path}: the name must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}")
     if path.is_dir():
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():
         raise FileError(path, "its folder does not exist")
 
 
-def _seconds(section: str | None, chart: Chart, end: float) -> tuple[float, float] | None:
-    if section is None:
-        return None
-    from dancetutor_cli.chart.section import parse_section
+def _report(report: Report, target: str | None, plot: Path | None) -> None:
+    if target is not None:
+        _print_table(report)
+    if target is not None and target != _TABLE:
+        from dancetutor_cli.files import write_atomic
 
-    return parse_section(section, chart.timing, end)
+        write_atomic(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
+        click.echo(f"{target}: the report")
+    if plot is not None:
+        from dancetutor_cli.reports.motion_plot import write_plot
+
+        write_plot(plot, report)
+        click.echo(f"{plot}: the plot")
 
 
-def _print_report(report: Report, target: str) -> None:
+def _print_table(report: Report) -> None:
     from rich.console import Console
     from rich.table import Table
 
@@ -117,13 +141,11 @@ def _print_report(report: Report, target: str) -> None:
     for f in report.figures:
         unit = f" {f.unit}" if f.unit else ""
         goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
-        table.add_row(f.name, f"{f.value:.4g}{unit}", goal, {None: "", True: "yes", False: "NO"}[f.met])
+        value = "nothing to measure" if f.value != f.value else f"{f.value:.4g}{unit}"
+        table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
     Console().print(table)
-    if target != _TABLE:
-        from dancetutor_cli.files import write_atomic
-
-        write_atomic(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
-        click.echo(f"{target}: the report")
+    for note in report.notes:
+        click.echo(f"note: {note}")
 
 
 def as_json(report: Report) -> dict[str, Any]:
@@ -140,4 +162,10 @@ def as_json(report: Report) -> dict[str, Any]:
         for f in report.figures
     ]
     errors = [None if e != e else round(float(e), 4) for e in report.contact_errors]
-    return {"schema": 1, "figures": figures, "met": report.met, "contact_errors_ms": errors}
+    return {
+        "schema": 1,
+        "figures": figures,
+        "met": report.met,
+        "notes": list(report.notes),
+        "contact_errors_ms": errors,
+    }

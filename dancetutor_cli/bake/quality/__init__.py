@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.balance import balance_figures
-from dancetutor_cli.bake.quality.body import body_of
+from dancetutor_cli.bake.quality.body import Body, body_of
 from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
 from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
 from dancetutor_cli.bake.quality.shape import shape_figures
-from dancetutor_cli.bake.quality.smoothness import smoothness_figures
+from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
 from dancetutor_cli.motion.model import Motion
 
+Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
 __all__ = ["Figure", "Report", "report"]
 
 
@@ -42,4 +43,14 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
         *balance_figures(body),
         *shape,
     )
-    return Report(figures, errors, (*notes, *shape_notes))
+    return Report(figures, errors, (*notes, *shape_notes), _curves(motion, body, errors))
+
+
+def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str, Curve]:
+    starts = np.array([c.start for c in motion.contacts])
+    root = jerk(body.joints[:, 0], body.rate)
+    return {
+        "contact error, ms (late positive)": (starts, errors),
+        "height of the centre of mass, m": (body.times, body.mass[:, 1]),
+        "jerk of the root, m/s^3 (10 Hz)": (body.times[: len(root)], root),
+    }

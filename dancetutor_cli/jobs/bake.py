@@ -1,0 +1,98 @@
+"""The piece of work of `animate`: one chart in, its play, motion and moves out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.jobs.selection import Selection
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.track import Plan
+    from dancetutor_cli.pads import Pad
+    from dancetutor_cli.play.model import Play
+
+AFTER = 2.5  # seconds after the last row that a section may still reach
+
+
+@dataclass(frozen=True, slots=True)
+class BakeTask:
+    """What to bake. Pickles, so that another process can do it.
+
+    preset : of the solver; play_file : a play as JSON instead of the solver's, or None
+    section : as the user wrote it, or None; rate : speed of the music, 1 is its own
+    """
+
+    path: Path
+    selection: Selection
+    preset: str
+    fps: float = 60.0
+    section: str | None = None
+    rate: float = 1.0
+    play_file: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A chart, ready to be baked: its play at the asked rate, and the section in seconds, None for all of it."""
+
+    song: Song
+    chart: Chart
+    play: Play
+    pad: Pad
+    section: tuple[float, float] | None
+
+
+def ask(task: BakeTask) -> Asked:
+    """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
+    from dancetutor_cli import chart as charts
+
+    song = charts.load(task.path)
+    chart = task.selection.one(song)
+    play, pad = _play(task, chart)
+    if not (play.limb >= 0).any():
+        raise DancetutorError(f"{task.path}: {chart.label}: the chart has no steps, so there is nothing to dance")
+    section = None
+    if task.section is not None:
+        from dancetutor_cli.chart.section import parse_section
+
+        start, end = parse_section(task.section, chart.timing, float(play.rows.second[-1]) + AFTER)
+        section = (start / task.rate, end / task.rate)
+    rows = replace(play.rows, second=play.rows.second / task.rate)
+    return Asked(song, chart, replace(play, rows=rows), pad, section)
+
+
+def bake_asked(asked: Asked, task: BakeTask) -> Motion:
+    """The motion; times are seconds of the music as it is played, at the task's rate."""
+    from dancetutor_cli.bake import bake
+
+    return bake(asked.chart, asked.play, asked.pad, fps=task.fps, section=asked.section, rate=task.rate)
+
+
+def plan_asked(asked: Asked, task: BakeTask) -> Plan:
+    """Only the moves."""
+    from dancetutor_cli.bake import plan_of
+
+    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate)
+
+
+def _play(task: BakeTask, chart: Chart) -> tuple[Play, Pad]:
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.play import load_preset, prepare, solve_chart
+
+    preset, pad = load_preset(task.preset), load_pad(chart.steps_type)
+    if pad is None:
+        raise UsageError(
+            f"{task.path}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake"
+        )
+    if task.play_file is not None:
+        from dancetutor_cli.formats.play_json import read_play
+
+        return read_play(task.play_file, chart, prepare(chart, pad, preset.roll_window), pad), pad
+    play = solve_chart(chart, preset)
+    assert play is not None
+    return play, pad

@@ -1,0 +1,93 @@
+"""Curves of a motion over the song as a picture: contact errors, height of the centre of mass, jerk."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.bake.quality.figures import Report
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.files import write_atomic
+
+Array = NDArray[np.float64]
+WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
+INK, GRID, LINE = "#222222", "#dddddd", "#3060c0"
+
+
+def write_plot(path: Path, report: Report) -> None:
+    """Write the report's curves as .svg or .png. Raises UsageError for another name, FileError if it cannot."""
+    if path.suffix.lower() == ".svg":
+        write_atomic(path, _svg(report).encode())
+    elif path.suffix.lower() == ".png":
+        write_atomic(path, _png(report))
+    else:
+        raise UsageError(f"{path}: a plot's name must end in .svg or .png")
+
+
+def _panels(report: Report) -> Iterator[tuple[str, float, Array, tuple[float, float, float, float], bool]]:
+    """(title, y of the top, points (n, 2) in pixels, (t0, t1, low, high), whether dots are drawn) of each curve."""
+    for k, (title, (times, values)) in enumerate(report.curves.items()):
+        good = np.isfinite(values)
+        t, v = times[good], values[good]
+        if not len(t):
+            continue
+        low, high = float(min(v.min(), 0.0)) if v.min() > -1e-9 else float(v.min()), float(v.max())
+        high = high if high > low else low + 1.0
+        first, last = float(times.min()), float(max(times.max(), times.min() + 1e-3))
+        top = TOP + k * (PANEL + GAP)
+        x = LEFT + (t - first) / (last - first) * (WIDTH - LEFT - 20)
+        y = top + PANEL * (1.0 - (v - low) / (high - low))
+        yield title, top, np.column_stack((x, y)), (first, last, low, high), "contact" in title
+
+
+def _svg(report: Report) -> str:
+    height = TOP + len(report.curves) * (PANEL + GAP)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" font-family="sans-serif">']
+    out.append('<rect width="100%" height="100%" fill="white"/>')
+    for title, top, points, (first, last, low, high), dots in _panels(report):
+        out.append(
+            f'<rect x="{LEFT}" y="{top}" width="{WIDTH - LEFT - 20}" height="{PANEL}" fill="none" stroke="{GRID}"/>'
+        )
+        for x, y, text in _labels(title, top, first, last, low, high):
+            out.append(f'<text x="{x}" y="{y}" font-size="12" fill="{INK}">{text}</text>')
+        if dots:
+            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.6" fill="{LINE}"/>' for x, y in points]
+        else:
+            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+            out.append(f'<polyline points="{line}" fill="none" stroke="{LINE}" stroke-width="0.8"/>')
+    return "\n".join([*out, "</svg>", ""])
+
+
+def _png(report: Report) -> bytes:
+    from PIL import Image, ImageDraw
+
+    image = Image.new("RGB", (WIDTH, TOP + len(report.curves) * (PANEL + GAP)), "white")
+    draw = ImageDraw.Draw(image)
+    for title, top, points, (first, last, low, high), dots in _panels(report):
+        draw.rectangle((LEFT, top, WIDTH - 20, top + PANEL), outline=GRID)
+        for x, y, text in _labels(title, top, first, last, low, high):
+            draw.text((x, y - 11), text, fill=INK)
+        if dots:
+            for x, y in points:
+                draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=LINE)
+        else:
+            draw.line([(float(x), float(y)) for x, y in points], fill=LINE)
+    out = io.BytesIO()
+    image.save(out, "PNG")
+    return out.getvalue()
+
+
+def _labels(
+    title: str, top: float, first: float, last: float, low: float, high: float
+) -> list[tuple[float, float, str]]:
+    return [
+        (LEFT, top - 6, title),
+        (8, top + 12, f"{high:.4g}"),
+        (8, top + PANEL, f"{low:.4g}"),
+        (LEFT, top + PANEL + 16, f"{first:.1f} s"),
+        (WIDTH - 90, top + PANEL + 16, f"{last:.1f} s"),
+    ]
