@@ -14,6 +14,8 @@ COMMANDS = {
     "annotate": ("annotate", "Write L/R foot markers into chart files, or take them out."),
     "animate": ("animate", "Bake a 3D dancer who plays a chart."),
     "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
+    "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
+    "warmup": ("warmup", "Compile everything once, so that later runs start at once."),
 }
 
 

@@ -65,6 +65,13 @@ _OPTIONS = (
         show_default=True,
         help="What draws: gl needs OpenGL.",
     ),
+    click.option(
+        "--encoder",
+        type=click.Choice(("auto", "x264", "nvenc", "vaapi")),
+        default="auto",
+        show_default=True,
+        help="What encodes H.264: auto takes NVENC where it works, else x264.",
+    ),
     click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, as 0.5,0.75,1; the pitch stays."),
     click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate]."),
     click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,9 @@ LONG = 20 * 60.0  # seconds of film; more than this is asked about first
     help="A .mp4, .gif or .webp [default: SONG-difficulty.mp4]; for a folder of charts a folder [default: videos].",
 )
 @click.option("--frames", type=click.Path(path_type=Path), metavar="DIR", help="Write PNG pictures into this folder.")
+@click.option("--poses", type=click.Path(path_type=Path), metavar="DIR", help="Write one PNG per row into this folder.")
+@click.option("--poster", type=click.Path(path_type=Path), metavar="FILE", help="Also write a PNG for a title page.")
+@click.option("--srt", is_flag=True, help="Also write subtitles that name the moves, beside the film.")
 @click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
 @click.option("--yes", is_flag=True, help="Render even a very long film without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
@@ -58,9 +62,13 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     an interrupted run goes on where it was.
     """
     _end_on_term()
-    if output is not None and frames is not None:
-        raise UsageError("give either --output or --frames, not both")
+    poses = options["poses"]
+    if sum(one is not None for one in (output, frames, poses)) > 1:
+        raise UsageError("give one of --output, --frames and --poses")
     if path.is_dir():
+        for name in ("poses", "poster", "srt"):
+            if options[name]:
+                raise UsageError(f"--{name} is for one chart, and {path} is a folder")
         from dancetutor_cli.commands.render_batch import render_batch
 
         render_batch(path, output, frames, None if yes else LONG, quiet, options)
@@ -68,22 +76,23 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     for name in ("meter", "name", "shard", "results"):
         if options[name] is not None:
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
-    _render_one(path, output, frames, yes, quiet, options)
+    _render_one(path, output, frames or poses, yes, quiet, options)
 
 
 def _render_one(
-    path: Path, output: Path | None, frames: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
+    path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.jobs.film_request import look_up
     from dancetutor_cli.video.encoder import target_of
 
-    kind: Target = "png" if frames is not None else "mp4" if output is None else target_of(output)
+    kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
     request = film_request(path, options, kind)
     subject = look_up(request)
-    target = frames or output or Path(default_name(subject.song, subject.chart))
-    _check_target(target, frames is not None)
-    _allow_long(subject, path, yes)
-    _make(request, subject, target, kind, options["jobs"], quiet)
+    target = folder or output or Path(default_name(subject.song, subject.chart))
+    _check_target(target, folder is not None)
+    if not options["poses"]:
+        _allow_long(subject, path, yes)
+    _make(request, subject, target, kind, quiet, options)
 
 
 def default_name(song: Song, chart: Chart) -> str:
@@ -117,26 +126,42 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
         raise UsageError(f"{what}; choose a part with --section, or say --yes")
 
 
-def _make(request: Request, subject: Subject, target: Path, kind: Target, jobs: int | None, quiet: bool) -> None:
-    from dancetutor_cli.jobs.film_plan import prepare
+def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet: bool, options: dict[str, Any]) -> None:
+    from dancetutor_cli.jobs import extras
+    from dancetutor_cli.jobs.film_plan import Prepared, prepare
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.reports.progress import FilmProgress
     from dancetutor_cli.video.encoder import Encoding
+    from dancetutor_cli.video.probe import choose
 
-    for warning in subject.warnings:
-        click.echo(f"warning: {warning}", err=True)
-    encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
-    count = jobs or default_jobs()
+    def prepared() -> Prepared:
+        film = prepare(request, subject)
+        return extras.poses(film, subject) if options["poses"] else film
+
+    _warn(subject.warnings)
+    encoder = choose(options["encoder"]) if kind == "mp4" else "x264"
+    encoding = Encoding(kind, request.look.size, request.fps, request.look.quality, encoder)
     with FilmProgress(target.name, quiet) as progress:
-        prepared = make_film(lambda: prepare(request, subject), encoding, target, count, progress)
-    for warning in prepared.warnings:
-        click.echo(f"warning: {warning}", err=True)
+        film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress)
+    _warn(film.warnings)
+    if options["poses"]:
+        extras.write_pose_index(target, subject, film.plan)
+    if options["poster"]:
+        extras.write_poster(options["poster"], film.plan)
+    if options["srt"]:
+        extras.write_subtitles(target.with_suffix(".srt"), film.plan)
     if not quiet:
         width, height = request.look.size
-        click.echo(
-            f"{target}: {subject.clock.seconds:.1f} s, {width}x{height} at {request.fps} fps, {subject.chart.label}"
-        )
+        length = f"{film.plan.clock.frames} pictures" if kind == "png" else f"{film.plan.clock.seconds:.1f} s"
+        click.echo(f"{target}: {length}, {width}x{height} at {request.fps} fps, {subject.chart.label}")
+
+
+def _warn(warnings: Iterable[str]) -> None:
+    from dancetutor_cli.reports.safe import safe
+
+    for warning in warnings:
+        click.echo(f"warning: {safe(warning)}", err=True)
 
 
 def _end_on_term() -> None:

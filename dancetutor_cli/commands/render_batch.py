@@ -56,13 +56,15 @@ def _batch(
 ) -> BatchRequest:
     from dancetutor_cli.jobs.film_list import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
     from dancetutor_cli.video.encoder import Encoding
+    from dancetutor_cli.video.probe import choose
 
     request = film_request(path, options, "png" if frames else "mp4")
     look = request.look
+    encoder = choose(options["encoder"]) if frames is None else "x264"
     return BatchRequest(
         paths=(path,),
         request=request,
-        encoding=Encoding("png" if frames else "mp4", look.size, request.fps, look.quality),
+        encoding=Encoding("png" if frames else "mp4", look.size, request.fps, look.quality, encoder),
         folder=frames or output or Path("videos"),
         name=options["name"] or DEFAULT_NAME,
         meters=parse_meters(options["meter"]) if options["meter"] else None,

@@ -12,6 +12,7 @@ from dancetutor_cli.video.notes import Callout
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from dancetutor_cli.lint.model import Finding
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.video.scroll import ScrollSegments
 
@@ -49,14 +50,18 @@ def _moves(subject: ChartSubject, words: Mapping[str, str]) -> list[tuple[int, s
     return out
 
 
-def _findings(subject: ChartSubject) -> list[tuple[int, str, int]]:
-    """Findings about a place, with the configuration that holds for the file."""
+def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
+    """What the linter finds in a chart, with the configuration that holds for its file."""
     from dancetutor_cli.lint.check import check_chart
     from dancetutor_cli.lint.configuration import find_configuration, load_configuration
 
     settings = load_configuration(find_configuration(subject.song.path.absolute().parent)).settings
+    return check_chart(subject, settings)
+
+
+def _findings(subject: ChartSubject) -> list[tuple[int, str, int]]:
     return [
         (round(finding.beat * TICKS_PER_BEAT), finding.name.replace("-", " "), _ORDER.index(finding.severity))
-        for finding in check_chart(subject, settings)
+        for finding in findings_of(subject)
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER
     ]

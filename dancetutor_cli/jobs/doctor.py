@@ -46,16 +46,26 @@ def _guarded(name: str, look: Callable[[], Check]) -> Check:
 
 
 def _cpu() -> Check:
-    import llvmlite
+    from importlib.metadata import version
+
     import numba
 
-    return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {llvmlite.__version__}")
+    return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {version('llvmlite')}")
 
 
 def _gl() -> Check:
-    from dancetutor_cli.video import gl_probe  # type: ignore[attr-defined]
+    from dancetutor_cli.errors import UnavailableError
+    from dancetutor_cli.video.gl.probe import gpu_device, require_gl
 
-    return Check("gl renderer", "ok", str(gl_probe))
+    try:
+        require_gl()
+    except UnavailableError as error:
+        message, _, mend = str(error).partition(". ")
+        return Check("gl renderer", "without", message, mend)
+    device = gpu_device()
+    if device is None:
+        return Check("gl renderer", "ok", "OpenGL without a GPU: --renderer auto takes cpu, which is faster")
+    return Check("gl renderer", "ok", f"OpenGL on GPU {device} through EGL")
 
 
 def _ffmpeg() -> Check:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -85,7 +86,7 @@ def look_up(request: Request) -> Subject:
     song = charts.load(request.path)
     chart = request.selection.one(song)
     music, warnings = (None, ()) if request.mute else find_music(song)
-    start, end = _section(request, chart)
+    start, end = _section(request, song, chart)
     clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
     return Subject(song, chart, clock, music, request.section is not None, warnings)
 
@@ -122,12 +123,34 @@ def whole_song(chart: Chart) -> tuple[float, float]:
     return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
 
 
-def _section(request: Request, chart: Chart) -> tuple[float, float]:
+def _around_finding(
+    request: Request, song: Song, chart: Chart, rule: str, number: int, whole: tuple[float, float]
+) -> tuple[float, float]:
+    """Four measures around the number-th finding of a rule, counted from 1."""
+    from dancetutor_cli.jobs.callouts import findings_of
+    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.play import load_preset, solve_chart
+
+    play = solve_chart(chart, load_preset(request.preset))
+    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type)))
+    found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
+    if not 1 <= number <= len(found):
+        has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
+        raise UsageError(f"section {rule}:{number}: the chart has {len(found)} findings of {rule}; it has: {has}")
+    beat = found[number - 1]
+    ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - 8), beat + 8]))
+    return max(whole[0], float(ends[0])), min(whole[1], float(ends[1]))
+
+
+def _section(request: Request, song: Song, chart: Chart) -> tuple[float, float]:
     whole = whole_song(chart)
     if request.section is None:
         return whole
     from dancetutor_cli.chart.section import parse_section
 
+    if match := re.fullmatch(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", request.section, re.IGNORECASE):
+        return _around_finding(request, song, chart, match[1].upper(), int(match[2]), whole)
     return parse_section(request.section, chart.timing, whole[1])
 
 

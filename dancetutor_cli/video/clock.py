@@ -59,3 +59,19 @@ class Clock:
                 return one.start + film * one.rate, number
             film -= one.seconds
         return self.passes[-1].end, len(self.passes) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Moments(Clock):
+    """A clock for single pictures: frame k shows the k-th of `times`, seconds of the music."""
+
+    times: tuple[float, ...] = ()
+
+    @property
+    def frames(self) -> int:
+        """Number of pictures."""
+        return len(self.times)
+
+    def at(self, frame: int) -> tuple[float, int]:
+        """Second of the music that a picture shows; there is only one pass."""
+        return self.times[frame], 0

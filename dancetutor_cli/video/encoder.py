@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.video import ffmpeg
+from dancetutor_cli.video import ffmpeg, probe
 from dancetutor_cli.video.film_look import Quality
 
 if TYPE_CHECKING:
     from dancetutor_cli.video.blit import Frame
 
 Target = Literal["mp4", "gif", "webp", "png"]
+Encoder = Literal["x264", "nvenc", "vaapi"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}
 _PRESET = {"draft": "ultrafast", "good": "veryfast", "best": "medium"}
@@ -35,6 +36,7 @@ class Encoding:
     size: tuple[int, int]
     fps: int
     quality: Quality = "good"
+    encoder: Encoder = "x264"
 
     @property
     def suffix(self) -> str:
@@ -43,18 +45,21 @@ class Encoding:
 
     def _codec(self) -> Sequence[str]:
         if self.target == "mp4":
-            # Each segment is a closed group of pictures, so that segments join without a trace.
-            h264 = ("-c:v", "libx264", "-preset", _PRESET[self.quality], "-crf", _CRF[self.quality], "-bf", "2")
-            group = (
-                "-g",
-                str(4 * self.fps),
-                "-x264-params",
-                "open-gop=0",
-                "-video_track_timescale",
-                str(self.fps * 512),
-            )
-            return ("-vf", _TO_BT709, *h264, *group, *_BT709)
+            scale = ("-video_track_timescale", str(self.fps * 512))
+            return (*_h264(self.encoder, self.quality, 4 * self.fps), *scale, *_BT709)
         return ("-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0")
+
+
+def _h264(encoder: Encoder, quality: Quality, group: int) -> Sequence[str]:
+    """Filters and options of an H.264 encoder; `group` is the greatest distance of key frames."""
+    if encoder == "nvenc":
+        rate = ("-rc", "vbr", "-cq", _CRF[quality], "-b:v", "0", "-bf", "2", "-g", str(group))
+        return ("-vf", _TO_BT709, "-c:v", "h264_nvenc", "-preset", "p4", *rate)
+    if encoder == "vaapi":
+        upload = _TO_BT709.replace("format=yuv420p", "format=nv12") + ",hwupload"
+        return ("-vf", upload, "-c:v", "h264_vaapi", "-qp", _CRF[quality], "-bf", "0", "-g", str(group))
+    level = ("-preset", _PRESET[quality], "-crf", _CRF[quality], "-bf", "2", "-g", str(group))
+    return ("-vf", _TO_BT709, "-c:v", "libx264", *level, "-x264-params", "open-gop=0")
 
 
 def target_of(path: Path) -> Target:
@@ -84,7 +89,8 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
         return
     width, height = encoding.size
     raw = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(encoding.fps), "-i", "pipe:0")
-    arguments = ("-y", *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
+    device = probe.DEVICE.get("h264_vaapi", ()) if encoding.encoder == "vaapi" else ()
+    arguments = ("-y", *device, *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
     with ffmpeg.Process((*arguments, ffmpeg.local(path)), "encoding video", write=True) as process:
         for frame in frames:
             process.write(frame.data)

@@ -11,6 +11,7 @@ from dancetutor_cli.video.scroll import Scroll
 
 Quality = Literal["draft", "good", "best"]
 RendererKind = Literal["auto", "cpu", "gl"]
+QUALITIES: tuple[Quality, ...] = ("draft", "good", "best")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,79 @@
+"""What can be had besides a film: a picture per row, a poster, subtitles."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.files import write_atomic
+from dancetutor_cli.jobs.film_plan import Prepared
+from dancetutor_cli.jobs.film_request import Subject
+from dancetutor_cli.video.clock import Moments
+from dancetutor_cli.video.film import Film, FilmPlan
+
+INDEX = "poses.json"
+
+
+def poses(prepared: Prepared, subject: Subject) -> Prepared:
+    """The same film, but with one frame for each row with a step: what an editor shows when an author scrolls to it."""
+    plan = prepared.plan
+    start, end = plan.clock.passes[0].start, plan.clock.passes[0].end
+    rows = plan.rows
+    times = () if rows is None else tuple(float(t) for t in rows.second if start <= t <= end)
+    if not times:
+        raise DancetutorError(f"{subject.chart.label}: there is no step here, so there is no pose to draw")
+    clock = Moments(plan.clock.passes[:1], plan.clock.fps, times)
+    beats = np.interp(times, plan.lines.second, plan.lines.beat) if len(plan.lines.second) else np.zeros(len(times))
+    return replace(prepared, plan=replace(plan, clock=clock, beats=beats))
+
+
+def write_pose_index(folder: Path, subject: Subject, plan: FilmPlan) -> None:
+    """Say which picture shows which row: an object with one entry per picture."""
+    assert isinstance(plan.clock, Moments)
+    notes = subject.chart.notes
+    seconds = subject.chart.timing.seconds(notes.tick)
+    entries = []
+    for number, time in enumerate(plan.clock.times):
+        note = int(np.argmin(np.abs(seconds - time)))
+        tick = int(notes.tick[note])
+        entries.append(
+            {
+                "picture": f"frame_{number:06d}.png",
+                "beat": tick / TICKS_PER_BEAT,
+                "measure": tick // TICKS_PER_MEASURE,
+                "second": round(time, 6),
+                "line": int(notes.line[note]),
+            }
+        )
+    data = {"schema": 1, "path": str(subject.song.path), "chart": subject.chart.label, "poses": entries}
+    write_atomic(folder / INDEX, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+
+
+def write_poster(path: Path, plan: FilmPlan) -> None:
+    """A picture for a title page: the first called-out move, or a note a third into the film."""
+    from PIL import Image
+
+    one = plan.clock.passes[-1]
+    calls = [call.second for call in plan.callouts if one.start + 1 <= call.second <= one.end]
+    steps = plan.presses.start
+    aim = one.start + (one.end - one.start) / 3
+    moment = calls[0] if calls else float(steps[np.argmin(np.abs(steps - aim))]) if len(steps) else aim
+    before = sum(other.seconds for other in plan.clock.passes[:-1])
+    number = round((before + (moment - one.start) / one.rate) * plan.clock.fps + 0.5)
+    picture = Film(plan).frame(min(number, plan.clock.frames - 1))
+    data = io.BytesIO()
+    Image.fromarray(picture).save(data, "PNG")
+    write_atomic(path, data.getvalue())
+
+
+def write_subtitles(path: Path, plan: FilmPlan) -> None:
+    """Subtitles that name the moves, beside the film."""
+    from dancetutor_cli.video.subtitles import subtitles
+
+    write_atomic(path, subtitles(plan.callouts, plan.clock).encode())
