@@ -61,6 +61,12 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
 @click.option("--statistics", is_flag=True, help="Print how often each rule was found.")
+@click.option(
+    "--sheet",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE.html|.svg",
+    help="Draw the charts of one file as a sheet of measures.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
 @click.option(
@@ -114,6 +120,10 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
         tally.add(result)
         report.add(result)
     report.end(tally)
+    if options["sheet"] is not None and not tally.unreadable:
+        from dancetutor_cli.commands.chart_sheet import write_sheet
+
+        click.echo(write_sheet(options["sheet"], tasks), err=True)
     _finish(run, tally, options["statistics"])
     return tally.exit_status
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class MineUnderHold(ChartRule):
-    """A mine comes under a foot that cannot step aside, because the other foot is held down, or a bracket's other half is.
+    """A mine comes under a foot that cannot step aside, because the other foot or its own other half is held down.
 
     The dancer has to stand on one leg, on a held panel, until the mine is past.
 
