@@ -27,6 +27,7 @@ SUFFIX = ".dancetutor.tmp"
 _LONGEST_NAME = 255 - len(SUFFIX) - 1  # bytes; a longer file name is hashed
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 PATIENCE = 10.0  # seconds to wait for another process that writes the same file
+_ABANDONED = 600.0  # seconds after which a leftover is nobody's, on file systems that have no locks to tell
 
 
 class BusyError(FileError):
@@ -181,7 +182,7 @@ def _claim(path: Path, temporary: Path) -> int:
                     raise BusyError(path, "is being written by another process; nothing was written") from None
                 time.sleep(0.02)
             continue
-        if _lock(descriptor) and _is_at(descriptor, temporary):
+        if _lock(descriptor) is not False and _is_at(descriptor, temporary):
             return descriptor
         os.close(descriptor)  # between its creation and the lock another process took it for a leftover
 
@@ -199,7 +200,10 @@ def _discard(temporary: Path) -> bool:
     except FileNotFoundError:
         return False
     try:
-        if not _lock(descriptor):
+        locked = _lock(descriptor)
+        if locked is None:
+            locked = time.time() - os.fstat(descriptor).st_mtime > _ABANDONED
+        if not locked:
             return False
         if _is_at(descriptor, temporary):
             temporary.unlink()
@@ -208,15 +212,16 @@ def _discard(temporary: Path) -> bool:
         os.close(descriptor)
 
 
-def _lock(descriptor: int) -> bool:
+def _lock(descriptor: int) -> bool | None:
+    """Whether the open file is ours alone now; None where the file system has no locks."""
     if fcntl is None:
-        return True
+        return None
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:
-        return True  # a file system without locks: then `expect` alone tells two writers apart
+        return None  # then `expect` alone tells two writers apart
     return True
 
 

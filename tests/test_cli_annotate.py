@@ -147,6 +147,8 @@ def test_output_folder(song: Path, tmp_path: Path) -> None:
     assert files_of(out) == made
     Said([song, "--style", ALL])
     assert files_of(song) == files_of(out / "song")
+    Said([song, "-o", song.parent / "." / "song"])  # in place after all
+    assert b"{dt1 " in (song / "two_left_feet.sm").read_bytes()
     with pytest.raises(UsageError, match="both become"):
         raise Said([song / "two_left_feet.ssc", out / "song" / "two_left_feet.ssc", "-o", tmp_path / "x"]).error  # type: ignore[misc]
 
@@ -198,14 +200,23 @@ def test_another_preset_changes_the_feet_in_place(ssc: Path) -> None:
     Said([ssc])
     thesis = ssc.read_bytes()
     said = Said([ssc, "--preset", preset])
-    if isinstance(said.error, UsageError):
-        pytest.skip(f"presets have another form: {said.error}")
     other = ssc.read_bytes()
     assert other != thesis
     assert "other feet" in said.out
     assert other.count(b"{dt1 ") == thesis.count(b"{dt1 ")
     Said([ssc])
     assert ssc.read_bytes() == thesis
+
+
+def test_the_preset_of_the_configuration_holds(ssc: Path) -> None:
+    (ssc.parent / "free.yaml").write_text("extends: thesis\nweights: {doublestep: 0, crossover: 1000}\n")
+    Said([ssc, "--preset", ssc.parent / "free.yaml"])
+    wanted = ssc.read_bytes()
+    (ssc.parent.parent / "dancetutor.yaml").write_text("preset: song/free.yaml\n")
+    Said([ssc, "--strip"])
+    Said([ssc])
+    assert ssc.read_bytes() == wanted
+    assert Said([ssc, "--preset", "thesis", "--check"]).status == 1
 
 
 def test_pinned_feet_stay_and_guide_the_solver(ssc: Path) -> None:
@@ -334,6 +345,17 @@ def test_hostile_files_lose_no_byte(hostile: Path, tmp_path: Path) -> None:
     Said([folder, "--strip", "--jobs", 1])
     assert files_of(folder) == before
     assert "cr_only.sm: lines end at CR alone" in said.err
+
+
+def test_bom_and_bytes_behind_the_end_stay(ssc: Path) -> None:
+    data = b"\xef\xbb\xbf" + ssc.read_bytes().replace(b"\n", b"\r\n") + b"\0\0 behind \xff\xfe"
+    ssc.write_bytes(data)
+    Said([ssc])
+    marked = ssc.read_bytes()
+    assert marked != data
+    assert marked.count(b"\r\n") == marked.count(b"\n") == data.count(b"\n")
+    Said([ssc, "--strip"])
+    assert ssc.read_bytes() == data
 
 
 def test_strip_needs_no_solver(ssc: Path) -> None:

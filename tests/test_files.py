@@ -195,6 +195,28 @@ def test_a_file_that_a_living_process_writes_is_no_leftover(tmp_path: Path, monk
 
 
 @POSIX
+def test_without_locks_only_old_leftovers_are_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on some network file systems."""
+
+    def unsupported(*_: object) -> None:
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr(files.fcntl, "flock", unsupported)
+    monkeypatch.setattr(files, "PATIENCE", 0.1)
+    path = tmp_path / "a.sm"
+    write_atomic(path, b"new")
+    temporary = temporary_name(path)
+    temporary.write_bytes(b"perhaps somebody is writing this")
+    assert not remove_leftover(path)
+    with pytest.raises(files.BusyError):
+        write_atomic(path, b"newer")
+    os.utime(temporary, (0, 0))
+    write_atomic(path, b"newer")
+    assert path.read_bytes() == b"newer"
+    assert names(tmp_path) == ["a.sm"]
+
+
+@POSIX
 def test_a_planted_link_in_place_of_the_temporary_file_is_not_followed(tmp_path: Path) -> None:
     victim, path = tmp_path / "victim", tmp_path / "a.sm"
     victim.write_bytes(b"precious")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
+from dancetutor_cli.commands.selection import Selection, selection_options
 from dancetutor_cli.errors import UsageError
 
 if TYPE_CHECKING:
@@ -50,8 +50,10 @@ def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...
 @click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
+@click.option(
+    "--preset", metavar="NAME|FILE", help="Cost preset of the solver; default: as dancetutor.yaml says, else thesis."
+)
 @selection_options
-@preset_option
 def command(
     paths: tuple[Path, ...],
     styles: tuple[str, ...],
@@ -64,7 +66,7 @@ def command(
     force: bool,
     backup: bool,
     jobs: int | None,
-    preset: str,
+    preset: str | None,
     **selection: Any,
 ) -> int:
     """Write L/R foot markers into chart files, or take them out.
@@ -110,6 +112,7 @@ def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) ->
     for path in files:
         folder = next((p for p in paths if p != path and path.is_relative_to(p)), path.parent)
         target = output / path.relative_to(folder)
+        target = path if target.exists() and target.samefile(path) else target
         if target in items:
             raise UsageError(f"{path} and {items[target].source} would both become {target}; annotate them separately")
         items[target] = Item(path, target)
@@ -199,6 +202,8 @@ class _Talk:
                 click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
         elif not self.check:
             click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{_details(outcome)}")
+            for path in outcome.beside:
+                click.echo(f"  {_safe(path.name)}")
 
     def _verb(self, outcome: Outcome) -> str:
         if not outcome.changed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.jobs.lint_run import LintRun
     from dancetutor_cli.markers.beside import Planned
     from dancetutor_cli.markers.model import Change, Lack
     from dancetutor_cli.markers.plan import Plan
@@ -23,12 +25,13 @@ if TYPE_CHECKING:
 class Order:
     """What shall be done with every file. Pickles.
 
+    preset : name or file of the cost preset; None: as the nearest dancetutor.yaml says
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
     """
 
     styles: tuple[str, ...]
-    preset: str
+    preset: str | None
     selection: Selection
     strip: bool = False
     force: bool = False
@@ -48,9 +51,10 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a file: lines for people, and which files are or would be different.
+    """What became of a file: lines for people, mostly.
 
     problems : contradictions in what people said about feet; lacks : what is missing or stale
+    changed : whether anything is or would be different; beside : such files beside the chart file
     unselected : the charts of a file of which none was meant
     """
 
@@ -61,7 +65,8 @@ class Outcome:
     lacks: tuple[str, ...] = ()
     unselected: tuple[str, ...] = ()
     counts: tuple[tuple[str, int], ...] = ()
-    changed: tuple[Path, ...] = ()
+    changed: bool = False
+    beside: tuple[Path, ...] = ()
     diff: tuple[str, ...] = ()
 
 
@@ -119,9 +124,8 @@ class _Work:
         from dancetutor_cli.markers import beside
         from dancetutor_cli.markers import plan as planning
         from dancetutor_cli.markers.model import EDIT
-        from dancetutor_cli.play import load_preset
 
-        preset = load_preset(self.order.preset)
+        preset = _configured(self.order.preset).preset(self.item.source)
         added = EDIT in self.order.styles and self.order.into_file
         base = self._without_added() if added else self.song
         feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes, self.problems))
@@ -168,7 +172,8 @@ class _Work:
             lacks=tuple(lack.at(self.item.source) for lack in self.lacks),
             unselected=() if selection.is_all or self._charts(self.song) else tuple(c.label for c in self.song.charts),
             counts=tuple(sorted(self.counts.items())),
-            changed=tuple(change.path for change in self.changes if change.needed),
+            changed=any(change.needed for change in self.changes),
+            beside=tuple(change.path for change in self.changes[1:] if change.needed),
             diff=tuple(_diff(self.changes)) if self.order.diff else (),
         )
 
@@ -218,6 +223,14 @@ class _Work:
             write_atomic(change.path, change.new, expect=change.old if self._in_place else None)
         else:
             change.path.unlink(missing_ok=True)
+
+
+@cache
+def _configured(preset: str | None) -> LintRun:
+    """Knows the preset of each file; the same for `analyze`, so that both find the same feet."""
+    from dancetutor_cli.jobs.lint_run import LintRun, Request
+
+    return LintRun(Request(preset=preset))
 
 
 def _diff(changes: Sequence[Change]) -> Iterator[str]:
