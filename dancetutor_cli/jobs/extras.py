@@ -60,7 +60,8 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     from PIL import Image
 
     one = plan.clock.passes[-1]
-    calls = [call.second for call in plan.callouts if one.start + 1 <= call.second <= one.end]
+    first = max(one.start, one.sound_from) + 1.0
+    calls = [call.second for call in plan.callouts if first <= call.second <= one.end]
     steps = plan.presses.start
     aim = one.start + (one.end - one.start) / 3
     moment = calls[0] if calls else float(steps[np.argmin(np.abs(steps - aim))]) if len(steps) else aim

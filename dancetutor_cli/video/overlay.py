@@ -109,7 +109,7 @@ class Legend:
 
 
 class Runs:
-    """Which run of a practice film this is and how fast, at the top right; and the numbers of the count-in."""
+    """Which run of a practice film this is and how fast, at the bottom; and the numbers of the count-in."""
 
     def __init__(self, clock: Clock, size: tuple[int, int], scale: float, face: Typeface) -> None:
         self.clock, self.size, self.scale = clock, size, scale
@@ -129,7 +129,7 @@ class Runs:
         """Draw at `second` of the music in pass `run`."""
         if self.labels:
             label = self.labels[run]
-            blit(frame, label, (self.size[0] - label.shape[1]) / 2, round(14 * self.scale))
+            blit(frame, label, (self.size[0] - label.shape[1]) / 2, round(0.875 * self.size[1]))
         one = self.clock.passes[run]
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count

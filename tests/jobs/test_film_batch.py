@@ -1,0 +1,163 @@
+"""Batches: nothing is made twice, nothing is lost, one bad film does not stop the others, shards add up."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.batch import Batch
+from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
+from dancetutor_cli.jobs.film_request import Request
+from dancetutor_cli.jobs.film_work import STATE, FilmJob, Outcome
+from dancetutor_cli.jobs.pool import Done, SerialWorkers
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+
+SIZE = (64, 64)
+NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
+
+
+def write_song(folder: Path, charts: list[tuple[str, int]], notes: str = NOTES) -> Path:
+    """A song of two measures at 120 BPM without music."""
+    folder.mkdir(parents=True)
+    text = f"#TITLE:{folder.name};\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n"
+    for difficulty, meter in charts:
+        text += f"#NOTES:\n dance-single:\n x:\n {difficulty}:\n {meter}:\n 0,0,0,0,0:\n{notes};\n"
+    path = folder / f"{folder.name}.sm"
+    path.write_text(text)
+    return path
+
+
+def batch_request(paths: tuple[Path, ...], folder: Path, **other: object) -> BatchRequest:
+    look = FilmLook(load_layout("highway"), SIZE)
+    request = Request(Path(), Selection(), look, fps=12)
+    return BatchRequest(paths, request, Encoding("mp4", SIZE, 12), folder, **other)  # type: ignore[arg-type]
+
+
+def run(jobs: list[FilmJob], workers: SerialWorkers | None = None) -> dict[str, Outcome]:
+    """Outcomes by the name of the film."""
+    workers = workers or SerialWorkers(lambda key, frames: None)
+    return {outcome.job.output.name: outcome for outcome in Batch(jobs, workers).run()}
+
+
+@pytest.fixture
+def pack(tmp_path: Path) -> Path:
+    write_song(tmp_path / "pack" / "one", [("Easy", 3), ("Hard", 8)])
+    write_song(tmp_path / "pack" / "two", [("Hard", 10)])
+    (tmp_path / "videos").mkdir()
+    return tmp_path / "pack"
+
+
+def test_every_chart_becomes_a_film_once(pack: Path, tmp_path: Path) -> None:
+    videos = tmp_path / "videos"
+    jobs, bad = film_list(batch_request((pack,), videos))
+    assert not bad
+    outcomes = run(jobs)
+    names = ["one-dance-single-easy.mp4", "one-dance-single-hard.mp4", "two-dance-single-hard.mp4"]
+    assert sorted(outcomes) == names and {o.status for o in outcomes.values()} == {"done"}
+    assert sorted(p.name for p in videos.glob("*.mp4")) == names
+    before = {p: (p.stat().st_mtime_ns, p.read_bytes()) for p in videos.glob("*.mp4")}
+    assert {o.status for o in run(jobs).values()} == {"skipped"}
+    assert {p: (p.stat().st_mtime_ns, p.read_bytes()) for p in videos.glob("*.mp4")} == before
+    assert not [p for p in (videos / STATE).iterdir() if p.is_dir()]  # nothing in work is left
+
+
+def test_a_changed_chart_or_wish_is_made_again(pack: Path, tmp_path: Path) -> None:
+    batch = batch_request((pack / "two",), tmp_path / "videos")
+    jobs, _ = film_list(batch)
+    run(jobs)
+    song = pack / "two" / "two.sm"
+    song.write_text(song.read_text().replace("0=120", "0=121"))
+    assert [o.status for o in run(film_list(batch)[0]).values()] == ["done"]
+    slower = replace(batch, request=replace(batch.request, section="0:1"))
+    assert [o.status for o in run(film_list(slower)[0]).values()] == ["done"]
+    (tmp_path / "videos" / "two-dance-single-hard.mp4").unlink()
+    assert [o.status for o in run(film_list(slower)[0]).values()] == ["done"]
+
+
+def test_one_bad_chart_does_not_stop_the_rest(pack: Path, tmp_path: Path) -> None:
+    (pack / "bad").mkdir()
+    (pack / "bad" / "bad.sm").write_text("nothing")
+    sly = write_song(pack / "sly", [("Hard", 9)])
+    sly.write_text(sly.read_text().replace("#MUSIC:;", "#MUSIC:../../x.ogg;"))
+    jobs, bad = film_list(batch_request((pack,), tmp_path / "videos"))
+    assert [b.path.name for b in bad] == ["bad.sm"]
+    outcomes = run(jobs)
+    assert outcomes["sly-dance-single-hard.mp4"].status == "failed"
+    assert "refused" in (outcomes["sly-dance-single-hard.mp4"].error or "")
+    assert sum(o.status == "done" for o in outcomes.values()) == 3
+
+
+class Stopping(SerialWorkers):
+    """Is interrupted after a number of segments."""
+
+    def __init__(self, after: int) -> None:
+        super().__init__(lambda key, frames: None)
+        self.after = after
+
+    def done(self) -> Iterator[Done]:
+        for done in super().done():
+            yield done
+            if done.key[0] == "segment":
+                self.after -= 1
+                if self.after == 0:
+                    raise KeyboardInterrupt
+
+
+def test_an_interrupted_film_goes_on_with_its_segments(tmp_path: Path) -> None:
+    write_song(tmp_path / "pack" / "long", [("Hard", 9)], NOTES + f",\n{NOTES}" * 3)
+    videos = tmp_path / "videos"
+    videos.mkdir()
+    jobs, _ = film_list(batch_request((tmp_path / "pack",), videos))
+    with pytest.raises(KeyboardInterrupt):
+        run(jobs, Stopping(2))
+    (work,) = (p for p in (videos / STATE).iterdir() if p.is_dir())
+    kept = {p.name: p.stat().st_mtime_ns for p in work.glob("segment_*.mp4")}
+    assert len(kept) == 2 and not list(videos.glob("*.mp4"))
+
+    drawn: list[object] = []
+    workers = SerialWorkers(lambda key, frames: drawn.append(key))
+    (outcome,) = run(jobs, workers).values()
+    assert outcome.status == "done" and outcome.frames > 3 * 48
+    assert {key[2] for key in drawn} == set(range(2, -(-outcome.frames // 48)))  # type: ignore[index]
+    resumed = (videos / "long-dance-single-hard.mp4").read_bytes()
+    shutil.rmtree(videos)
+    videos.mkdir()
+    run(jobs)
+    assert (videos / "long-dance-single-hard.mp4").read_bytes() == resumed
+
+
+def test_shards_take_every_film_once(pack: Path, tmp_path: Path) -> None:
+    whole = [job.output for job in film_list(batch_request((pack,), tmp_path / "v"))[0]]
+    parts = [film_list(batch_request((pack,), tmp_path / "v", shard=(i, 2)))[0] for i in (1, 2)]
+    assert sorted(job.output for part in parts for job in part) == sorted(whole)
+    assert all(parts)
+
+
+def test_names_meters_and_twins(pack: Path, tmp_path: Path) -> None:
+    shutil.copy(pack / "two" / "two.sm", pack / "two" / "other.sm")
+    batch = batch_request((pack,), tmp_path / "v", name="{difficulty}", meters=(8, 10))
+    names = [job.output.name for job in film_list(batch)[0]]
+    assert names == ["hard.mp4", "hard-2.mp4", "hard-3.mp4"]
+    with pytest.raises(UsageError, match="there are: title"):
+        film_list(replace(batch, name="{title.__class__}"))
+    with pytest.raises(UsageError, match="slashes"):
+        film_list(replace(batch, name="../{title}"))
+
+
+def test_ranges_are_read() -> None:
+    assert parse_meters("8-12") == (8, 12) and parse_meters("9") == (9, 9) and parse_meters("8-")[0] == 8
+    assert parse_shard("2/5") == (2, 5)
+    for text in ("", "12-8", "x"):
+        with pytest.raises(UsageError):
+            parse_meters(text)
+    for text in ("0/3", "4/3", "1", "a/b"):
+        with pytest.raises(UsageError):
+            parse_shard(text)
