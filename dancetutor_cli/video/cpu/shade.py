@@ -92,19 +92,26 @@ def _texel(texels: Any, first: int, width: int, height: int, u: float, v: float)
 
 @njit(cache=True, inline="always")
 def _sunlit(shadow: Any, u: float, v: float, height: float) -> float:  # pragma: no cover
-    """Part of the light that reaches a place: four comparisons, weighted by nearness. 1 outside of the map."""
-    u -= 0.5
-    v -= 0.5
-    i, j = int(np.floor(u)), int(np.floor(v))
-    if i < 0 or j < 0 or i >= shadow.shape[1] - 1 or j >= shadow.shape[0] - 1:
+    """Part of the light that reaches a place: nine comparisons, the mean over two by two texels. 1 outside of the map.
+
+    The same as four taps of a graphics card, half a texel away from the place in both directions.
+    """
+    x, y = u - 1.0, v - 1.0
+    i, j = int(np.floor(x)), int(np.floor(y))
+    if i < 0 or j < 0 or i >= shadow.shape[1] - 2 or j >= shadow.shape[0] - 2:
         return 1.0
-    fx, fy = u - i, v - j
-    a = 1.0 if shadow[j, i] <= height else 0.0
-    b = 1.0 if shadow[j, i + 1] <= height else 0.0
-    c = 1.0 if shadow[j + 1, i] <= height else 0.0
-    d = 1.0 if shadow[j + 1, i + 1] <= height else 0.0
-    top, bottom = a + (b - a) * fx, c + (d - c) * fx
-    return top + (bottom - top) * fy
+    fx, fy = x - i, y - j
+    light = 0.0
+    for row in range(3):
+        here = 0.0
+        if shadow[j + row, i] <= height:
+            here = 1.0 - fx
+        if shadow[j + row, i + 1] <= height:
+            here += 1.0
+        if shadow[j + row, i + 2] <= height:
+            here += fx
+        light += here * (1.0 - fy if row == 0 else (1.0 if row == 1 else fy))
+    return 0.25 * light
 
 
 @njit(cache=True, inline="always")
