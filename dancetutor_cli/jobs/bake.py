@@ -53,7 +53,7 @@ def ask(task: BakeTask) -> Asked:
 
     song = charts.load(task.path)
     chart = task.selection.one(song)
-    play, pad = _play(task, chart)
+    play, pad = _play(task, song, chart)
     if not (play.limb >= 0).any():
         raise DancetutorError(f"{task.path}: {chart.label}: the chart has no steps, so there is nothing to dance")
     section = None
@@ -80,9 +80,10 @@ def plan_asked(asked: Asked, task: BakeTask) -> Plan:
     return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate)
 
 
-def _play(task: BakeTask, chart: Chart) -> tuple[Play, Pad]:
+def _play(task: BakeTask, song: Song, chart: Chart) -> tuple[Play, Pad]:
+    from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, prepare, solve_chart
+    from dancetutor_cli.play import load_preset, prepare
 
     preset, pad = load_preset(task.preset), load_pad(chart.steps_type)
     if pad is None:
@@ -93,6 +94,6 @@ def _play(task: BakeTask, chart: Chart) -> tuple[Play, Pad]:
         from dancetutor_cli.formats.play_json import read_play
 
         return read_play(task.play_file, chart, prepare(chart, pad, preset.roll_window), pad), pad
-    play = solve_chart(chart, preset)
+    play, _ = solve_with_feet(song, chart, preset)
     assert play is not None
     return play, pad

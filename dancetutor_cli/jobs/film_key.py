@@ -27,6 +27,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         b"" if subject.music is None else file_hash(subject.music).encode(),
         repr((wanted, encoding)).encode(),
         _preset(request.preset),
+        _feet(subject.song.path.parent / "data.sme"),
     )
     for part in parts:
         out.update(len(part).to_bytes(8, "little"))
@@ -38,6 +39,14 @@ def _preset(name: str) -> bytes:
     """The content of a preset given as a file; those by name are part of the program."""
     path = Path(name)
     return path.read_bytes() if path.suffix and path.is_file() else b""
+
+
+def _feet(path: Path) -> bytes:
+    """What people said about feet beside the chart file; what they said in it is part of the file."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
 
 
 def file_hash(path: Path) -> str:

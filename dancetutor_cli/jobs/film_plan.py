@@ -48,11 +48,13 @@ class Prepared:
 
 def prepare(request: Request, subject: Subject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
+    from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, solve_chart
+    from dancetutor_cli.play import load_preset
 
     song, chart, clock = subject.song, subject.chart, subject.clock
-    play, pad = solve_chart(chart, load_preset(request.preset)), load_pad(chart.steps_type)
+    play, ignores = solve_with_feet(song, chart, load_preset(request.preset))
+    pad = load_pad(chart.steps_type)
     if play is None or pad is None:
         raise UsageError(f"{request.path}: no pad is known for steps type '{chart.steps_type}'")
     scrolls = parse_segments(timing_tag(song, chart, "SCROLLS"))
@@ -75,7 +77,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         motion=_motion(request, chart, play, pad, (start, end)),
         pad=pad,
         rows=step_rows(play),
-        callouts=callouts_of(ChartSubject(song, chart, play, pad), highway_style().callouts, scrolls),
+        callouts=callouts_of(ChartSubject(song, chart, play, pad, ignores), highway_style().callouts, scrolls),
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)

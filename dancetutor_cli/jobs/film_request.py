@@ -128,12 +128,13 @@ def _around_finding(
 ) -> tuple[float, float]:
     """Four measures around the number-th finding of a rule, counted from 1."""
     from dancetutor_cli.jobs.callouts import findings_of
+    from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, solve_chart
+    from dancetutor_cli.play import load_preset
 
-    play = solve_chart(chart, load_preset(request.preset))
-    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type)))
+    play, ignores = solve_with_feet(song, chart, load_preset(request.preset))
+    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):
         has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
