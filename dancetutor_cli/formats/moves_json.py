@@ -11,7 +11,7 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
      "contacts": [{"limb": "left_foot", "kind": "tap", "part": null, "column": 0, "start": 1.5, "end": 2.1,
                    "panel": [..]}]}
 
-`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, evade, pivot or press.
+`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, gallop, evade, pivot or press.
 A reader must survive added keys.
 """
 

@@ -35,7 +35,8 @@ def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
     table = _rows_by_tick(path, _chart_data(path, chart))
     n, c = rows.steps.shape
     limb, part = np.full((n, c), Limb.NONE, dtype=np.int8), np.zeros((n, c), dtype=np.uint8)
-    feet, facing, moves = np.full((n, 2), -1, dtype=np.int16), np.zeros(n), []
+    feet, facing = np.full((n, 2), -1, dtype=np.int16), np.zeros(n)
+    moves: list[tuple[str, ...]] = []
     reserved = np.full(2, -1, dtype=np.int64)  # tick until which a foot holds its panel
     for i, tick in enumerate(rows.tick.tolist()):
         row = table.pop(tick, None)

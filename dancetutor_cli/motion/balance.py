@@ -42,7 +42,7 @@ def balanced_path(feet: tuple[FootPath, FootPath], lever: Array, times: Array, s
     low, high, middle = _support(feet)
     middle = middle + _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
-    flight = ~down.any(axis=0)
+    flight = np.asarray(~down.any(axis=0))
     weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
     out = np.empty((len(nodes), 2))
     for axis in (0, 1):

@@ -12,6 +12,7 @@ from dancetutor_cli.motion.track import FootTrack
 
 Array = NDArray[np.float64]
 GRAVITY = 9.81
+TURNING = 0.5  # part of a jump's ground path that turns about the middle between the feet; the rest is straight
 OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
@@ -62,7 +63,7 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> A
     straight = place[i] + e * (place[i + 1] - place[i])
     bulge = np.array([w.bulge for w in track.swings])[i] * (np.sin(np.pi * e) ** 2)
     turn = np.array([w.turn for w in track.swings])
-    share = np.where(np.array([w.kind == "jump" for w in track.swings]), 0.5, 0.0)
+    share = np.where(np.array([w.kind == "jump" for w in track.swings]), TURNING, 0.0)
     m0 = np.array([w.middle0 for w in track.swings])
     m1 = np.array([w.middle1 for w in track.swings])
     a, b = place[:-1] - m0, place[1:] - m1
@@ -85,7 +86,9 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     evade = 1.0 - (2.0 * s - 1.0) ** 4
     jump = height * 4.0 * s * (1.0 - s) + tuck * np.sin(np.pi * s) ** 2
     step = np.sin(np.pi * s**1.35)
-    return np.asarray(np.where(kind == "jump", jump, height * np.where(kind == "evade", evade, step)))
+    return np.asarray(
+        np.where(kind == "jump", jump, height * np.where((kind == "evade") | (kind == "gallop"), evade, step))
+    )
 
 
 def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:

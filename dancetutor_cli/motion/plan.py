@@ -56,6 +56,7 @@ class Planner:
         self.previous: float | None = None
         self.turns: list[Turn] = []
         self.presses: list[Press] = []
+        self.take_off: dict[int, tuple[int, float]] = {}  # in a gallop: foot -> its row, and when it leaves the ground
         self.contacts: list[Contact] = []
 
     def run(self) -> Plan:
@@ -83,7 +84,7 @@ class Planner:
         if not pressed:
             return
         turn = (self.play.facing[i] - self.normal + 180.0) % 360.0 - 180.0
-        feet = [limb for limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT) if limb in pressed]
+        feet = [side for side in (0, 1) if side in pressed]
         before = self.normal
         if feet:
             self.normal += turn
@@ -92,7 +93,8 @@ class Planner:
         if len(feet) == 2:
             self._jump(i, time, duration, pressed, self.normal - before)
         elif feet:
-            self._step(i, time, duration, int(feet[0]), pressed[feet[0]])
+            self._gallop(i, time, duration, feet[0])
+            self._step(i, time, duration, feet[0], pressed[feet[0]])
         if feet:
             self._turn(time, duration)
             self.previous = time
@@ -110,6 +112,9 @@ class Planner:
         yaw = self._limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
         target, yaw = self._target(i, columns, foot, yaw, stage.middle_of(other.ball, other.yaw), cut)
         lift = min(time - duration * (1.0 - step.double_support), time - LEAST_SWING)
+        galloping = self.take_off.get(side, (-1, 0.0))
+        if galloping[0] == i:
+            lift = galloping[1]
         lift = min(max(lift, foot.free), time - SHORTEST) if up is None else up
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         if np.linalg.norm(target - foot.ball) < 0.05:
@@ -119,9 +124,31 @@ class Planner:
         kind = "step"
         if up is not None:
             kind, height = "evade", max(height, self.settings.mines.height)
+        tuck, middles = 0.0, ((0.0, 0.0), (0.0, 0.0))
+        if galloping[0] == i:
+            kind, height = "gallop", max(height, self.settings.mines.height)
+            if other.side in self.take_off and self.take_off[other.side][0] > i:  # the first of the two
+                kind, height, tuck = "jump", GRAVITY * (time - lift) ** 2 / 8, self.settings.jump.tuck
+                middles = (_pair(foot.ball), _pair(target))
         toes = self._toes(foot, yaw)
-        self._move(foot, Swing(lift, time, _pair(target), toes, height, pitches, bulge, kind), target, yaw)
-        self._pivot(other, lift, time)
+        swing = Swing(lift, time, _pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
+        self._move(foot, swing, target, yaw)
+        if kind == "step":
+            self._pivot(other, lift, time)
+
+    def _gallop(self, i: int, time: float, duration: float, side: int) -> None:
+        """A step after a wait, and soon after it one of the other foot: one jump whose second foot lands later."""
+        jump, rows = self.settings.jump, self.play.rows
+        if i + 1 >= len(rows) or duration < jump.gallop_wait:
+            return
+        gap = float(rows.second[i + 1]) - time
+        following = self.play.limb[i + 1]
+        steps = np.flatnonzero(following >= 0)
+        if not (0.0 < gap <= jump.gallop and len(steps) == 1 and following[steps[0]] == 1 - side):
+            return
+        flight = min(float(np.sqrt(8 * jump.apex_near / GRAVITY)), jump.flight_share * duration)
+        take_off = max(time - flight, *(f.free for f in self.feet))
+        self.take_off = {side: (i, take_off), 1 - side: (i + 1, take_off)}
 
     def _jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
         jump, step = self.settings.jump, self.settings.step

@@ -53,9 +53,8 @@ class JumpSettings:
     lift_pitch: float
     land_pitch: float
     yaw_to_normal: float
-    straight: float
-    crouch: float
     gallop: float
+    gallop_wait: float
 
 
 @dataclass(frozen=True, slots=True)

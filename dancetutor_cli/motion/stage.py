@@ -21,7 +21,7 @@ def panels_on_ground(pad: Pad) -> Array:
     """World (x, z) of every panel's centre, (c, 2); the pad's centre is the origin and +Z the screen."""
     centre = np.asarray(pad.centre, dtype=np.float64)
     panels = np.asarray(pad.panels, dtype=np.float64) - centre
-    return panels * np.array([-PANEL, PANEL])
+    return np.asarray(panels * np.array([-PANEL, PANEL]))
 
 
 def heading(yaw: float) -> Array:

@@ -20,7 +20,8 @@ class Swing:
     height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
     pitches : heel up, radians, at lift, at most, at landing, then standing
     bulge : (x, z) added at the middle of the path, to go around the other foot
-    kind : "step", "jump", "evade" (over a mine) or "pivot" (turning on the ball, which stays down)
+    kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one)
+        or "pivot" (turning on the ball, which stays down)
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
     """
 

@@ -131,8 +131,8 @@ def _simulate(
                 here = add(here, scale(sub(rest, here), stiffness))
                 here = _pushed_out(here, centre, centre, head_radius)
                 here = _pushed_out(here, bottom, top, back_radius)
-                d = sub(here, above)
-                here = add(above, scale(d, lengths[k - 1] / length(d)))
+                bone = sub(here, above)
+                here = add(above, scale(bone, lengths[k - 1] / length(bone)))
                 p[k, 0], p[k, 1], p[k, 2] = here
         if frame >= 0:
             out[frame] = p

@@ -35,7 +35,7 @@ def _panels(report: Report) -> Iterator[tuple[str, float, Array, tuple[float, fl
         t, v = times[good], values[good]
         if not len(t):
             continue
-        low, high = float(min(v.min(), 0.0)) if v.min() > -1e-9 else float(v.min()), float(v.max())
+        low, high = float(v.min()), float(v.max())
         high = high if high > low else low + 1.0
         first, last = float(times.min()), float(max(times.max(), times.min() + 1e-3))
         top = TOP + k * (PANEL + GAP)

@@ -83,7 +83,7 @@ def _past(limit: Limit, q: Array, bone: Array, sign: float) -> Array:
         (sign * turned, limit.twist),
     ):
         past = np.maximum(past, np.maximum(low - value, value - high))
-    return np.maximum(past, 0.0)
+    return np.asarray(np.maximum(past, 0.0))
 
 
 def _vector(q: Array) -> Array:

@@ -32,7 +32,7 @@ def zmp_margin(body: Body) -> Array:
     zmp = zero_moment_point(body)
     soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
     down = soles[..., 1] <= GROUND + 0.004
-    standing = body.standing.any(axis=1)
+    standing = np.asarray(body.standing.any(axis=1))
     firm = standing[1:-1] & standing[2:] & standing[:-2]
     out = []
     for k in np.flatnonzero(firm):

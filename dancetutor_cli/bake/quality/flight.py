@@ -15,7 +15,7 @@ FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that 
 
 def flight_figures(body: Body) -> tuple[Figure, ...]:
     """g and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
-    flying = ~body.standing.any(axis=1)
+    flying = np.asarray(~body.standing.any(axis=1))
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
     for first, end in intervals(flying):
@@ -41,7 +41,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
 
 def ground_force(body: Body) -> Array:
     """Vertical force in body weights at the frames in which both neighbours stand too, from the centre of mass."""
-    stands = body.standing.any(axis=1)
+    stands = np.asarray(body.standing.any(axis=1))
     inner = stands[1:-1] & stands[:-2] & stands[2:]
     acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
     return np.asarray((acceleration / GRAVITY + 1.0)[inner])
