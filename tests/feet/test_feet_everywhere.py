@@ -1,0 +1,58 @@
+"""Feet that a person laid down hold in every command: analyze, annotate, animate and render dance the same play."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.chart import load
+from dancetutor_cli.jobs.analyze import solved
+from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.play.model import Limb, Play
+
+CHART = "#TITLE:x;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :{}\n1000\n0001\n1000\n0001\n;\n"
+MIRRORED = [Limb.RIGHT_FOOT, Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_FOOT]
+
+
+@pytest.fixture(params=["pin", "data.sme"])
+def song(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """A chart that nobody would start with the right foot, and somebody who says so."""
+    path = tmp_path / "song.sm"
+    path.write_text(CHART.format("//{dt1! RLRL}" if request.param == "pin" else ""))
+    if request.param == "data.sme":
+        overrides = [[0, 0, "Right"], [1, 3, "Left"], [2, 0, "Right"], [3, 3, "Left"]]
+        parity = {"dance-single": [{"overrides": overrides, "ignores": {"1": ["DS"]}}]}
+        (tmp_path / "data.sme").write_text(json.dumps({"version": 1, "parity": parity}))
+    return path
+
+
+def limbs(play: Play | None) -> list[int]:
+    assert play is not None
+    return [int(row.max()) for row in play.limb]
+
+
+def test_analyze(song: Path) -> None:
+    read = load(song)
+    (subject,) = solved(read, read.charts, LintRun(Request()).task(song))
+    assert limbs(subject.play) == MIRRORED
+    assert subject.ignores.silenced(48, "DS") == (song.parent / "data.sme").exists()
+
+
+def test_animate(song: Path) -> None:
+    assert limbs(ask(BakeTask(song, Selection(), "thesis")).play) == MIRRORED
+
+
+def test_render(song: Path) -> None:
+    from dancetutor_cli.jobs import film_plan
+    from dancetutor_cli.jobs.film_request import Request as FilmRequest
+    from dancetutor_cli.jobs.film_request import look_up
+    from dancetutor_cli.video.film import FilmLook
+    from dancetutor_cli.video.layout import load_layout
+
+    request = FilmRequest(song, Selection(), FilmLook(load_layout("highway"), (64, 48)), fps=12, mute=True)
+    prepared = film_plan.prepare(request, look_up(request))
+    assert [int(limb) for limb in prepared.plan.notes.limb] == MIRRORED
