@@ -42,6 +42,7 @@ class Container:
     document: dict[str, Any]
     binary: memoryview
     _pixels: int = field(default=0)
+    _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
     def fail(self, message: str) -> FileError:
         """The error to raise about this file."""
@@ -49,11 +50,14 @@ class Container:
 
     def items(self, name: str) -> list[dict[str, Any]]:
         """A top-level array of objects, empty if absent; FileError if it is something else or too long."""
+        if name in self._checked:
+            return self._checked[name]
         value = self.document.get(name, [])
         if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
             raise self.fail(f"'{name}' is not a list of objects; export the character again")
         if len(value) > MAX_ITEMS:
             raise self.fail(f"{len(value)} {name} are more than the {MAX_ITEMS} allowed")
+        self._checked[name] = value
         return value
 
     def item(self, name: str, index: object) -> dict[str, Any]:

@@ -12,7 +12,11 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Colour of a mesh. base_color : sRGB (4,) in 0..1; texture : uint8 (h, w, 4) sRGB or None ."""
+    """Colour of a mesh: base_color times texture, as in glTF. base_color : sRGB (4,) in 0..1
+
+    name : a limb of `colours.LimbColours` gives our own characters' meshes that limb's colour when they are loaded
+    texture : uint8 (h, w, 4) sRGB, or None; meshes that share a texture share the array
+    """
 
     name: str
     base_color: tuple[float, float, float, float]

@@ -21,6 +21,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 MAX_JOINTS = 1024
 MAX_VERTICES = 2_000_000
 MAX_TRIANGLES = 4_000_000
+MAX_PRIMITIVES = 4096
 _TRIANGLES = 4  # glTF's primitive mode
 
 
@@ -61,18 +62,51 @@ class _Reader:
         self.images: dict[int, NDArray[np.uint8]] = {}
         self.vertices = 0
         self.triangles = 0
+        self.primitives = 0
         self.skins = [self._skin(skin) for skin in container.items("skins")]
         self.joint_of = self._joints(keep)
         self.skeleton = self._skeleton()
         self.inverse_bind = np.tile(np.eye(4), (len(self.joint_of), 1, 1))
         self.inverse_bind[:, :3, 3] = -self.skeleton.rest
-        self._bind: dict[int, NDArray[np.float64]] = {}
+        self.tables = self._bind()
+
+    def _bind(self) -> list[NDArray[np.uint16]]:
+        """Joint indices of each skin; sets the inverse bind matrices.
+
+        Where a second skin binds a node in another way than the first did, it gets a joint of its own that moves along.
+        """
+        rest = self.inverse_bind
+        known: dict[int, list[tuple[NDArray[np.float64], int]]] = {}
+        extra: list[tuple[int, NDArray[np.float64]]] = []
+        tables = []
         for joints, matrices in self.skins:
+            table = []
             for node, matrix in zip(joints, matrices, strict=True):
-                self._bind.setdefault(node, matrix)
-        for node, matrix in self._bind.items():
-            j = self.joint_of[node]
-            self.inverse_bind[j] = self.inverse_bind[j] @ nodes.world[node] @ matrix
+                ways = known.setdefault(node, [])
+                index = next((j for other, j in ways if np.allclose(other, matrix, atol=1e-5)), None)
+                if index is None:
+                    index = len(rest) + len(extra) if ways else self.joint_of[node]
+                    bound = rest[self.joint_of[node]] @ self.nodes.world[node] @ matrix
+                    if ways:
+                        extra.append((self.joint_of[node], bound))
+                    else:
+                        self.inverse_bind[index] = bound
+                    ways.append((matrix, index))
+                table.append(index)
+            tables.append(np.array(table, dtype=np.uint16))
+        if extra:
+            self._add_joints(extra)
+        return tables
+
+    def _add_joints(self, extra: list[tuple[int, NDArray[np.float64]]]) -> None:
+        """Joints (parent, inverse bind matrix) at their parents' places."""
+        if len(self.skeleton.names) + len(extra) > 4 * MAX_JOINTS:
+            raise self.container.fail(f"its skins need more than {4 * MAX_JOINTS} joints; join its meshes")
+        old = self.skeleton
+        names = (*old.names, *(f"{old.names[p]}_skin{k}" for k, (p, _) in enumerate(extra)))
+        parents = np.concatenate([old.parents, np.array([p for p, _ in extra], dtype=np.int32)])
+        self.skeleton = Skeleton(names, parents, np.concatenate([old.offsets, np.zeros((len(extra), 3))]))
+        self.inverse_bind = np.concatenate([self.inverse_bind, np.stack([m for _, m in extra])])
 
     def _skin(self, skin: dict[str, Any]) -> tuple[list[int], NDArray[np.float64]]:
         fail, items = self.container.fail, self.container.items("nodes")
@@ -118,6 +152,9 @@ class _Reader:
         primitives = mesh.get("primitives", [])
         if not isinstance(primitives, list):
             raise self.container.fail("a mesh's primitives are not a list; the file is broken")
+        self.primitives += len(primitives)
+        if self.primitives > MAX_PRIMITIVES:
+            raise self.container.fail(f"has more than {MAX_PRIMITIVES} parts; join its meshes")
         for primitive in primitives:
             if not isinstance(primitive, dict) or primitive.get("mode", _TRIANGLES) != _TRIANGLES:
                 continue
@@ -172,16 +209,15 @@ class _Reader:
         self, node: dict[str, Any], attributes: dict[str, Any], count: int
     ) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
         skin = self.container.integer(node["skin"], 0, len(self.skins) - 1, "skin of a node")
-        names = self.skins[skin][0]
+        table = self.tables[skin]
         if "JOINTS_0" not in attributes or "WEIGHTS_0" not in attributes:
             raise self.container.fail("a skinned mesh has no joints or weights; the file is broken")
         local = self._attribute(attributes, "JOINTS_0", 4, count).astype(np.int64)
         weights = np.maximum(self._attribute(attributes, "WEIGHTS_0", 4, count).astype(np.float64), 0.0)
-        if local.min() < 0 or local.max() >= len(names):
+        if local.min() < 0 or local.max() >= len(table):
             raise self.container.fail("a mesh's joints are not in its skin; the file is broken")
         total = weights.sum(axis=1, keepdims=True)
         weights = np.where(total > 1e-6, weights / np.maximum(total, 1e-6), [1.0, 0.0, 0.0, 0.0])
-        table = np.array([self.joint_of[n] for n in names], dtype=np.uint16)
         return table[local], weights.astype(np.float32)
 
     def _attach(

@@ -71,6 +71,7 @@ CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "draco": put("extensionsRequired", ["KHR_draco_mesh_compression"]),
     "no skins": lambda d: d.pop("skins"),
     "no meshes": lambda d: d.pop("meshes"),
+    "endless primitives": lambda d: d["meshes"][0].update(primitives=d["meshes"][0]["primitives"] * 5000),
     "image no image": put("images", 0, "bufferView", 0),
 }
 

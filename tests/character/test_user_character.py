@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
-from glb_edit import edited
+from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import read_container
@@ -19,6 +19,7 @@ from dancetutor_cli.character.model import Character
 from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.motion.model import Contact, Motion
 from dancetutor_cli.resources import PACKAGE
 from dancetutor_cli.rig import quaternion as quat
@@ -152,6 +153,34 @@ def test_a_character_that_lies_turned_small_and_in_t_pose_is_fitted(tmp_path: Pa
     points = rest_vertices(character)
     assert abs(points[:, 1].min()) < 0.005
     assert np.ptp(points[:, 1]) == pytest.approx(1.70, abs=0.03)
+
+
+def test_skins_that_bind_the_same_joint_differently(tmp_path: Path) -> None:
+    """Each mesh follows its own skin's binding matrices: here the second lies 10 cm aside in the file."""
+    document, binary = parts_of(SOURCE.read_bytes())
+    view = document["bufferViews"][document["accessors"][0]["bufferView"]]
+    matrices = np.frombuffer(binary, "<f4", document["accessors"][0]["count"] * 16, view["byteOffset"]).copy()
+    matrices = matrices.reshape(-1, 4, 4)
+    matrices[:, 3, 0] -= 0.1  # column-major: the translation is the last row
+    added = matrices.tobytes()
+    document["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(added)})
+    document["accessors"].append({**document["accessors"][0], "bufferView": len(document["bufferViews"]) - 1})
+    document["skins"].append({**document["skins"][0], "inverseBindMatrices": len(document["accessors"]) - 1})
+    document["buffers"][0]["byteLength"] += len(added)
+    next(n for n in document["nodes"] if n["name"] == "left shoe")["skin"] = 1
+    path = tmp_path / "x.glb"
+    path.write_bytes(joined(document, binary + added))
+    plain, two = read_glb(SOURCE), read_glb(path)
+    assert len(two.skeleton.names) > len(plain.skeleton.names)
+    moved = rest_vertices(two) - rest_vertices(plain)
+    at = 0
+    for mesh in plain.meshes:
+        wanted = -0.1 if mesh.name == "left shoe" else 0.0
+        np.testing.assert_allclose(
+            moved[at : at + len(mesh.positions)], np.tile([wanted, 0, 0], (len(mesh.positions), 1)), atol=1e-5
+        )
+        at += len(mesh.positions)
+    assert load_character(str(path)).skeleton.names[0] == "HumanoidRoot"
 
 
 def rest_vertices(character: Character) -> np.ndarray:
