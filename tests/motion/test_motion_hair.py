@@ -1,0 +1,69 @@
+"""The braid hangs, swings, keeps its length, never twists, and stays out of head and back."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.physics.hair import BACK, HEAD, JOINTS, add_hair
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.rig.soles import BodyPoint, place
+
+SKELETON = dancer_skeleton()
+HAIR = default_settings().hair
+
+
+def moving(frames: int = 360, turn: float = 0.0, shake: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Two seconds still, then turning or shaking, 60 frames per second."""
+    times = np.arange(frames) / 60
+    active = np.maximum(times - 2.0, 0.0)
+    rotations = np.tile(quat.IDENTITY, (frames, len(SKELETON.names), 1))
+    rotations[:, 0] = quat.from_axis_angle((0, 1, 0), turn * active)
+    root = np.tile(SKELETON.offsets[0], (frames, 1))
+    root[:, 2] += shake * np.sin(2 * np.pi * 2 * active)
+    return times, rotations, root
+
+
+@pytest.mark.parametrize(("turn", "shake"), [(0.0, 0.0), (8.0, 0.0), (0.0, 0.15)])
+def test_stays_out_of_head_and_back_and_never_twists(turn: float, shake: float) -> None:
+    times, rotations, root = moving(turn=turn, shake=shake)
+    add_hair(SKELETON, times, rotations, root, HAIR)
+    positions, world = world_transforms(SKELETON, rotations, root)
+    skull = BodyPoint(SKELETON.index("skullbase"), np.array(HEAD))
+    low, high = (BodyPoint(SKELETON.index(j), np.array(o)) for j, o in zip(("vt10", "vt4"), BACK, strict=True))
+    head, bottom, top = np.moveaxis(place((skull, low, high), positions, world), 1, 0)
+    for name in JOINTS[1:]:
+        p = positions[:, SKELETON.index(name)]
+        assert np.linalg.norm(p - head, axis=1).min() > HAIR.head_radius - 0.01
+        along = top - bottom
+        s = np.clip(np.sum((p - bottom) * along, axis=1) / np.sum(along**2, axis=1), 0, 1)
+        assert np.linalg.norm(p - bottom - s[:, None] * along, axis=1).min() > HAIR.back_radius - 0.015
+    for name, child in pairwise(JOINTS):
+        bone = SKELETON.offsets[SKELETON.index(child)]
+        _, twist = quat.swing_twist(rotations[:, SKELETON.index(name)], bone / np.linalg.norm(bone))
+        assert quat.angle_between(twist, quat.IDENTITY).max() < 1e-6
+
+
+def test_spin_lifts_it_and_stillness_settles_it() -> None:
+    times, rotations, root = moving(turn=10.0)
+    add_hair(SKELETON, times, rotations, root, HAIR)
+    positions, _ = world_transforms(SKELETON, rotations, root)
+    tip, first = positions[:, SKELETON.index("braid4")], positions[:, SKELETON.index("braid1")]
+    out = np.hypot(*(tip - positions[:, 0])[:, [0, 2]].T)
+    assert out[-60:].mean() > out[60:110].mean() + 0.03
+    assert np.abs(np.diff(tip[60:115], axis=0)).max() < 2e-3  # at rest before the spin
+    assert (first[:110, 1] - tip[:110, 1]).min() > 0.2  # and hanging
+
+
+def test_same_motion_same_hair() -> None:
+    results = []
+    for _ in range(2):
+        times, rotations, root = moving(shake=0.1)
+        add_hair(SKELETON, times, rotations, root, HAIR)
+        results.append(rotations.tobytes())
+    assert results[0] == results[1]

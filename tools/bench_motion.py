@@ -1,0 +1,98 @@
+"""Speed of the bake: one core, numba cache full."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from dancetutor_cli.bake import bake, bake_plan, plan_of
+from dancetutor_cli.chart import load
+from dancetutor_cli.motion import ik
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.resources import charts_path
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+Row = tuple[str, float, str, str, str]
+FPS, LENGTH = 60.0, 120.0
+
+
+def _repeated(plan_seconds: float, times: int):  # type: ignore[no-untyped-def]
+    """The demo song's hardest single chart, again and again: a play of any length."""
+    from dataclasses import replace
+
+    song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")
+    chart = next(c for c in song.charts if c.steps_type == "dance-single" and c.difficulty == "Hard")
+    play, pad = solve_chart(chart, load_preset("thesis")), load_pad(chart.steps_type)
+    assert play is not None and pad is not None
+    rows = play.rows
+    second = np.concatenate([rows.second + k * plan_seconds for k in range(times)])
+
+    def tile(a):  # type: ignore[no-untyped-def]
+        return np.concatenate([a] * times)
+
+    tiled = replace(
+        rows, second=second, steps=np.where(tile(rows.steps) == 3, 1, tile(rows.steps)).astype(np.uint8),
+        hold_end=tile(rows.hold_end) * 0 - 1, tick=tile(rows.tick), line=tile(rows.line), mines=tile(rows.mines),
+        milliseconds=tile(rows.milliseconds),
+    )  # fmt: skip
+    whole = replace(
+        play, rows=tiled, limb=tile(play.limb), part=tile(play.part), feet=tile(play.feet), facing=tile(play.facing)
+    )
+    return chart, whole, pad
+
+
+def _seconds(work, rounds: int = 3) -> float:  # type: ignore[no-untyped-def]
+    best = float("inf")
+    for _ in range(rounds):
+        start = time.process_time()
+        work()
+        best = min(best, time.process_time() - start)
+    return best
+
+
+def measure() -> list[Row]:
+    """Rows (name, value, unit, goal, peer) for `tools/bench.py`."""
+    settings = default_settings()
+    out: list[Row] = []
+    took = {}
+    for copies in (3, 12):
+        chart, play, pad = _repeated(40.0, copies)
+        plan = plan_of(chart, play, pad)
+        length = 40.0 * copies
+        bake_plan(plan, FPS, 0.0, 5.0, settings)
+        took[copies] = _seconds(lambda plan=plan, length=length: bake_plan(plan, FPS, 0.0, length, settings), 2)
+    out.append(("bake of two minutes at 60 fps", took[3], "s", "at most 4", ""))
+    out.append(("animate frames", LENGTH * FPS / took[3], "frames/s", "", ""))
+    out.append(("eight minutes against two, per second", took[12] / took[3] / 4, "x", "about 1", ""))
+    out.append(("IK poses", _ik_rate(), "poses/s", "200,000", "300,000 measured elsewhere"))
+    chart, play, pad = _repeated(40.0, 1)
+    out.append(("whole bake call of the demo, 41 s", _seconds(lambda: bake(chart, play, pad)), "s", "", ""))
+    return out
+
+
+def _ik_rate() -> float:
+    from dancetutor_cli.motion.ik import Targets
+
+    frames, rng = 20000, np.random.default_rng(1)
+    turn = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
+    pair = np.repeat(turn[:, None], 2, axis=1)
+    skeleton = dancer_skeleton()
+    pelvis = np.tile([0.0, 0.85, 0.0], (frames, 1)) + rng.uniform(-0.05, 0.05, (frames, 3))
+    sides = np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
+    shoulders = pelvis[:, None] + sides * [0.16, 0.44, -0.015]
+    wrists = shoulders + sides * [0.1, -0.35, 0.15]
+    ankles = np.tile(sides * [0.15, 0.09, 0.0], (frames, 1, 1)) + rng.uniform(-0.1, 0.1, (frames, 2, 3)) * [1, 0, 1]
+    poles = np.tile([0.0, 0.0, 1.0], (frames, 2, 1))
+    targets = Targets(
+        pelvis, turn, turn, shoulders, wrists, pair, np.zeros((frames, 2)), -poles, ankles, pair, pair, poles
+    )
+    ik.solve(skeleton, targets, 0.8055)
+    return frames / _seconds(lambda: ik.solve(skeleton, targets, 0.8055))
+
+
+if __name__ == "__main__":
+    for row in measure():
+        print(row)
