@@ -34,6 +34,10 @@ class BusyError(FileError):
     """Another process is writing the same file."""
 
 
+class ChangedError(FileError):
+    """The file is no longer what it was when the new content was made from it."""
+
+
 def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expect: bytes | None = None) -> None:
     """Replace `path` by `data` in one step; the file's mode, owner and a link that leads to it stay.
 
@@ -45,7 +49,8 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
 
     Raises
     ------
-    FileError : in one line why nothing was written; the old file is as it was
+    ChangedError : the file does not hold `expect`; BusyError : another process is writing it
+    FileError : in one line why nothing was written; in every case the file is as it was
     """
     target = _target(path)
     old = _status(path, target)
@@ -59,7 +64,7 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
         file.flush()
         os.fsync(file.fileno())
         if expect is not None and _content(target) != expect:
-            raise FileError(path, "was changed by somebody else in the meantime; nothing was written, run it again")
+            raise ChangedError(path, "was changed by somebody else in the meantime; nothing was written, run it again")
         if fcntl is None:
             file.close()  # Windows renames no open file
         temporary.replace(target)

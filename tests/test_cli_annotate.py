@@ -321,6 +321,24 @@ def test_a_file_that_changes_while_it_is_worked_on_is_left_alone(ssc: Path, monk
     assert ssc.read_bytes() == edited
 
 
+def test_two_commands_on_one_file_end_well(ssc: Path) -> None:
+    """Both do the same, one after the other or at once: each ends with 0 and the file is whole."""
+    import subprocess
+
+    original = ssc.read_bytes()
+    Said([ssc])
+    marked = ssc.read_bytes()
+    for options, before, after in (([], original, marked), (["--strip"], marked, original)):
+        ssc.write_bytes(before)
+        code = "import sys; from dancetutor_cli.__main__ import main; main()"
+        command_line = [sys.executable, "-c", code, "annotate", ssc, *options]
+        running = [subprocess.Popen(command_line, stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(3)]
+        said = [process.communicate(timeout=120)[1] for process in running]
+        assert [process.returncode for process in running] == [0, 0, 0], said
+        assert ssc.read_bytes() == after
+    assert sorted(files_of(ssc.parent)) == ["two_left_feet.sm", "two_left_feet.ssc"]
+
+
 def test_a_full_disk_is_told(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from dancetutor_cli import files
 

@@ -146,10 +146,10 @@ def test_an_error_while_writing_leaves_the_old_file(tmp_path: Path) -> None:
 def test_a_change_by_somebody_else_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "a.sm"
     path.write_bytes(b"saved by the editor")
-    with pytest.raises(FileError, match="changed"):
+    with pytest.raises(files.ChangedError, match="changed"):
         write_atomic(path, b"new", expect=b"old")
     path.unlink()
-    with pytest.raises(FileError, match="changed"):
+    with pytest.raises(files.ChangedError, match="changed"):
         write_atomic(path, b"new", expect=b"old")
     assert names(tmp_path) == []
 

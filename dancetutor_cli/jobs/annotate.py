@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import back_up, remove_leftovers, write_atomic
+from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
@@ -219,10 +219,14 @@ class _Work:
         change.path.parent.mkdir(parents=True, exist_ok=True)
         if self.order.backup and change.path.exists():
             back_up(change.path)
-        if change.new is not None:
-            write_atomic(change.path, change.new, expect=change.old if self._in_place else None)
-        else:
+        if change.new is None:
             change.path.unlink(missing_ok=True)
+            return
+        try:
+            write_atomic(change.path, change.new, expect=change.old if self._in_place else None)
+        except ChangedError:
+            if change.path.read_bytes() != change.new:  # else another run has just done the same
+                raise
 
 
 @cache
