@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -105,9 +106,14 @@ class SerialWorkers:
         self._queue.clear()
 
 
+def _leave(_number: int, _frame: object) -> None:
+    sys.exit(1)
+
+
 def _worker(connection: Connection) -> None:
     """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)  # so that an encoder at work is ended first
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pickle.loads(connection.recv_bytes())

@@ -1,0 +1,122 @@
+"""`render` as it is typed: what it refuses and how, and that Ctrl-C leaves nothing behind."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.resources import charts_path
+
+DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+SONG = "#TITLE:T;\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
+TINY = ("--size", "64x64", "--layout", "highway", "--fps", "10")
+
+
+def render(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as stop:
+        main(["render", *(str(a) for a in arguments)])
+    assert isinstance(stop.value.code, int)
+    return stop.value.code
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("path_traversal_music.sm", "music"),
+        ("ffmpeg_music.sm", "music"),
+        ("option_like_music.sm", "music"),
+        ("empty.sm", "no charts"),
+        ("many_measures_20k.sm", "--yes"),
+    ],
+)
+def test_hostile_files_are_one_line_and_no_film(
+    hostile: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, said: str
+) -> None:
+    assert render(hostile / name, "-o", tmp_path / "film.mp4", *TINY) == 2
+    error = [line for line in capsys.readouterr().err.splitlines() if line.startswith("dancetutor:")]
+    assert len(error) == 1 and said in error[0] and name in error[0]
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--layout", "nope"), "side-by-side"),
+        (("--scroll", "fast"), "C600"),
+        (("--rate", "9"), "0.25"),
+        (("--section", "9:2"), "section"),
+        (("--section", "DT201:99"), "DT201"),
+        (("--size", "big"), "1280x720"),
+        (("--meter", "9"), "folders"),
+        (("-o", "film.avi"), ".mp4"),
+        (("-o", "nowhere/film.mp4"), "folder"),
+        (("--font", "nofont.ttf", "--section", "4:5"), "nofont.ttf"),
+    ],
+)
+def test_what_does_not_exist_is_refused_with_what_does(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    options: tuple[str, ...],
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert render(DEMO, "--steps-type", "dance-single", "--difficulty", "hard", "--jobs", "1", *options) == 2
+    error = capsys.readouterr().err
+    assert said in error and "Traceback" not in error
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_song_without_music_gets_claps_and_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG.replace("#MUSIC:;", "#MUSIC:gone.ogg;") + "1000\n0100\n0010\n0001\n;\n")
+    film = tmp_path / "film.mp4"
+    assert render(song, "-o", film, "--jobs", "1", *TINY) == 0
+    said = capsys.readouterr()
+    assert said.err.count("gone.ogg") == 1 and film.stat().st_size > 1000
+
+
+def test_odd_sizes_are_rounded_with_a_note(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG + "1000\n0100\n0010\n0001\n;\n")
+    options = ("--layout", "highway", "--fps", "5", "--section", "0:1", "--jobs", "1")
+    assert render(song, "-o", tmp_path / "film.mp4", "--size", "71x65", *options) == 0
+    assert "72x66" in capsys.readouterr().err
+
+
+def test_one_picture_for_each_row(tmp_path: Path) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG + "1000\n0100\n0000\n0011\n;\n")
+    assert render(song, "--poses", tmp_path / "poses", "--jobs", "1", "--size", "64x64", "--layout", "highway") == 0
+    index = json.loads((tmp_path / "poses" / "poses.json").read_text())
+    assert [(p["beat"], p["measure"], p["line"]) for p in index["poses"]] == [(0, 0, 12), (1, 0, 13), (3, 0, 15)]
+    pictures = [np.asarray(Image.open(tmp_path / "poses" / p["picture"])) for p in index["poses"]]
+    assert all(p.shape == (64, 64, 3) for p in pictures)
+    assert not (pictures[0] == pictures[1]).all()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT to send to one process")
+def test_ctrl_c_is_one_line_and_leaves_nothing(tmp_path: Path) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG + ",\n".join(["1000\n0100\n0010\n0001\n"] * 200) + ";\n")
+    out = tmp_path / "out"
+    out.mkdir()
+    command = [sys.executable, "-m", "dancetutor_cli", "render", str(song), "-o", str(out / "film.mp4"), "--jobs", "2"]
+    process = subprocess.Popen([*command, *TINY], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while not list(out.glob(".film*/segment_*")) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert error.strip().splitlines()[-1].endswith("interrupted") and "Traceback" not in error
+    assert list(out.iterdir()) == []
