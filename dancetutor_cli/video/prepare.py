@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.camera import NEAR, Camera
 from dancetutor_cli.video.renderer import Quality
-from dancetutor_cli.video.scene import FrameState, Scene, foot_marks, light_direction, shadow_axes
+from dancetutor_cli.video.scene import FrameState, Scene, foot_marks, hand_marks, light_direction, shadow_axes
 
 Array = NDArray[np.float64]
 SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
@@ -81,15 +81,20 @@ def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> fl
 
 
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
-    """Rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue), (2, 9)."""
-    out = np.zeros((2, 9))
+    """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
+    strength of the mark 0..1), (4, 10). A hand that is not near the floor leaves nothing on it."""
+    out = np.zeros((4, 10))
     out[:, 5] = NO_FOOT
     if state.joints is None:
         return out
-    for row, mark, colour in zip(out, foot_marks(scene, state.joints), scene.colours.by_limb[:2], strict=True):
-        if mark is not None and mark.height < _MARK_HEIGHT:
-            near = max(0.0, 1.0 - mark.height / scene.look.light.contact_height)
-            row[:] = (*mark.heel, *mark.toe, mark.ground, near, *colour)
+    low = scene.look.light.contact_height
+    marks = (*foot_marks(scene, state.joints), *hand_marks(scene, state.joints))
+    for limb, (mark, colour) in enumerate(zip(marks, scene.colours.by_limb, strict=True)):
+        foot = limb < 2
+        if mark is not None and mark.height < (_MARK_HEIGHT if foot else low):
+            near = max(0.0, 1.0 - mark.height / low)
+            strength = scene.look.stage.mark * (0.25 + 0.75 * near if foot else near)
+            out[limb] = (*mark.heel, *mark.toe, mark.ground, near, *colour, strength)
     return out
 
 

@@ -110,6 +110,22 @@ def foot_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark |
     return out[0], out[1]
 
 
+def hand_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:
+    """As `foot_marks`, for the palms: a palm is a foot whose heel and toe are one point."""
+    from dancetutor_cli.rig.soles import palm_points  # brings numba, which choosing a scene must not
+
+    skeleton = scene.character.skeleton
+    needed = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "radiocarpal")]
+    if not set(needed) <= set(skeleton.names):
+        return None, None
+    out = []
+    for palm in palm_points(skeleton):
+        x, y, z = (float(v) for v in joints[palm.joint, :3, :3] @ palm.offset + joints[palm.joint, :3, 3])
+        ground = 0.0 if _on_pad(scene, np.array([x, y, z])) else -scene.look.stage.pad_height
+        out.append(FootMark((x, z), (x, z), max(0.0, y - ground), ground))
+    return out[0], out[1]
+
+
 def light_direction(look: Look, camera: Camera) -> Array:
     """Unit vector (3,) to the light, which stands beside the camera: she is lit from where she is seen."""
     forward, up = camera.axes()[2], camera.axes()[1]

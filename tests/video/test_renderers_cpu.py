@@ -17,7 +17,7 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.motion.stage import panels_on_ground
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.camera import with_pan_range
-from dancetutor_cli.video.scene import foot_marks
+from dancetutor_cli.video.scene import foot_marks, hand_marks
 
 SIZE = (320, 180)
 
@@ -255,3 +255,25 @@ def test_choosing_a_renderer_imports_neither_numba_nor_opengl():
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+def test_a_palm_on_the_pad_leaves_its_mark_and_a_raised_hand_none(scene):
+    size = (640, 360)
+    cpu = renderer.create(scene, size, "draft", "cpu")
+    names = scene.character.skeleton.names
+    state = rs.state(scene, "stand", "top", size)
+    empty = cpu.frame(replace(state, joints=None)).astype(int)
+    place = np.array([-0.28, 0.0, 0.28])  # a blank tile, far from both feet
+    row, column = scene.camera("top", size).project(place[None], size)[0, 1::-1].astype(int)
+    around = np.s_[row - 25 : row + 25, column - 25 : column + 25]
+    wrist = names.index("r_radiocarpal")
+    for height, seen in ((0.0, True), (0.5, False)):
+        joints = state.joints.copy()
+        palm = hand_marks(scene, joints)[1]
+        joints[wrist, 0, 3] += place[0] - palm.heel[0]
+        joints[wrist, 2, 3] += place[2] - palm.heel[1]
+        joints[wrist, 1, 3] += height - palm.height
+        changed = cpu.frame(replace(state, joints=joints)).astype(int)[around] - empty[around]
+        cyan = np.abs(changed + empty[around] - np.array(scene.colours.right_hand)).sum(2) < 60
+        assert cyan.any() == seen
+        assert (changed != 0).any() == seen

@@ -82,17 +82,16 @@ def draw_ground(
 
     shift : columns that the standing picture is ahead; shadow with axes, origin and scale : how much of the light is
     taken, `prepare.Cast`; dark : darkness of the shadow; lit, lit_colour : `prepare.panel_lights`;
-    feet : `prepare.feet_on_floor`; numbers : contact darkness, its softness, strength of the marks, strength of lit
-    panels, sole radius
+    feet : `prepare.feet_on_floor`; numbers : contact darkness, its softness, strength of lit panels, sole radius
     """
-    radius = numbers[4]
+    radius = numbers[3]
     far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
     for row in range(box[1], box[3]):
         for column in range(box[0], box[2]):
             c = column + shift
             take = takes[row, c]
             p = panel[row, c]
-            shine = glow[row, c] * lit[p] * numbers[3] if p >= 0 else 0.0
+            shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
             if take <= 0.0:
                 continue
             x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
@@ -117,13 +116,13 @@ def draw_ground(
                     keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
                 soft = 0.5 * foot[row, c]
                 band = min(1.0, max(0.0, (0.0085 - abs(d - 0.020)) / (2.0 * soft) + 0.5))
-                band *= numbers[2] * (0.25 + 0.75 * near)
+                band *= feet[f, 9]
                 if band > ring:
                     ring, owner = band, f
             if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
                 continue
             keep = 1.0 - (1.0 - keep) * take
-            hot = white[row, c] * lit[p] * numbers[3] if p >= 0 else 0.0
+            hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
             for k in range(3):
                 value = colour[row, c, k] * keep
                 if shine > 0.0:

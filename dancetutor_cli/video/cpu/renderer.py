@@ -114,7 +114,7 @@ class CpuRenderer:
         bounds = self._world[:, :3].min(0), self._world[:, :3].max(0)
         box = ground_box(self._scene, state.camera, self._size, bounds, cast)
         lit, lit_colour = panel_lights(self._scene, state)
-        numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.mark, look.stage.glow, SOLE_RADIUS])
+        numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.glow, SOLE_RADIUS])
         draw_ground(
             self._out, box, shift, background.colour, background.ground, background.takes, background.panel,
             background.glow, background.white, background.footprint, self._mask, cast.axes, cast.origin, cast.scale,

@@ -21,7 +21,7 @@ class Program(ShaderProgram):  # type: ignore[misc]
 
     def __init__(self, vertex_shader: str, fragment_shader: str) -> None:
         super().__init__(vertex_shader, fragment_shader)
-        self._places: dict[str, int] = {}
+        self._places: dict[str, tuple[int, int]] = {}  # name: place and type
 
     def _add_to_context(self) -> None:
         """Compile and link. Not validated as PyOpenGL does: samplers of different kinds get their units later."""
@@ -41,9 +41,9 @@ class Program(ShaderProgram):  # type: ignore[misc]
         self._program_id = program
         count = GL.glGetProgramiv(program, GL.GL_ACTIVE_UNIFORMS)
         for number in range(int(count)):
-            name = GL.glGetActiveUniform(program, number)[0]
+            name, _, kind = GL.glGetActiveUniform(program, number)
             text = (name if isinstance(name, bytes) else bytes(name)).decode("ascii").rstrip("\0").removesuffix("[0]")
-            self._places[text] = GL.glGetUniformLocation(program, text)
+            self._places[text] = (GL.glGetUniformLocation(program, text), int(kind))
 
     @property
     def number(self) -> int:
@@ -56,11 +56,11 @@ class Program(ShaderProgram):  # type: ignore[misc]
         return int(self._vao_id)
 
     def set_uniform(self, name: str, value: Any, unsigned: bool = False) -> None:
-        """Set a uniform: int, float, or a float array (n,), (k, n) of vectors or (4, 4). KeyError if there is none.
+        """Set a uniform: int, float, a vector (n,), some vectors (k, n), or a matrix (4, 4).
 
         One that the driver has optimised away is no error: it is not in the program then.
         """
-        place = self._places.get(name, -1)
+        place, kind = self._places.get(name, (-1, 0))
         if place < 0:
             return
         if isinstance(value, int):
@@ -69,7 +69,7 @@ class Program(ShaderProgram):  # type: ignore[misc]
             GL.glUniform1f(place, value)
         else:
             array = np.ascontiguousarray(value, dtype=np.float32)
-            if array.shape == (4, 4):
+            if kind == GL.GL_FLOAT_MAT4:
                 GL.glUniformMatrix4fv(place, 1, GL.GL_TRUE, array)
             else:
                 setters = {2: GL.glUniform2fv, 3: GL.glUniform3fv, 4: GL.glUniform4fv}

@@ -35,7 +35,7 @@ void main() {
         colour = vec4(outline_colour, 1.0);
         return;
     }
-    float sun = sunlit();
+    float sun = terms.x > bands.x - bands.z ? sunlit() : 1.0;
     float half_light = smoothstep(bands.x - bands.z, bands.x + bands.z, terms.x) * sun;
     float full_light = smoothstep(bands.y - bands.z, bands.y + bands.z, terms.x) * sun;
     float level = levels.x + (levels.y - levels.x) * half_light + (levels.z - levels.y) * full_light;

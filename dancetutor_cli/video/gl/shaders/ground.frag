@@ -9,11 +9,11 @@ uniform int shift;
 uniform mat4 light;
 uniform float dark;
 uniform float spread;         // distance of the shadow's taps, part of the map
-uniform vec4 contact;         // darkness, softness, strength of the marks, strength of lit panels
+uniform vec3 contact;         // darkness, softness, strength of lit panels
 uniform float radius;
-uniform vec4 foot[2];         // heel x, z, toe x, z
-uniform vec2 foot_state[2];   // ground, nearness to it; nearness < 0: no foot
-uniform vec3 foot_colour[2];
+uniform vec4 foot[4];         // heel x, z, toe x, z
+uniform vec3 foot_state[4];   // ground, nearness to it (< 0: no foot), strength of the mark
+uniform vec3 foot_colour[4];
 
 out vec4 colour;
 
@@ -54,7 +54,7 @@ void main() {
     float keep = dark > 0.0 ? 1.0 - dark * shadowed(at.xyz) : 1.0;
     float ring = 0.0;
     vec3 ring_colour = vec3(0.0);
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 4; ++f) {
         float near = foot_state[f].y;
         if (near < 0.0 || abs(at.y - foot_state[f].x) > 0.03) {
             continue;
@@ -62,14 +62,14 @@ void main() {
         float d = from_foot(at.xz, foot[f]) - radius;
         float reach = contact.y * (1.6 - 0.6 * near);
         keep *= 1.0 - contact.x * near * (1.0 - smoothstep(0.0, reach, d));
-        float band = clamp((0.0085 - abs(d - 0.020)) / at.w + 0.5, 0.0, 1.0) * contact.z * (0.25 + 0.75 * near);
+        float band = clamp((0.0085 - abs(d - 0.020)) / at.w + 0.5, 0.0, 1.0) * foot_state[f].z;
         if (band > ring) {
             ring = band;
             ring_colour = foot_colour[f];
         }
     }
     vec4 lit = info.x >= 0.0 ? texelFetch(lights, ivec2(int(info.x + 0.5), 0), 0) : vec4(0.0);
-    float shine = info.y * lit.a * contact.w;
+    float shine = info.y * lit.a * contact.z;
     if (keep >= 1.0 && shine <= 0.0 && ring <= 0.0) {
         discard;
     }
@@ -77,7 +77,7 @@ void main() {
     vec3 value = base.rgb * keep;
     if (shine > 0.0) {
         value = mix(value, lit.rgb * (0.35 + 0.65 * keep), shine);
-        value = mix(value, vec3(1.0), info.z * lit.a * contact.w);
+        value = mix(value, vec3(1.0), info.z * lit.a * contact.z);
     }
     value = mix(value, ring_colour, ring * base.a);
     // The 8-bit target rounds to the nearest: dither less a half gives the same steps as the software renderer.
