@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from dancetutor_cli.commands.selection import Selection, selection_options
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.reports.formats import FORMATS
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.lint_run import LintRun
+    from dancetutor_cli.jobs.lint_run import LintRun, Request
     from dancetutor_cli.reports.tally import Tally
 
 Source = tuple[Path, bytes | None]
@@ -67,6 +69,8 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="FILE.html|.svg",
     help="Draw the charts of one file as a sheet of measures.",
 )
+@click.option("--suggest", is_flag=True, help="Tell which note, moved to another panel, would remove a finding.")
+@click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
 @click.option(
@@ -96,10 +100,35 @@ def command(**options: Any) -> int:  # fmt: skip
         selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
         want_rows=options["format_name"] == "json",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
-                                            "baseline", "update_baseline")},
+                                            "baseline", "update_baseline", "suggest")},
     )  # fmt: skip
-    sources = _sources(options["paths"], options["stdin_filename"])
-    return _run(LintRun(request), sources, options)
+    if options["watch"]:
+        return _watch(request, options)
+    return _run(LintRun(request), _sources(options["paths"], options["stdin_filename"]), options)
+
+
+def _watch(request: Request, options: dict[str, Any]) -> int:
+    """Run for all files, then for those that are saved, until Ctrl-C."""
+    from dancetutor_cli.jobs.lint_run import LintRun
+    from dancetutor_cli.jobs.watch import changes
+    from dancetutor_cli.library import find_files
+
+    if any(str(path) == "-" for path in options["paths"]):
+        raise UsageError("--watch needs files or folders, not standard input")
+    for _, changed in changes(lambda: find_files(options["paths"])):
+        if changed:
+            click.clear()  # nothing without a terminal
+            _report_errors(partial(_run, LintRun(request), [(file, None) for file in changed], options))
+            click.echo("waiting for changes; Ctrl-C ends", err=True)
+    return 0
+
+
+def _report_errors(work: Callable[[], object]) -> None:
+    """A wrong configuration is told and waited out: the next save may mend it."""
+    try:
+        work()
+    except DancetutorError as error:
+        click.echo(f"dancetutor: {error}", err=True)
 
 
 def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:

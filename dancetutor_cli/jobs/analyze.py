@@ -27,6 +27,7 @@ class Task:
     preset : the cost preset
     want_rows : whether the result shall carry every row, for JSON
     data : the bytes to read in place of the file's, for standard input
+    suggest : whether findings shall tell which moved note would remove them
     """
 
     path: Path
@@ -35,6 +36,7 @@ class Task:
     settings: Settings
     want_rows: bool = False
     data: bytes | None = None
+    suggest: bool = False
 
 
 def analyze_file(task: Task) -> FileResult:
@@ -77,7 +79,7 @@ def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartS
     for chart in charts:
         overrides, ignores, problems = overrides_for(song, chart)
         play = solve_chart(chart, task.preset, overrides)
-        yield ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores, problems)
+        yield ChartSubject(song, chart, play, load_pad(chart.steps_type), overrides, ignores, problems)
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
@@ -96,6 +98,10 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
 
     chart, play = subject.chart, subject.play
     findings = check_chart(subject, task.settings)
+    if task.suggest:
+        from dancetutor_cli.jobs.suggest import with_suggestions
+
+        findings = with_suggestions(findings, subject, task.settings, task.preset)
     dense = density(chart, task.settings.stream_rows)
     return ChartResult(
         index=chart.index,

@@ -31,6 +31,7 @@ class ResultCache:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._listings: dict[Path, str] = {}
 
     def key(self, task: Task) -> str | None:
         """The hash of what the task's result depends on, or None if it cannot be kept."""
@@ -41,8 +42,8 @@ class ResultCache:
         except OSError:
             return None
         digest = hashlib.sha256(data)
-        asked = f"{task.path}|{task.path.absolute()}|{task.preset}|{task.selection}"
-        for part in (_program(), asked, task.settings.fingerprint(), *_beside(task.path)):
+        asked = f"{task.path}|{task.path.absolute()}|{task.preset}|{task.selection}|{task.suggest}"
+        for part in (_program(), asked, task.settings.fingerprint(), *self._beside(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))
         return digest.hexdigest()
 
@@ -73,6 +74,16 @@ class ResultCache:
             for path in self._folder.glob("*/*"):
                 if time.time() - path.stat().st_mtime > _KEEP_SECONDS:
                     path.unlink(missing_ok=True)
+
+    def _beside(self, path: Path) -> Iterator[str]:
+        """What else beside it a result depends on: music, pictures, data.sme by size and time; the other format."""
+        if path.parent not in self._listings:
+            self._listings[path.parent] = _listing(path.parent)
+        yield self._listings[path.parent]
+        for suffix in _CHARTS:
+            other = path.with_suffix(suffix)
+            if other != path and other.is_file():
+                yield hashlib.sha256(other.read_bytes()).hexdigest()
 
     def _path(self, key: str) -> Path:
         return self._folder / key[:2] / key[2:]
@@ -109,16 +120,6 @@ def _files(folder: str) -> Iterator[tuple[str, os.stat_result]]:
             yield entry.path, entry.stat()
 
 
-def _beside(path: Path) -> Iterator[str]:
-    """What else in its folder a result depends on: music, pictures and data.sme by size and time, the other format."""
-    yield _listing(path.parent)
-    for suffix in _CHARTS:
-        other = path.with_suffix(suffix)
-        if other != path and other.is_file():
-            yield hashlib.sha256(other.read_bytes()).hexdigest()
-
-
-@cache
 def _listing(folder: Path) -> str:
     lines = []
     for entry in sorted(os.scandir(folder), key=lambda e: e.name):

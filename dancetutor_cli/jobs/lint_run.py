@@ -40,6 +40,7 @@ class Request:
     baseline: Path | None = None
     update_baseline: bool = False
     want_rows: bool = False
+    suggest: bool = False
 
 
 @dataclass
@@ -74,7 +75,10 @@ class LintRun:
     def task(self, path: Path, data: bytes | None = None) -> Task:
         """The piece of work for a file."""
         settings = self.configuration(path).settings
-        return Task(path, self.preset(path), self.request.selection, settings, self.request.want_rows, data)
+        request = self.request
+        return Task(
+            path, self.preset(path), request.selection, settings, request.want_rows, data, suggest=request.suggest
+        )
 
     def fail_on(self, path: Path) -> str:
         """The least severity that fails the run, as the configuration of the first file says."""

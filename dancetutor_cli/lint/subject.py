@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
-from dancetutor_cli.feet import FeetProblem, Ignores
+from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
 from dancetutor_cli.lint.feet import Feet
 from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.pads import Pad
@@ -42,13 +42,15 @@ class FileSubject:
 class ChartSubject:
     """One chart; `play` and `pad` are None where the steps type has no pad.
 
-    ignores, problems : findings people do not want to see, and what is wrong in what they said about the feet
+    overrides : feet that people laid down; ignores, problems : findings they do not want to see, and what is wrong in
+    what they said
     """
 
     song: Song
     chart: Chart
     play: Play | None
     pad: Pad | None = None
+    overrides: Overrides | None = None
     ignores: Ignores = field(default_factory=Ignores)
     problems: tuple[FeetProblem, ...] = ()
 

@@ -78,4 +78,5 @@ def finding_object(finding: Finding) -> dict[str, Any]:
         "column": finding.note_column,
         "message": finding.message,
         "margin": finding.margin,
+        "suggestion": finding.suggestion,
     }

@@ -209,5 +209,5 @@ def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
             line = tag("path", d=f"M{number(left - 3)},{number(y)} H{number(right + 2)}", stroke=colour, class_="flag")
             lead = tag("path", d=f"M{number(right + 26)},{number(y)} L{number(right + 29)},{number(label)}",
                        stroke=colour, class_="flag")  # fmt: skip
-            code = text(finding.rule, right + 30, label + 2.5, "code", fill=colour)
+            code = text(finding.rule, right + 30, label + 2.5, "code", style=f"fill:{colour}")
             yield tag("g", title(f"{finding.rule} {finding.message}") + line + lead + code)

@@ -73,9 +73,12 @@ class Layout:
         return self.top(measure) + inside / TICKS_PER_BEAT * self.beat
 
 
-def lay_out(ticks: NDArray[np.int64], lanes: int, style: Style) -> Layout:
-    """A layout for rows at these ticks: a beat as high as the chart's densest common rhythm needs."""
-    measures = int(ticks[-1]) // TICKS_PER_MEASURE + 1 if len(ticks) else 1
+def lay_out(ticks: NDArray[np.int64], lanes: int, style: Style, last: int = 0) -> Layout:
+    """A layout for rows at these ticks: a beat as high as the chart's densest common rhythm needs.
+
+    last : tick of the last end of a hold
+    """
+    measures = max(int(ticks.max(initial=0)), last) // TICKS_PER_MEASURE + 1
     gaps = np.diff(np.unique(ticks))
     gap = float(np.quantile(gaps, _COMMON_SHARE)) if len(gaps) else TICKS_PER_BEAT
     low, high = style.beat

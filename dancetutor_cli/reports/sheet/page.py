@@ -34,7 +34,9 @@ def make_sheet(subject: ChartSubject, findings: Sequence[Finding]) -> Sheet:
     arrows: list[float | None] = [None] * lanes
     if subject.pad is not None:
         arrows = [math.degrees(math.atan2(x, y)) if x or y else None for x, y in subject.pad.arrows.tolist()]
-    return Sheet(subject, findings, lay_out(chart.notes.tick, lanes, style), limbs, arrows)
+    return Sheet(
+        subject, findings, lay_out(chart.notes.tick, lanes, style, int(chart.notes.end.max(initial=0))), limbs, arrows
+    )
 
 
 def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
@@ -79,12 +81,12 @@ def _article(sheet: Sheet, facts: Sequence[str]) -> str:
 
 def _width(sheet: Sheet) -> float:
     columns = min(sheet.layout.columns, math.ceil(sheet.layout.measures / sheet.layout.per_column))
-    return max(24 + columns * sheet.layout.column_width, 620.0)
+    return max(24 + columns * sheet.layout.column_width, 900.0)
 
 
 def _heading(sheet: Sheet, facts: Sequence[str]) -> str:
     song, chart = sheet.subject.song, sheet.subject.chart
-    by = f"{song.artist}   {chart.label}   {chart.description}".strip()
+    by = " · ".join(part for part in (song.artist, chart.label, chart.description) if part.strip())
     parts = [text(song.title or song.path.name, 12, 30, "title"), text(by, 12, 50, "subtitle")]
     parts += [text(line, 12, 67 + 14 * n, "fact") for n, line in enumerate(facts)]
     return "".join(parts)
@@ -116,7 +118,8 @@ def _legend(style: Style) -> str:
     for grid, colour in sorted(style.quantisation.items()):
         shape = f"translate({x + 6:g} 6) scale({style.arrow:g})"
         parts.append(tag("use", href="#arrow", transform=shape, fill=colour, stroke_width="0.045", stroke="#1b1e2b"))
-        parts.append(text(f"{grid}th", x + 17, 9.5, "fact"))
+        ending = "nd" if grid % 10 == 2 and grid != 12 else "th"
+        parts.append(text(f"{grid}{ending}", x + 17, 9.5, "fact"))
         x += 52
     names = ("L left foot (disc)", "R right foot (square)", "< left hand", "> right hand")
     for name, colour in zip(names, style.limbs, strict=True):
@@ -173,8 +176,8 @@ def _page_css(style: Style) -> str:
 
 def facts_of(counts: Sequence[tuple[str, int]], numbers: Sequence[str]) -> list[str]:
     """Lines under the name of a chart: its numbers, and how often each move happens."""
-    told = ", ".join(f"{count} {name}" for name, count in counts if count)
-    return ["   ".join(numbers), told] if told else ["   ".join(numbers)]
+    told = " · ".join(f"{name} {count}" for name, count in counts if count)
+    return [" · ".join(numbers), told] if told else [" · ".join(numbers)]
 
 
 def length_of(subject: ChartSubject) -> str:

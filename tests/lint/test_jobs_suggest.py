@@ -1,0 +1,47 @@
+"""Suggestions: the edit is applied to the file by this test, and the finding is gone."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.result import FileResult
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.lint.configuration import load_configuration
+from dancetutor_cli.play import load_preset
+
+PANELS = ("left", "down", "up", "right")
+# Left, down, right crossed, and on round to up: a spin.
+SPIN = ["1000", "0100", "0001", "0010", "1000", "0100", "0010", "0001"]
+
+
+def analysed(rows: list[str], folder: Path, *, suggest: bool = True) -> FileResult:
+    path = folder / "x.sm"
+    notes = "\n".join(rows)
+    path.write_text(f"#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n{notes}\n;\n")
+    settings = load_configuration(None).settings
+    return analyze_file(Task(path, load_preset("thesis"), Selection(), settings, suggest=suggest))
+
+
+def test_the_suggested_edit_removes_the_finding_and_brings_no_other(tmp_path: Path) -> None:
+    before = analysed(SPIN, tmp_path).charts[0].findings
+    spins = [finding for finding in before if finding.rule == "DT202"]
+    assert len(spins) == 1 and spins[0].suggestion
+    beat, away, to = re.fullmatch(r"move the note on beat (\S+) from (\w+) to (\w+)", spins[0].suggestion).groups()
+    row = int(float(beat) * 2)  # eight rows in the measure
+    cells = list(SPIN[row])
+    assert cells[PANELS.index(away)] == "1" and cells[PANELS.index(to)] == "0"
+    cells[PANELS.index(away)], cells[PANELS.index(to)] = "0", "1"
+    after = analysed([*SPIN[:row], "".join(cells), *SPIN[row + 1 :]], tmp_path).charts[0].findings
+    assert "DT202" not in [finding.rule for finding in after]
+    assert {f.rule for f in after} <= {f.rule for f in before}
+
+
+def test_nothing_is_suggested_unless_asked(tmp_path: Path) -> None:
+    assert all(f.suggestion is None for f in analysed(SPIN, tmp_path, suggest=False).charts[0].findings)
+
+
+def test_the_file_stays_as_it_is(tmp_path: Path) -> None:
+    analysed(SPIN, tmp_path)
+    assert "\n".join(SPIN) in (tmp_path / "x.sm").read_text()

@@ -1,0 +1,124 @@
+"""The chart sheet: what stands where, that it is self-contained, and that a real browser draws it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.colours import hex_colour, limb_colours
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
+from dancetutor_cli.reports.sheet.layout import lay_out
+from dancetutor_cli.reports.sheet.style import sheet_style
+
+SVG = "{http://www.w3.org/2000/svg}"
+ROWS = ["1000", "0100", "0001", "0010", "2000", "00M0", "3000", "0F00"]
+SPIN = Finding("DT202", "spin", "warning", "a <spin> & more", 9, 3, 2, 1.5, 0, 0.75)
+
+
+def subject(rows: list[str] = ROWS, title: str = "T<b>&\x1b[2J") -> ChartSubject:
+    notes = "\n".join(rows)
+    text = f"#TITLE:{title};\n#ARTIST:A;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n{notes}\n;\n"
+    song = parse(text.encode(), Path("x.sm"))
+    chart = song.charts[0]
+    return ChartSubject(song, chart, solve_chart(chart, load_preset("thesis")), load_pad("dance-single"))
+
+
+def elements(svg: str, name: str) -> list[ElementTree.Element]:
+    return list(ElementTree.fromstring(svg).iter(SVG + name))
+
+
+def test_every_step_has_an_arrow_and_the_letter_of_its_limb() -> None:
+    drawn = svg_sheet(make_sheet(subject(), [SPIN]), [])
+    marks = [e.text for e in elements(drawn, "text") if e.get("class") == "mark"]
+    assert marks == ["L", "R", "L", "R", "L"]
+    legend = len(sheet_style().quantisation)
+    assert len(elements(drawn, "use")) == 6 + legend  # five steps, one fake
+    assert len([e for e in elements(drawn, "circle") if e.get("fill") == sheet_style().colours["mine"]]) == 1
+
+
+def test_notes_have_the_colours_of_their_quantisation() -> None:
+    style = sheet_style()
+    assert [style.note_colour(tick) for tick in (0, 48, 24, 16, 12, 8, 6, 4, 3, 1)] == [
+        style.quantisation[grid] for grid in (4, 4, 8, 12, 16, 24, 32, 48, 64, 192)
+    ]
+
+
+def test_feet_have_colours_of_their_own() -> None:
+    style = sheet_style()
+    assert set(style.limbs) == {hex_colour(rgb) for rgb in limb_colours().by_limb}
+    assert not set(style.limbs) & set(style.quantisation.values())
+
+
+def test_crossed_poses_are_drawn_and_findings_stand_in_their_row() -> None:
+    sheet = make_sheet(subject(), [SPIN])
+    drawn = svg_sheet(sheet, [])
+    assert len([e for e in elements(drawn, "ellipse") if e.get("class") == "sole"]) >= 2
+    code = next(e for e in elements(drawn, "text") if e.text == "DT202")
+    assert abs(float(code.get("y", "")) - sheet.layout.y(72)) < 4
+
+
+def test_text_of_the_file_cannot_break_out() -> None:
+    page = html_page([(make_sheet(subject(title="</svg><script>x</script>"), [SPIN]), ["fact"])])
+    assert "<script" not in page and "\x1b" not in page
+    assert "a &lt;spin&gt; &amp; more" in page
+
+
+def test_the_page_needs_nothing_from_outside() -> None:
+    page = html_page([(make_sheet(subject(), [SPIN]), ["fact"])])
+    assert re.findall(r"""(?:src|href)=["'](?!#)""", page) == []
+    assert "url(" not in page and "@import" not in page
+    assert set(re.findall(r"https?://[^\"' <]+", page)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_measures_fill_columns_and_systems_in_order() -> None:
+    layout = lay_out(np.arange(0, 192 * 60, 12), 4, sheet_style())
+    assert layout.measures == 60
+    drawn = [measure for which in range(layout.systems) for measure in layout.measures_of(which)]
+    assert drawn == list(range(60))
+    assert layout.left(0) < layout.left(layout.per_column)
+    assert layout.top(0) == layout.top(layout.per_column) < layout.top(1)
+    assert layout.columns * layout.column_width <= sheet_style().page_width
+
+
+def test_dense_charts_get_more_room() -> None:
+    style = sheet_style()
+    calm, dense = lay_out(np.arange(0, 960, 48), 4, style), lay_out(np.arange(0, 960, 12), 4, style)
+    assert calm.beat == style.beat[0] < dense.beat
+    assert dense.beat / 4 >= style.row_spacing
+
+
+def test_a_chart_without_steps_in_its_first_measures_and_holds_over_columns() -> None:
+    rows = "\n".join(["0000\n0000\n0000\n0000\n,"] * 30 + ["2000\n0000\n0000\n0000\n,"] * 1)
+    rows += "\n" + "\n".join(["0000\n0000\n0000\n0000\n,"] * 20) + "\n0000\n3000\n0000\n0000"
+    sheet = make_sheet(subject(rows.splitlines()), [])
+    drawn = svg_sheet(sheet, [])
+    bodies = [e for e in elements(drawn, "rect") if e.get("fill") == sheet.style.colours["hold"]]
+    assert len(bodies) >= 2  # cut where a column ends
+    total = sum(float(e.get("height", "0")) for e in bodies)
+    assert total == pytest.approx(sheet.layout.beat * (21 * 4 + 1), abs=1.0)
+
+
+def test_a_real_browser_draws_it(tmp_path: Path) -> None:
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if browser is None:
+        pytest.skip("no chromium here; apt-get install chromium")
+    page, picture = tmp_path / "s.html", tmp_path / "s.png"
+    page.write_text(html_page([(make_sheet(subject(), [SPIN]), ["fact"])]), encoding="utf-8")
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1000,700", f"--screenshot={picture}"]
+    subprocess.run([browser, *options, page.as_uri()], capture_output=True, timeout=120, check=False)
+    pixels = np.asarray(Image.open(picture).convert("RGB"), dtype=int)
+    for colour in (*limb_colours().by_limb[:2], (0xEE, 0x3B, 0x4F), (0x3F, 0x74, 0xF5)):
+        near = np.abs(pixels - np.array(colour)).max(axis=2) <= 6
+        assert near.sum() >= 20, f"no {hex_colour(colour)} on the sheet"
