@@ -48,6 +48,7 @@ LONG = 20 * 60.0  # seconds of film; more than this is asked about first
     "{difficulty}, {meter} and {index}.",
 )
 @click.option("--shard", metavar="I/N", help="Of a folder: only the I-th of N parts, for several machines.")
+@click.option("--scheduler", metavar="ADDRESS", help="Of a folder: work on a Dask cluster that shares the folders.")
 @click.option(
     "--results",
     type=click.Path(path_type=Path, allow_dash=True),
@@ -73,7 +74,7 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
 
         render_batch(path, output, frames, None if yes else LONG, quiet, options)
         return
-    for name in ("meter", "name", "shard", "results"):
+    for name in ("meter", "name", "shard", "results", "scheduler"):
         if options[name] is not None:
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
     _render_one(path, output, frames or poses, yes, quiet, options)

@@ -17,6 +17,7 @@ from dancetutor_cli.errors import FileError, UsageError
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import Outcome
     from dancetutor_cli.jobs.film_list import BatchRequest, Unreadable
+    from dancetutor_cli.jobs.pool import Workers
     from dancetutor_cli.reports.progress import FilmProgress
 
 
@@ -26,9 +27,11 @@ def render_batch(
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import film_list
-    from dancetutor_cli.jobs.pool import default_jobs, open_workers
+    from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.reports.progress import FilmProgress
 
+    if options["scheduler"]:  # its workers have a working folder of their own
+        path, output, frames = (one and one.absolute() for one in (path, output or Path("videos"), frames))
     batch = _batch(path, output, frames, longest, options)
     films, unreadable = film_list(batch)
     if not films and not unreadable:
@@ -42,7 +45,7 @@ def render_batch(
             _write(results, {"path": str(bad.path), "chart": None, "status": "failed", "error": bad.error})
         progress = stack.enter_context(FilmProgress(f"{len(films)} films", quiet))
         progress.begin(0, batch.request.fps)
-        workers = open_workers(jobs, lambda _key, count: progress.advance(count))
+        workers = _workers(options["scheduler"], jobs, progress)
         stack.callback(workers.close)
         for outcome in Batch(films, workers, progress.add).run():
             outcomes.append(outcome)
@@ -71,6 +74,17 @@ def _batch(
         shard=parse_shard(options["shard"]) if options["shard"] else (1, 1),
         longest=longest,
     )
+
+
+def _workers(scheduler: str | None, jobs: int, progress: FilmProgress) -> Workers:
+    from dancetutor_cli.jobs.pool import open_workers
+
+    if scheduler is None:
+        return open_workers(jobs, lambda _key, count: progress.advance(count))
+    from dancetutor_cli.jobs.cluster import ClusterWorkers
+    from dancetutor_cli.jobs.film_work import frames_of
+
+    return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
 
 def _make_folder(folder: Path) -> None:

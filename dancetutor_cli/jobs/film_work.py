@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import shutil
+import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
-from dancetutor_cli.jobs.pool import Report
+from dancetutor_cli.jobs.pool import Report, Task
 from dancetutor_cli.video.encoder import Encoding, join
 
 if TYPE_CHECKING:
@@ -197,11 +198,16 @@ def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encod
     film = _film(plan)
     part = segment.path
     if encoding.target != "png":
-        part = segment.path.with_name(f".{segment.path.name}.part{encoding.suffix}")
+        part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.suffix}")
     encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
     if part != segment.path:
         part.replace(segment.path)
     return segment.number
+
+
+def frames_of(task: Task) -> int:
+    """How many frames a piece of work draws."""
+    return sum(part.last - part.first for part in task.arguments if isinstance(part, Segment))
 
 
 def _counted(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
