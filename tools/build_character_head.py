@@ -55,7 +55,7 @@ def hair() -> Shape:
         t = np.clip(face(p) / 0.040, 0, 1)
         return skull(p) - (-0.004 + 0.018 * t * t * (3 - 2 * t))
 
-    tuft = ellipsoid((0, 1.690, 0.026), (0.072, 0.033, 0.058))  # fills the fringe from behind
+    tuft = ellipsoid((0, 1.686, 0.022), (0.083, 0.0365, 0.063))  # fills the fringe from behind
     return scaled(blend(0.03, close, gathered, tuft), ABOUT, LARGER)
 
 
