@@ -31,7 +31,8 @@ def render_batch(
     from dancetutor_cli.reports.progress import FilmProgress
 
     if options["scheduler"]:  # its workers have a working folder of their own
-        path, output, frames = (one and one.absolute() for one in (path, output or Path("videos"), frames))
+        path, output = path.absolute(), (output or Path("videos")).absolute()
+        frames = None if frames is None else frames.absolute()
     batch = _batch(path, output, frames, longest, options)
     films, unreadable = film_list(batch)
     if not films and not unreadable:

@@ -65,5 +65,5 @@ class ClusterWorkers:
 
     def close(self) -> None:
         """Cancel what is not done and leave the cluster."""
-        self._client.cancel([future for future in self._running.futures], force=True)
+        self._client.cancel(list(self._running.futures), force=True)
         self._client.close()

@@ -77,7 +77,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         motion=_motion(request, chart, play, pad, (start, end)),
         pad=pad,
         rows=step_rows(play),
-        callouts=callouts_of(ChartSubject(song, chart, play, pad, ignores), highway_style().callouts, scrolls),
+        callouts=callouts_of(ChartSubject(song, chart, play, pad, ignores=ignores), highway_style().callouts, scrolls),
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)

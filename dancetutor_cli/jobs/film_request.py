@@ -134,7 +134,7 @@ def _around_finding(
     from dancetutor_cli.play import load_preset
 
     play, ignores = solve_with_feet(song, chart, load_preset(request.preset))
-    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores))
+    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores=ignores))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):
         has = ", ".join(sorted({one.rule for one in findings})) or "none at all"

@@ -82,9 +82,9 @@ class Film:
     def _highway(self) -> Highway:
         plan, part = self.plan, self.layout.highway
         assert part is not None
-        box = self.layout.highway_box(self.size, self.columns)
+        box = self.layout.box("highway", self.size, self.columns)
         scale = 1.0 if self.layout.screen else self.scale
-        lane = min(part.lane * scale, 0.86 * (box[2] - box[0]) / max(1, self.columns))
+        lane = min(part.lane * scale, 0.8 * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
@@ -121,7 +121,7 @@ class Film:
         """What is called out over the dancer shortly before it comes."""
         if not self.layout.dancer or not self.plan.callouts:
             return None
-        box = self.layout.dancer_box(self.size, self.columns)
+        box = self.layout.box("dancer", self.size, self.columns)
         return overlay.Calls(self.plan.callouts, box, self.scale, self.face, self.style)
 
     @cached_property
@@ -130,7 +130,7 @@ class Film:
         from dancetutor_cli.video import dancer
 
         plan, look = self.plan, self.plan.look
-        left, top, right, bottom = self.layout.dancer_box(self.size, self.columns)
+        left, top, right, bottom = self.layout.box("dancer", self.size, self.columns)
         assert self.layout.dancer is not None and plan.motion is not None and plan.pad is not None
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
@@ -148,10 +148,10 @@ class Film:
             return None, None
         large, small = None, None
         if feet:
-            pads = PadMap(plan.pad, plan.directions, pixels(feet.box, self.size))
+            pads = PadMap(plan.pad, plan.directions, self.layout.box("feet", self.size, self.columns))
             large = FeetDiagram(pads, self.lights, self.face)
         if after and plan.rows is not None:
-            box = pixels(after.box, self.size)
+            box = self.layout.box("next", self.size, self.columns)
             small = NextRows(plan.rows, plan.pad, plan.directions, box, after.count, self.face)
         return large, small
 
@@ -161,7 +161,7 @@ class Film:
         beat = float(self.plan.beats[number])
         picture = self.base.copy()
         if self.layout.dancer and self.plan.motion is not None:
-            left, top, right, bottom = self.layout.dancer_box(self.size, self.columns)
+            left, top, right, bottom = self.layout.box("dancer", self.size, self.columns)
             picture[top:bottom, left:right] = self._room(number, second, beat)
         if self.highway and not self.layout.screen:
             self.highway.draw(picture, second, beat)

@@ -71,6 +71,8 @@ class WideBoxes:
 
     dancer: Box | None = None
     highway: Box | None = None
+    feet: Box | None = None
+    next: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,19 +95,15 @@ class Layout:
         """How many pixels one pixel of the default size has become."""
         return min(size[0] / self.size[0], size[1] / self.size[1])
 
-    def dancer_box(self, size: tuple[int, int], columns: int) -> PixelBox:
-        """The dancer's box in pixels."""
-        assert self.dancer is not None
-        other = self.wide.dancer if self.wide and columns > WIDE_PAD else None
-        return pixels(other or self.dancer.box, size)
+    def box(self, name: str, size: tuple[int, int], columns: int) -> PixelBox:
+        """The box of a part ("dancer", "highway", "feet", "next") in pixels: of the picture, or, for the highway, of
 
-    def highway_box(self, size: tuple[int, int], columns: int) -> PixelBox:
-        """The highway's box in pixels: of the picture, or of the screen that it is shown on."""
-        assert self.highway is not None
-        if self.screen is not None:
-            return pixels(self.highway.box, self.screen.pixels)
-        other = self.wide.highway if self.wide and columns > WIDE_PAD else None
-        return pixels(other or self.highway.box, size)
+        the screen that it is shown on.
+        """
+        if name == "highway" and self.screen is not None:
+            size = self.screen.pixels
+        other = getattr(self.wide, name) if self.wide is not None and columns > WIDE_PAD else None
+        return pixels(other or getattr(self, name).box, size)
 
 
 def pixels(box: Box, size: tuple[int, int]) -> PixelBox:

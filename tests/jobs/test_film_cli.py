@@ -17,7 +17,8 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.resources import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
-SONG = "#TITLE:T;\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
+SONG = "#TITLE:T;\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n"
+SONG += "#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
 TINY = ("--size", "64x64", "--layout", "highway", "--fps", "10")
 
 
