@@ -15,18 +15,17 @@ from pyrender.platforms.egl import EGLPlatform, query_devices
 from pyrender.renderer import Renderer as PyrenderRenderer
 
 from dancetutor_cli.errors import UnavailableError, UsageError
-from dancetutor_cli.video.camera import NEAR, Camera
+from dancetutor_cli.video.camera import Camera
 from dancetutor_cli.video.geometry import pack
+from dancetutor_cli.video.gl.matrices import bounds_of, camera_matrix, light_matrix, reach
 from dancetutor_cli.video.gl.primitive import SkinnedPrimitive
 from dancetutor_cli.video.gl.probe import gpu_device
 from dancetutor_cli.video.gl.programs import Program, ProgramCache
 from dancetutor_cli.video.gl.standing import Standing
 from dancetutor_cli.video.gl.targets import Target, pyramid, refill, texture
 from dancetutor_cli.video.prepare import (
-    NO_FOOT,
     SAMPLES,
     SHADOW_MAP,
-    SHADOW_REACH,
     Cast,
     Shown,
     feet_on_floor,
@@ -44,9 +43,7 @@ from dancetutor_cli.video.scene import SOLE_RADIUS, FrameState, Scene, check_sta
 
 Array = NDArray[np.float64]
 _MOST_JOINTS = 256  # what the shader's uniform block holds
-_FAR = 100.0
 _OFF_SURFACE = (0.012, 0.006)
-_CAST_DEPTH = (-2.0, 6.0)  # metres along the light that the shadow map covers
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 
 
@@ -77,7 +74,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
             self._primitives.append((primitive, self._skins[skin], tint))
-        self._reach = _reach(scene, mesh.positions, mesh.joints, mesh.weights)
+        self._reach = reach(scene, mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
         self._drawn = Target(self._size, self._samples, depth=True)
         self._resolved = Target(self._size)
@@ -98,14 +95,14 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         shift = standing.left - camera.pan_pixels(self._size[0])
         joints, part = joints_of(self._scene, state), shown(state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
-        bounds = _bounds(joints, self._reach)
+        bounds = bounds_of(joints, self._reach)
         matrices = np.zeros((_MOST_JOINTS, 3, 4), np.float32)
         matrices[: len(joints)] = skin_matrices(self._scene, joints)
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
         GL.glBufferSubData(GL.GL_UNIFORM_BUFFER, 0, matrices.nbytes, matrices)
         GL.glBindBufferBase(GL.GL_UNIFORM_BUFFER, 0, self._joints)
         _set_state()
-        light = _light_matrix(cast)
+        light = light_matrix(cast)
         self._draw_shadow(light, cast, part)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
         self._draw_ground(state, standing, shift, cast, light, bounds)
@@ -193,7 +190,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             "dancer.frag",
             light,
             cast,
-            camera=_camera_matrix(camera, self._size),
+            camera=camera_matrix(camera, self._size),
             eye=np.array(camera.position),
             pixels=np.array([width / 2, height / 2]),
             focal=float(camera.focal * height),
@@ -284,49 +281,3 @@ def _cover(program: Program) -> None:
     GL.glDisable(GL.GL_CULL_FACE)
     GL.glDrawArrays(GL.GL_TRIANGLES, 0, 3)
     GL.glEnable(GL.GL_CULL_FACE)
-
-
-def _camera_matrix(camera: Camera, size: tuple[int, int]) -> Array:
-    """World to clip space (4, 4), the picture's first row at y = -1."""
-    m = camera.matrix(size)
-    out = np.empty((4, 4))
-    out[0] = 2.0 / size[0] * m[0] - m[2]
-    out[1] = 2.0 / size[1] * m[1] - m[2]
-    out[2] = (_FAR + NEAR) / (_FAR - NEAR) * m[2]
-    out[2, 3] -= 2.0 * _FAR * NEAR / (_FAR - NEAR)
-    out[3] = m[2]
-    return out
-
-
-def _light_matrix(cast: Cast) -> Array:
-    """World to clip space of the shadow map (4, 4); what is nearer to the light has less depth."""
-    out = np.zeros((4, 4))
-    for k in (0, 1):
-        out[k, :3] = cast.axes[k] * (2.0 / SHADOW_REACH)
-        out[k, 3] = -cast.origin[k] * (2.0 / SHADOW_REACH) - 1.0
-    low, high = _CAST_DEPTH
-    out[2, :3] = -cast.axes[2] * (2.0 / (high - low))
-    out[2, 3] = (high + low) / (high - low)
-    out[3, 3] = 1.0
-    return out
-
-
-def _reach(scene: Scene, positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> Array:
-    """How far from each joint (j,) the skin that hangs on it lies: bounds of any pose, without skinning it here."""
-    places = np.linalg.inv(scene.character.inverse_bind)[:, :3, 3]
-    out = np.zeros(len(places))
-    for k in range(joints.shape[1]):
-        held = weights[:, k] > 0
-        distance = np.linalg.norm(positions[held] - places[joints[held, k]], axis=1)
-        np.maximum.at(out, joints[held, k], distance)
-    return out
-
-
-def _bounds(joints: Array, reach: Array) -> tuple[Array, Array]:
-    """Least and greatest corner (3,) of a box that holds the dancer."""
-    held = reach > 0
-    places, reach = joints[held, :3, 3], reach[held, None]
-    return (places - reach).min(0), (places + reach).max(0)
-
-
-assert NO_FOOT < 0  # the shader knows a missing foot by its sign
