@@ -100,7 +100,7 @@ def leg() -> Shape:
 def leggings() -> Shape:
     """Pelvis and both legs; the top is inside the shirt, the bottom inside the shoes."""
     pelvis = common(torso(), half_space((0, 1.035, 0), UP), 0.02)
-    return common(blend(0.050, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
+    return common(blend(0.035, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
 
 
 def hand() -> Shape:
