@@ -8,14 +8,18 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.model import Overrides
 from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play.engine import Engine, Path, engine_for
+from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.model import Play, Rows
 from dancetutor_cli.play.moves import name_moves
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
+from dancetutor_cli.play.state import PLACE_BITS
+from dancetutor_cli.play.store import EVENTS, NEXT, Found
+
+_PLACE = (1 << PLACE_BITS) - 1
 
 
-def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None) -> Play:
+def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = False) -> Play:
     """The cheapest way to play rows: the true minimum of the preset's costs; of several, always the same one.
 
     Parameters
@@ -23,21 +27,24 @@ def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = No
     rows : n rows of the pad's c columns, as `prepare` makes them
     overrides : limbs that must be kept, even against the rules; those of cells without a step, and those nobody can
         follow (one foot on two panels that are no bracket), are left out of account
+    margins : whether `Play.margin` is wanted; it takes about as long again
 
     Raises ValueError if rows and pad do not fit.
     """
     if rows.steps.shape[1] != len(pad):
         raise ValueError(f"rows have {rows.steps.shape[1]} columns, {pad.steps_type} has {len(pad)} panels")
     engine = engine_for(pad, preset)
-    return _play(rows, engine, engine.path(rows, forced_limbs(rows, overrides)))
+    return _play(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins))
 
 
-def solve_chart(chart: Chart, preset: Preset, overrides: Overrides | None = None) -> Play | None:
+def solve_chart(
+    chart: Chart, preset: Preset, overrides: Overrides | None = None, *, margins: bool = False
+) -> Play | None:
     """The cheapest way to play a chart, or None if its steps type has no pad."""
     pad = load_pad(chart.steps_type)
     if pad is None:
         return None
-    return solve(prepare(chart, pad, preset.roll_window), pad, preset, overrides)
+    return solve(prepare(chart, pad, preset.roll_window), pad, preset, overrides, margins=margins)
 
 
 def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] | None:
@@ -54,24 +61,24 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
     return forced
 
 
-def _play(rows: Rows, engine: Engine, path: Path) -> Play:
-    t, c = engine.tables, len(engine.pad)
-    state = t.state_key[t.move_next[path.moves]]
-    left, right, side = state & 15, state >> 4 & 15, state >> 8 & 3
-    facing = engine.geometry.angle[left, right]
+def _play(rows: Rows, engine: Engine, found: Found) -> Play:
+    t, g = engine.tables, engine.geometry
+    move = t.move[found.move]
+    state = t.state_key[move[:, NEXT]]
+    left, right = state & _PLACE, state >> PLACE_BITS & _PLACE
+    side = state >> 2 * PLACE_BITS & 3
+    facing = g.angle[left, right]
     facing[(side == 2) & (facing > 179.0)] = -180.0  # reached by turning right
-    feet = np.stack([left, right], axis=1).astype(np.int16)
-    feet[feet == c] = -1
-    cost = t.move_terms[path.moves].astype(np.int64)
+    feet = np.stack([g.panels[left, 0, 0], g.panels[right, 1, 0]], axis=1).astype(np.int16)
     return Play(
         rows=rows,
-        limb=path.limb,
-        part=path.part,
+        limb=found.limb,
+        part=found.part,
         feet=feet,
         facing=facing,
         terms=engine.terms,
-        cost=cost,
-        margin=None,
-        moves=name_moves(rows, path.limb, engine.pad, t.move_events[path.moves]),
+        cost=found.cost.astype(np.int64),
+        margin=found.margin if len(found.margin) or not len(rows) else None,
+        moves=name_moves(rows, found.limb, engine.pad, move[:, EVENTS]),
         preset=engine.preset.name,
     )

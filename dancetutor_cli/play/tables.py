@@ -1,4 +1,7 @@
-"""The arrays that the solver's kernels share: a pad's geometry, and the ways to play one row from one state."""
+"""The arrays that the solver's kernels share: a pad's geometry, and the ways to play one row from one state.
+
+They are few and wide, and their columns have names here: numba's time to compile grows with every array handed on.
+"""
 
 from __future__ import annotations
 
@@ -7,76 +10,103 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.pads.pad import HOME_WIDTH
 
+MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
 EPSILON = 1e-6  # every comparison of cost-model.md: degrees, panel widths, seconds
 MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
-COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks, see `ROW_MASKS`
-ROW_MASKS = ("taps", "holds", "mines", "released", "rolls", "roll_taps")
+COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
+TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
+DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
+
+# columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each
+# column; packed facts that cost by the time since the row before, 0 none; bits of `vocabulary.EVENTS`
+KEY, ACTION, PART, TIMED, EVENTS = range(5)
+UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
 
 
 class Geometry(NamedTuple):
-    """A pad with c panels; place c is home, which differs for the two feet.
+    """A pad with c panels. Places of a foot: 0 to c - 1 one panel, c home, from there on two neighbouring panels.
 
-    left, right : float64 (c + 1, 2), where the left or right foot stands
-    angle : float64 (c + 1, c + 1), degrees in (-180, 180] of the vector from left foot to right foot, by their places
-    neighbours : bool (c, c), panels one foot can press together
-    home : int64 (2,), columns of the starting stance
+    left, right : float64 (p, 2), middle of a foot on each place; home differs for the two feet
+    angle : float64 (p, p), degrees in (-180, 180] of the vector from left foot to right foot; 0 if they are together
+    distance : int64 (p, p), between the middles of places, 1/20 panel widths
+    place : int64 (c, c), place of a foot on two panels, -1 if they are no neighbours; of one panel on the diagonal
+    panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
+    arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
     """
 
     left: NDArray[np.float64]
     right: NDArray[np.float64]
     angle: NDArray[np.float64]
-    neighbours: NDArray[np.bool_]
-    home: NDArray[np.int64]
+    distance: NDArray[np.int64]
+    place: NDArray[np.int64]
+    panels: NDArray[np.int64]
+    arrow: NDArray[np.int64]
 
 
 class Moves(NamedTuple):
-    """Every way to play one row from one state: room for `MOST_MOVES`, and scratch space.
+    """Every way to play one row from one state: room for `MOST_MOVES`.
 
-    key : int64, packed state after the row
-    action : int64, limb codes of the row, 3 bits for each column from the lowest
-    part : int64, 2 bits for each column, `Part`
-    terms : int32 (, t), what each cost term adds, not counting time
-    timed : int64, packed facts that cost by the time since the row before; 0 none
-    events : int64, bits of what happens, by their places in `vocabulary.EVENTS`
-    state, press, panels : int64, scratch
+    wide : int64 (, 5), see above; terms : int32 (, t), what each cost term adds, not counting time
+    scratch : int64 (8, 32)
     """
 
-    key: NDArray[np.int64]
-    action: NDArray[np.int64]
-    part: NDArray[np.int64]
+    wide: NDArray[np.int64]
     terms: NDArray[np.int32]
-    timed: NDArray[np.int64]
-    events: NDArray[np.int64]
-    state: NDArray[np.int64]
-    press: NDArray[np.int64]
-    panels: NDArray[np.int64]
+    scratch: NDArray[np.int64]
 
 
 def geometry(pad: Pad) -> Geometry:
     """The arrays of a pad."""
-    (x, y), panels = pad.centre, pad.panels
-    left = np.concatenate([panels, [[x - HOME_WIDTH, y]]])
-    right = np.concatenate([panels, [[x + HOME_WIDTH, y]]])
+    (x, y), c = pad.centre, len(pad)
+    pairs = [(a, b) for a in range(c) for b in range(a + 1, c) if pad.neighbours[a, b]]
+    if c + 1 + len(pairs) > MOST_PLACES:
+        raise UsageError(
+            f"pad '{pad.steps_type}' has too many neighbours ({len(pairs)} pairs): make its 'reach' smaller"
+        )
+    middles = np.array([(pad.panels[a] + pad.panels[b]) / 2 for a, b in pairs]).reshape(-1, 2)
+    left = np.concatenate([pad.panels, [[x - HOME_WIDTH, y]], middles])
+    right = np.concatenate([pad.panels, [[x + HOME_WIDTH, y]], middles])
     across = right[None, :] - left[:, None]
     angle = np.degrees(np.arctan2(across[..., 1], across[..., 0]))
     angle[angle <= -180.0 + EPSILON] = 180.0
-    return Geometry(left, right, angle, pad.neighbours, np.array(pad.home, dtype=np.int64))
+    angle[np.hypot(across[..., 0], across[..., 1]) <= EPSILON] = 0.0
+    far = left[None, :] - left[:, None]
+    distance = np.round(DISTANCE_UNIT * np.hypot(far[..., 0], far[..., 1])).astype(np.int64)
+    place = np.full((c, c), -1, dtype=np.int64)
+    np.fill_diagonal(place, np.arange(c))
+    panels = np.full((len(left), 2, 2), -1, dtype=np.int64)
+    panels[:c, :, 0] = np.arange(c)[:, None]
+    for number, (a, b) in enumerate(pairs):
+        place[a, b] = place[b, a] = c + 1 + number
+        for foot in range(2):
+            panels[c + 1 + number, foot] = heel_and_toe(pad, a, b, foot)
+    return Geometry(left, right, angle, distance, place, panels, np.array([_arrow(*way) for way in pad.arrows]))
+
+
+def _arrow(x: float, y: float) -> int:
+    if abs(x) <= EPSILON and abs(y) <= EPSILON:
+        return MIDDLE
+    if abs(x) > abs(y) + EPSILON:
+        return RIGHT if x > 0 else LEFT
+    return UP if y > 0 else DOWN
+
+
+def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
+    """Which of two neighbouring panels heel and toe of a foot press: the toe is nearer to the screen, else outside."""
+    (ax, ay), (bx, by) = pad.panels[a], pad.panels[b]
+    if abs(ay - by) > EPSILON:
+        return (a, b) if ay < by else (b, a)
+    return (a, b) if (ax > bx) == (foot == 0) else (b, a)
 
 
 def moves(terms: int) -> Moves:
     """Empty room for the ways to play one row."""
-    n, whole = MOST_MOVES, np.int64
     return Moves(
-        key=np.zeros(n, dtype=whole),
-        action=np.zeros(n, dtype=whole),
-        part=np.zeros(n, dtype=whole),
-        terms=np.zeros((n, terms), dtype=np.int32),
-        timed=np.zeros(n, dtype=whole),
-        events=np.zeros(n, dtype=whole),
-        state=np.zeros(16, dtype=whole),
-        press=np.zeros(4, dtype=whole),
-        panels=np.zeros(16, dtype=whole),
+        np.zeros((MOST_MOVES, 5), dtype=np.int64),
+        np.zeros((MOST_MOVES, terms), dtype=np.int32),
+        np.zeros((8, 32), dtype=np.int64),
     )

@@ -1,32 +1,41 @@
 """The rules of cost-model.md: every way to play one row from one state, and what each costs. Kernel code.
 
-A state is eight numbers (`LEFT_AT` ... `RIGHT_HOLDS`), packed into one integer between rows. Place c, the number of
-panels, is home. Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
+Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
-from dancetutor_cli.play.tables import COLUMN_BITS, EPSILON
-from dancetutor_cli.play.vocabulary import EVENTS
+from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, SIDE, pack, turn, unpack
+from dancetutor_cli.play.tables import (
+    ACTION,
+    COLUMN_BITS,
+    EPSILON,
+    EVENTS,
+    HOLDS,
+    KEY,
+    MINES,
+    PART,
+    RELEASED,
+    ROLL_TAPS,
+    ROLLS,
+    TAPS,
+    TIMED,
+)  # fmt: skip
+from dancetutor_cli.play.vocabulary import EVENTS as NAMES
 
-# the numbers of a state
-LEFT_AT, RIGHT_AT = 0, 1  # places of the feet
-SIDE = 2  # of a facing of 180 degrees: 1 reached as +180, 2 reached as -180, 0 otherwise
-LAST = 3  # last leg: 0 none, 1 left, 2 right
-LEFT_HELD, RIGHT_HELD = 4, 5  # 1 while a foot is reserved by a hold
-LEFT_HOLDS, RIGHT_HOLDS = 6, 7  # panel + 1 that a hand holds, 0 none
-
+BEFORE, AFTER, PRESS, PANELS = range(4)  # rows of `Moves.scratch`
 UNPLAYED = 5
 (
     CROSSOVER, DOUBLESTEP, JUMP_FOOTSWITCH, SPIN, TURN_135, TURN_180,
     HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYABLE,
 ) = range(11)  # fmt: skip
 _HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPLAYABLE = (
-    1 << EVENTS.index(name)
+    1 << NAMES.index(name)
     for name in (
         "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand",
         "jump", "unplayable",
@@ -37,45 +46,14 @@ _MASK = (1 << COLUMN_BITS) - 1
 
 @njit
 def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facing the screen, no last leg
-    home = g.neighbours.shape[0]
-    return home | home << 4
+    home = g.place.shape[0]
+    return home | home << 5
 
 
-@njit
-def _pack(s):  # type: ignore[no-untyped-def]
-    return s[0] | s[1] << 4 | s[2] << 8 | s[3] << 10 | s[4] << 12 | s[5] << 13 | s[6] << 14 | s[7] << 18
-
-
-@njit
-def _unpack(key, s):  # type: ignore[no-untyped-def]
-    s[0], s[1], s[2], s[3] = key & 15, key >> 4 & 15, key >> 8 & 3, key >> 10 & 3
-    s[4], s[5], s[6], s[7] = key >> 12 & 1, key >> 13 & 1, key >> 14 & 15, key >> 18 & 15
-
-
-@njit
-def turn(before, side, after):  # type: ignore[no-untyped-def]
-    """From one facing to another: degrees turned (unsigned), whether it is a spin, side of the new facing."""
-    back = abs(before) >= 180.0 - EPSILON
-    start = -180.0 if back and side == 2 else before
-    delta = after - start
-    while delta > 180.0 + EPSILON:
-        delta -= 360.0
-    while delta <= -180.0 - EPSILON:
-        delta += 360.0
-    if abs(delta) >= 180.0 - EPSILON:
-        return 180.0, False, 0
-    ends_back = abs(after) >= 180.0 - EPSILON
-    if back and ends_back:
-        return 0.0, False, side
-    end = start + delta
-    spin = abs(end) > 180.0 + EPSILON and not (back and side == 0)
-    return abs(delta), spin, ((1 if end > 0 else 2) if ends_back else 0)
-
-
-@njit
+@njit(inline="always")
 def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
     """What comes before the steps of a row: ended holds free their limbs; free legs on mines go home, one turn."""
-    home = g.neighbours.shape[0]
+    home = g.place.shape[0]
     for foot in range(2):
         if s[LEFT_HELD + foot] and released >> s[foot] & 1:
             s[LEFT_HELD + foot] = 0
@@ -89,7 +67,7 @@ def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
     s[SIDE] = turn(before, s[SIDE], g.angle[s[LEFT_AT], s[RIGHT_AT]])[2]
 
 
-@njit
+@njit(inline="always")
 def _charge_hand(terms, s, hand, panel, g, w):  # type: ignore[no-untyped-def]
     """What it costs that a hand presses a panel, by the pose after the move."""
     x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
@@ -128,15 +106,17 @@ def _place(s, press, holds):  # type: ignore[no-untyped-def]
         s[LAST] = 2
 
 
-@njit
+@njit(inline="always")
 def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no-untyped-def]
-    """Write one way to play a row: `out.press` are the panels of the limbs, `before` the state before, after mines.
+    """Write one way to play a row: scratch `PRESS` are the panels of the limbs, `before` the state before, after mines.
 
     doublestep : 0 none, 1 forced (the other leg is reserved), 2 one that costs
     """
-    s, press, terms = out.state[8:], out.press, out.terms[m]
-    s[:8] = before[:8]
-    terms[:] = 0
+    s, press, panels, terms = out.scratch[AFTER], out.scratch[PRESS], out.scratch[PANELS], out.terms[m]
+    for i in range(NUMBERS):
+        s[i] = before[i]
+    for i in range(len(terms)):
+        terms[i] = 0
     _place(s, press, holds)
     degrees, spin, side = turn(g.angle[before[0], before[1]], before[SIDE], g.angle[s[0], s[1]])
     s[SIDE] = side
@@ -144,9 +124,9 @@ def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no
     for i in range(n):
         limb = UNPLAYED
         for j in range(4):
-            if press[j] == out.panels[i]:
+            if press[j] == panels[i]:
                 limb = j + 1
-        action |= limb << 3 * out.panels[i]
+        action |= limb << 3 * panels[i]
         if limb == UNPLAYED:
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= _UNPLAYABLE
@@ -178,30 +158,28 @@ def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no
             terms[HAND_HOLD] += w[HAND_HOLD]
     if press[0] >= 0 and press[1] >= 0:
         events |= _JUMP
-    out.events[m] = events
-    out.key[m] = _pack(s)
-    out.action[m] = action
-    out.part[m] = 0
-    out.timed[m] = 0
+    wide = out.wide[m]
+    wide[KEY], wide[ACTION], wide[PART], wide[TIMED], wide[EVENTS] = pack(s), action, 0, 0, events
     return m + 1
 
 
-@njit
+@njit(inline="always")
 def _fits(out, n, forced):  # type: ignore[no-untyped-def]
     """Whether the panels of the limbs are those that overrides ask for (3 bits for each column, 0: any limb)."""
+    press, panels = out.scratch[PRESS], out.scratch[PANELS]
     for i in range(n):
-        want = forced >> 3 * out.panels[i] & 7
-        if want and out.press[want - 1] != out.panels[i]:
+        want = forced >> 3 * panels[i] & 7
+        if want and press[want - 1] != panels[i]:
             return False
     return True
 
 
-@njit
+@njit(inline="always")
 def _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w):  # type: ignore[no-untyped-def]
     """Every way to give exactly so many legs and hands different panels of the row, as far as overrides allow."""
     m = 0
-    press, panels = out.press, out.panels
-    both = before[LEFT_HELD] == 0 and before[RIGHT_HELD] == 0
+    press, panels = out.scratch[PRESS], out.scratch[PANELS]
+    both = before[LEFT_HELD] == 0 and before[LEFT_HELD + 1] == 0
     for i in range(-1, n):
         if (i >= 0 and not usable & 1) or (jack >= 0 and (jack == 0) != (i >= 0)):
             continue
@@ -232,11 +210,11 @@ def _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, all
 
 
 @njit
-def _forced_limbs(forced, n, out):  # type: ignore[no-untyped-def]
+def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
     """Limbs that overrides name, as bits, and how many steps they name a hand for."""
     limbs = hands = 0
     for i in range(n):
-        want = forced >> 3 * out.panels[i] & 7
+        want = forced >> 3 * panels[i] & 7
         if want:
             limbs |= 1 << (want - 1)
             hands += want > 2
@@ -249,38 +227,43 @@ def expand_thesis(key, row, forced, g, w, switches, out):  # type: ignore[no-unt
 
     row : packed masks of the row; forced : limb codes of overrides; w : weights by term
     """
-    before = out.state
-    _unpack(key, before)
-    holds = row >> COLUMN_BITS & _MASK
-    steps = (row | row >> 4 * COLUMN_BITS | row >> 5 * COLUMN_BITS) & _MASK | holds
-    _release_and_flee(before, row >> 3 * COLUMN_BITS & _MASK, row >> 2 * COLUMN_BITS & _MASK, g)
-    n = 0
-    for panel in range(g.neighbours.shape[0]):
+    before, panels = out.scratch[BEFORE], out.scratch[PANELS]
+    unpack(key, before)
+    holds = row >> HOLDS & _MASK
+    steps = (row >> TAPS | row >> HOLDS | row >> ROLLS | row >> ROLL_TAPS) & _MASK
+    _release_and_flee(before, row >> RELEASED & _MASK, row >> MINES & _MASK, g)
+    n = np.int64(0)
+    for panel in range(g.place.shape[0]):
         if steps >> panel & 1:
-            out.panels[n] = panel
+            panels[n] = panel
             n += 1
     if n == 0:
-        out.key[0], out.action[0], out.part[0], out.timed[0], out.events[0] = _pack(before), 0, 0, 0, 0
-        out.terms[0, :] = 0
+        for i in range(5):
+            out.wide[0, i] = 0
+        out.wide[0, KEY] = pack(before)
+        for i in range(out.terms.shape[1]):
+            out.terms[0, i] = 0
         return 1
-    usable = jack = 0
+    usable = np.int64(0)
     for limb in range(4):
         usable |= (before[LEFT_HELD + limb] == 0) << limb
-    jack = -1
+    jack = np.int64(-1)
     if n == 1:
         for foot in range(1, -1, -1):
-            if usable >> foot & 1 and before[foot] == out.panels[0]:
-                jack = foot
+            if usable >> foot & 1 and before[foot] == panels[0]:
+                jack = np.int64(foot)
     legs = min((usable & 1) + (usable >> 1 & 1), n)
     hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
-    allow = switches[0]
-    m = _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w)
-    if m == 0:  # overrides against the rules: they win, even over holds and the jack rule
-        limbs, forced_hands = _forced_limbs(forced, n, out)
-        usable |= limbs
-        legs = min((usable & 1) + (usable >> 1 & 1), n - forced_hands)
-        hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
-        m = _assign(out, before, usable, legs, hands, -1, steps, n, holds, forced, True, g, w)
-    if m == 0:  # overrides nobody can follow, such as one foot on two panels
-        m = _assign(out, before, usable, legs, hands, -1, steps, n, holds, 0, True, g, w)
+    allow, m = switches[0], 0
+    for attempt in range(3):
+        if attempt == 1:  # overrides against the rules: they win, even over holds and the jack rule
+            limbs, forced_hands = _forced_limbs(forced, n, panels)
+            usable |= limbs
+            legs = min((usable & 1) + (usable >> 1 & 1), n - forced_hands)
+            hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
+            allow, jack = True, np.int64(-1)
+        elif attempt == 2:  # overrides nobody can follow, such as one foot on two panels
+            forced = np.int64(0)
+        if m == 0:
+            m = _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w)
     return m

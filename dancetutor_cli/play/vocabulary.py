@@ -23,11 +23,26 @@ _THESIS = (
     "hand-hold", "hand-across", "hand-aside", "hand-behind", "unplayable",
 )  # fmt: skip
 
-MODELS = {"thesis": Model(("allow-doublestep",), _THESIS, (), _THESIS)}
+_ITG = (
+    "doublestep", "fast-jack", "footswitch", "slow-footswitch", "sideswitch", "jump-footswitch", "holdswitch",
+    "bracket", "slow-bracket", "fast-jump", "crossover", "crossover-back", "crossover-full", "spin", "turn-135",
+    "turn-180", "facing", "distance", "stretch", "twisted", "mine", "release", "hand", "hand-hold", "unplayable",
+)  # fmt: skip
+# weights that take the place of another under some condition; they have no column of their own
+_ITG_INSTEAD = ("rested-doublestep", "marked-doublestep", "released-doublestep", "marked-footswitch")
+_ITG_TIMES = (
+    "doublestep-fast", "doublestep-rest", "doublestep-rested", "jack-fast", "footswitch-slow", "footswitch-slowest",
+    "bracket-slow", "bracket-slowest", "jump-fast", "distance-least",
+)  # fmt: skip
+
+MODELS = {
+    "thesis": Model(("allow-doublestep",), _THESIS, (), _THESIS),
+    "itg": Model(("brackets", "holdswitches"), (*_ITG, *_ITG_INSTEAD), _ITG_TIMES, _ITG),
+}
 
 # What may happen in a row, by the names players use; the number of a name is its bit in the kernels' events.
 EVENTS = (
     "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand", "jump",
     "unplayable", "footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right", "bracket", "holdswitch",
-    "crossover-front", "crossover-back", "jack", "candle", "gallop", "stream", "drill",
+    "crossover-front", "crossover-back", "footswitch", "jack", "candle", "gallop", "stream", "drill",
 )  # fmt: skip

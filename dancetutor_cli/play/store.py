@@ -1,0 +1,162 @@
+"""Where the solver keeps what it has met: states, row patterns and moves by number; nodes of one run. Kernel code."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN = range(5)  # places in `counts`
+NEXT, COST, FACTS, EVENTS = range(4)  # columns of `Tables.move`
+ACTION, PART = range(2)  # columns of `Tables.wide`
+FIRST, BASE = range(2)  # columns of `Nodes.row`
+REACHED, MOVE, PARENT = range(3)  # columns of `Nodes.node`
+# what a kernel wants before it can go on
+DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TIMED, UNEXPLORED = range(9)
+UNKNOWN = -1
+MOST_MS = 2047  # longer times cost like this one
+_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+
+
+class Tables(NamedTuple):
+    """All states, row patterns and moves met so far with one pad and preset; they outlive a chart.
+
+    counts : int64, how much of each is used
+    state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
+    pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
+    pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
+    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, events
+    wide : int64 (, 2), limb codes and parts; terms : int32 (, t)
+    timed_key : int64, packed facts; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
+    """
+
+    counts: NDArray[np.int64]
+    state_key: NDArray[np.int64]
+    state_hash: NDArray[np.int32]
+    pattern: NDArray[np.int64]
+    pattern_hash: NDArray[np.int32]
+    pair: NDArray[np.int64]
+    move: NDArray[np.int32]
+    wide: NDArray[np.int64]
+    terms: NDArray[np.int32]
+    timed_key: NDArray[np.int64]
+    timed_cost: NDArray[np.int32]
+
+
+class Nodes(NamedTuple):
+    """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
+
+    row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
+    node : int32 (, 3), cost, move that led there, parent
+    slot : int32, by state: its node, if that belongs to the row at hand
+    """
+
+    row: NDArray[np.int64]
+    node: NDArray[np.int32]
+    slot: NDArray[np.int32]
+
+
+class RowArrays(NamedTuple):
+    """`Rows` for the kernels, n rows and c columns, and what is made of them.
+
+    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column; pattern : int32 (n,), its number
+    elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
+    """
+
+    tick: NDArray[np.int64]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+    forced: NDArray[np.int64]
+    pattern: NDArray[np.int32]
+    elapsed: NDArray[np.int32]
+
+
+class Rules(NamedTuple):
+    """A preset and a pad's starting stance as arrays. weights, times : int64; switches : bool; home : int64 (2,)."""
+
+    weights: NDArray[np.int64]
+    times: NDArray[np.int64]
+    switches: NDArray[np.bool_]
+    home: NDArray[np.int64]
+
+
+class Found(NamedTuple):
+    """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c); cost : int32 (n, t).
+
+    margin : int64 (n,), -1 no other way; of length 0 if nobody wants to know
+    """
+
+    move: NDArray[np.int32]
+    limb: NDArray[np.int8]
+    part: NDArray[np.uint8]
+    cost: NDArray[np.int32]
+    margin: NDArray[np.int64]
+
+
+@njit
+def slot_of(value, size):  # type: ignore[no-untyped-def]
+    """Where the search for a number in a hash table of a power of two starts."""
+    return np.int64((np.uint64(value) * _GOLDEN) >> np.uint64(32)) & (size - 1)
+
+
+@njit
+def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of a packed state; a new one is entered."""
+    at = slot_of(key, len(numbers))
+    while numbers[at] >= 0:
+        if keys[numbers[at]] == key:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[STATES]
+    counts[STATES] += 1
+    numbers[at] = number
+    keys[number] = key
+    return number
+
+
+@njit
+def number_of_facts(facts, known, counts):  # type: ignore[no-untyped-def]
+    """Number of packed facts about time; new ones are entered."""
+    for number in range(counts[FACTS_KNOWN]):
+        if known[number] == facts:
+            return np.int64(number)
+    number = counts[FACTS_KNOWN]
+    counts[FACTS_KNOWN] += 1
+    known[number] = facts
+    return number
+
+
+@njit(cache=True)
+def fill_states(keys, count, table):  # type: ignore[no-untyped-def]
+    """Enter the first `count` keys into an empty hash table of their numbers."""
+    for number in range(count):
+        at = slot_of(keys[number], len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@njit(cache=True)
+def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
+    """The same for row patterns."""
+    for number in range(count):
+        at = slot_of(patterns[number, 0] ^ patterns[number, 1] * 31, len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@njit(cache=True)
+def fill_pairs(old, new):  # type: ignore[no-untyped-def]
+    """Move all pairs into a larger empty table."""
+    for i in range(len(old)):
+        if old[i, 0] < 0:
+            continue
+        at = slot_of(old[i, 0], len(new))
+        while new[at, 0] >= 0:
+            at = (at + 1) & (len(new) - 1)
+        new[at, 0], new[at, 1] = old[i, 0], old[i, 1]
