@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import struct
-import sys
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
