@@ -14,8 +14,8 @@ class Overrides:
 
     ticks : int64 (n,), 1/48 beats
     columns : int16 (n,)
-    limbs : int8 (n,), `play.model.Limb`
-    part : uint8 (n,), `play.model.Part`; WHOLE also where nobody said which part of the foot
+    limbs : int8 (n,), `feet.limbs.Limb`
+    part : uint8 (n,), `feet.limbs.Part`; WHOLE also where nobody said which part of the foot
     """
 
     ticks: NDArray[np.int64]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.feet.limbs import Limb, Part
 
 UNKNOWN = "."
 _LETTERS: dict[tuple[int, int], str] = {
