@@ -72,6 +72,12 @@ _OPTIONS = (
         show_default=True,
         help="What encodes H.264: auto takes NVENC where it works, else x264.",
     ),
+    click.option(
+        "--play",
+        type=click.Path(path_type=Path),
+        metavar="FILE.json",
+        help="Feet from this JSON of analyze instead of the solver's.",
+    ),
     click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, as 0.5,0.75,1; the pitch stays."),
     click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate]."),
     click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run."),
@@ -125,6 +131,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         sync=options["sync_offset"] / 1000,
         mute=options["mute"],
         practice=_practice(options, layout),
+        play=options["play"],
     )
 
 

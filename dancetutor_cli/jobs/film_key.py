@@ -27,6 +27,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         b"" if subject.music is None else file_hash(subject.music).encode(),
         repr((wanted, encoding)).encode(),
         _preset(request.preset),
+        b"" if request.play is None else file_hash(request.play).encode(),
         _feet(subject.song.path.parent / "data.sme"),
     )
     for part in parts:

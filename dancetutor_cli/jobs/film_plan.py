@@ -57,6 +57,10 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     pad = load_pad(chart.steps_type)
     if play is None or pad is None:
         raise UsageError(f"{request.path}: no pad is known for steps type '{chart.steps_type}'")
+    if request.play is not None:
+        from dancetutor_cli.formats.play_json import read_play
+
+        play = read_play(request.play, chart, play.rows, pad)
     scrolls = parse_segments(timing_tag(song, chart, "SCROLLS"))
     track = note_track(chart, play, scrolls)
     presses = presses_of(track)

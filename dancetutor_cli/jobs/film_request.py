@@ -42,6 +42,7 @@ class Request:
 
     path : the chart file; selection : which chart; preset : name or file of the cost preset
     section : "START:END" in seconds, beats or measures, or None for the whole song
+    play : a JSON file of analyze whose feet hold instead of the solver's
     sync : seconds by which the music plays late against the notes
     """
 
@@ -54,6 +55,7 @@ class Request:
     sync: float = 0.0
     mute: bool = False
     practice: Practice = Practice()
+    play: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
