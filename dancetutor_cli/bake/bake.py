@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from dancetutor_cli.motion.ik import Targets, solve
 from dancetutor_cli.motion.layers import add_layers
 from dancetutor_cli.motion.look import look
 from dancetutor_cli.motion.model import Motion
-from dancetutor_cli.motion.paths import sample_path
+from dancetutor_cli.motion.paths import sample_path, smooth_path
 from dancetutor_cli.motion.plan import Planner
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 from dancetutor_cli.motion.targets import ik_targets, moved
@@ -41,6 +42,7 @@ SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
 REFINEMENTS = 2  # rounds of adding keys half-way between others
+MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
 KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 
@@ -128,7 +130,7 @@ def _settled(
 ) -> BodyPath:  # fmt: skip
     """Bake roughly, see where the centre of mass and pinned palms draw the root, and plan the body's path again."""
     coarse = grid[::4]
-    deeper = np.zeros(len(plan.presses))
+    deeper, heels = np.zeros(len(plan.presses)), np.zeros((len(grid), 2))
     rounds = SETTLING if plan.presses else 2
     for turn in range(rounds):
         targets = _targets(plan, body, coarse, skeleton, settings)
@@ -139,14 +141,30 @@ def _settled(
         for k, press in enumerate(plan.presses):
             near = (coarse >= press.start - 0.05) & (coarse <= press.end + 0.05)
             deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
+        heels += np.column_stack([np.interp(grid, coarse, h) for h in _heels_up(skeleton, rotations, settings)])
+        heels = np.maximum(smooth_path(heels, np.ones(len(grid)), settings.sampling.work_rate, 0.06), 0.0)
         body = body_path(plan, grid, feet, skeleton, settings, body, above, deeper, keep=0 < turn < rounds - 1)
+        body = replace(body, heels=heels)
     return body
+
+
+def _heels_up(skeleton: Skeleton, rotations: Array, settings: MotionSettings) -> tuple[Array, Array]:
+    """How far (f,) each heel must rise so that its ankle does not bend beyond what ankles can, radians."""
+    limit = np.radians(settings.step.ankle_limit)
+    out = []
+    for side in "lr":
+        q = rotations[:, skeleton.index(f"{side}_talocrural")]
+        q = np.where(q[:, :1] < 0, -q, q)
+        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, MOST_HEEL))
+    return out[0], out[1]
 
 
 def _targets(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> Targets:
     drop = settings.step.heel_drop
-    feet = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
-    return ik_targets(plan, body, feet, at, skeleton, settings)
+    up = sample_path(body.heels, body.times, at)
+    feet = [foot_path(plan.feet[side], at, drop) for side in (0, 1)]
+    raised = [replace(f, pitch=f.pitch + up[:, side]) for side, f in enumerate(feet)]
+    return ik_targets(plan, body, (raised[0], raised[1]), at, skeleton, settings)
 
 
 def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:

@@ -31,7 +31,7 @@ class BodyPath:
     mass : (n, 2), (x, z) of the centre of mass; mass_height : its height
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
-    the body has bent for the left and right hand
+    the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
     """
 
     times: Array
@@ -44,6 +44,7 @@ class BodyPath:
     head_yaw: Array
     tilt: Array
     reaching: Array
+    heels: Array
 
 
 def body_path(
@@ -80,7 +81,9 @@ def body_path(
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, rate, controller)
-    return BodyPath(times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching)
+    return BodyPath(
+        times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching, np.zeros((len(times), 2))
+    )
 
 
 def _lever(height: HeightPath | None, times: Array) -> Array:

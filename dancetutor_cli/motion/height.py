@@ -51,6 +51,7 @@ def height_path(times: Array, wanted: Array, highest: Array, flights: Array, bod
     """
     flights = flights[(flights[:, 1] - flights[:, 0] > LEAST_PHASE)]
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
+    flights = _apart(flights)
     nodes, flying = _nodes(times[0], times[-1], flights)
     inner = np.arange(1, len(nodes) - 1)
     in_flight = flying[inner - 1] & flying[inner]
@@ -75,6 +76,16 @@ def height_path(times: Array, wanted: Array, highest: Array, flights: Array, bod
         if solution.found:
             break
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying))
+
+
+def _apart(flights: Array) -> Array:
+    """Flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
+    keep, landed = [], -np.inf
+    for k, (start, end) in enumerate(flights):
+        if start - landed >= LEAST_PHASE:
+            keep.append(k)
+            landed = end
+    return np.asarray(flights[keep])
 
 
 def _nodes(start: float, end: float, flights: Array) -> tuple[Array, NDArray[np.bool_]]:

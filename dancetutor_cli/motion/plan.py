@@ -33,6 +33,7 @@ class _Foot:
     ball: Array
     yaw: float  # without toe-out
     free: float  # the foot may not leave before
+    landed: float = -np.inf  # when it came down
     swings: list[Swing] = field(default_factory=list)
     evading: tuple[float, tuple[Array, float]] | None = None  # time of a mine, and where the foot stood before it
 
@@ -115,7 +116,7 @@ class Planner:
         galloping = self.take_off.get(side, (-1, 0.0))
         if galloping[0] == i:
             lift = galloping[1]
-        lift = min(max(lift, foot.free), time - SHORTEST) if up is None else up
+        lift = min(max(lift, foot.free), self._latest(foot, time)) if up is None else up
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         if np.linalg.norm(target - foot.ball) < 0.05:
             height = max(height * step.jack_height, step.height_fast)
@@ -167,7 +168,7 @@ class Planner:
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
             apex = jump.apex_hands
         flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
-        take_off = min(max(time - flight, *(f.free for f in self.feet)), time - SHORTEST)
+        take_off = min(max(time - flight, *(f.free for f in self.feet)), *(self._latest(f, time) for f in self.feet))
         height = GRAVITY * (time - take_off) ** 2 / 8
         middles = _pair((old[0] + old[1]) / 2), _pair((goals[0][0] + goals[1][0]) / 2)
         for foot, (target, yaw) in zip(self.feet, goals, strict=True):
@@ -191,6 +192,12 @@ class Planner:
     def _move(self, foot: _Foot, swing: Swing, target: Array, yaw: float) -> None:
         foot.swings.append(swing)
         foot.ball, foot.yaw, foot.free = target, yaw, swing.land + FREE_WINDOW
+        foot.landed = swing.land
+
+    def _latest(self, foot: _Foot, time: float) -> float:
+        """When a foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
+        early = max(time - self.settings.step.let_go, foot.landed + FREE_WINDOW)
+        return min(early, time - SHORTEST) if foot.free > early else time - SHORTEST
 
     def _target(
         self, i: int, columns: list[int], foot: _Foot, yaw: float, other: Array, cut: float
@@ -349,12 +356,15 @@ class Planner:
         return float(np.radians(beyond) * (1.0 if side == 0 else -1.0))
 
     def _ended(self, contact: Contact) -> Contact:
-        """A tap ends when its foot leaves the panel."""
-        if contact.end < np.inf:
+        """A contact ends when its foot leaves the panel, also if that is before the end of a hold."""
+        if contact.limb >= Limb.LEFT_HAND:
             return contact
         lifts = [s.lift for s in self.feet[contact.limb].swings if s.kind != "pivot"]
         k = int(np.searchsorted(lifts, contact.start))
-        end = lifts[k] if k < len(lifts) else contact.start + self.settings.step.longest
+        last = contact.end if contact.end < np.inf else contact.start + self.settings.step.longest
+        end = lifts[k] if k < len(lifts) else last
+        if contact.end < np.inf:
+            end = min(end, contact.end)
         return Contact(
             contact.start, end, contact.limb, contact.column, contact.kind, contact.part, contact.row, contact.panel
         )

@@ -32,6 +32,8 @@ class StepSettings:
     yaw_to_normal: float
     toe_out: float
     foot_turn: float
+    let_go: float
+    ankle_limit: float
     crossover_turn: float
     clearance: float
     apart: float

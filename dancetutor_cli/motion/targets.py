@@ -19,7 +19,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
-PELVIS_SHARE = 0.52  # the pelvis tilts this part of the chest's tilt
+PELVIS_SHARE = 0.58  # the pelvis tilts this part of the chest's tilt
 
 
 def ik_targets(
