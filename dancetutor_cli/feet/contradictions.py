@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
-from dancetutor_cli.feet.model import FeetProblem
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.model import FeetProblem
 
 _NAMES = {
     Limb.LEFT_FOOT: "the left foot",

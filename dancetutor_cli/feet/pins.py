@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.contradictions import Said, contradictions
+from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.measures import markers_in, measure_lines, step_rows
 from dancetutor_cli.feet.model import FeetProblem, Overrides
 from dancetutor_cli.feet.notation import MEANING, NotationError, Token, parse
-from dancetutor_cli.feet.limbs import Limb, Part
 
 
 @dataclass(frozen=True, slots=True)

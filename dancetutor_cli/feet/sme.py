@@ -10,8 +10,8 @@ from typing import Any
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.feet.contradictions import Said
-from dancetutor_cli.feet.model import FeetProblem
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.model import FeetProblem
 
 FILE_NAME = "data.sme"
 OURS = "dancetutor"  # our own key in the file: what we wrote into it, which is no person's word
