@@ -42,6 +42,13 @@ def detour(
     return float(aside[0] * _ASIDE[chosen]), float(aside[1] * _ASIDE[chosen])
 
 
+def shoes_apart(middle: Array, yaw: float, other: Array, other_yaw: float) -> float:
+    """Least distance in metres between the middle lines of two shoes, given the (2,) middles of both and their yaws."""
+    a = HALF_SHOE * np.array([np.sin(yaw), np.cos(yaw)])
+    b = HALF_SHOE * np.array([np.sin(other_yaw), np.cos(other_yaw)])
+    return float(segment_gaps((middle - a)[None], (middle + a)[None], other - b, other + b)[0])
+
+
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Least distance (...) between segments a-b (..., 2) and one segment c-d (2,) in the plane."""
     gaps = [_point_gap(p, c, d) for p in (a, b)] + [_point_gap(np.broadcast_to(p, a.shape), a, b) for p in (c, d)]

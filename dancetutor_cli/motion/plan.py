@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour
+from dancetutor_cli.motion.clear import detour, shoes_apart
 from dancetutor_cli.motion.ease import reduction
 from dancetutor_cli.motion.feet import GRAVITY
 from dancetutor_cli.motion.model import Contact
@@ -111,7 +111,7 @@ class Planner:
         up = self._resumed(foot, time)
         body = self._body_yaw()
         yaw = self._limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
-        target, yaw = self._target(i, columns, foot, yaw, stage.middle_of(other.ball, other.yaw), cut)
+        target, yaw = self._target(i, columns, foot, yaw, stage.middle_of(other.ball, other.yaw), other.yaw, cut)
         lift = min(time - duration * (1.0 - step.double_support), time - LEAST_SWING)
         galloping = self.take_off.get(side, (-1, 0.0))
         if galloping[0] == i:
@@ -162,7 +162,7 @@ class Planner:
         goals = []
         for foot in self.feet:
             yaw = self._limited(foot.yaw + jump.yaw_to_normal * (body - foot.yaw), body)
-            goals.append(self._target(i, pressed[foot.side], foot, yaw, ends[1 - foot.side], cut))
+            goals.append(self._target(i, pressed[foot.side], foot, yaw, ends[1 - foot.side], yaw, cut))
         far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
@@ -200,7 +200,7 @@ class Planner:
         return min(early, time - SHORTEST) if foot.free > early else time - SHORTEST
 
     def _target(
-        self, i: int, columns: list[int], foot: _Foot, yaw: float, other: Array, cut: float
+        self, i: int, columns: list[int], foot: _Foot, yaw: float, other: Array, other_yaw: float, cut: float
     ) -> tuple[Array, float]:
         """Where the ball lands and how the foot is turned (without toe-out)."""
         step = self.settings.step
@@ -213,8 +213,12 @@ class Planner:
             toes += 2 * np.pi * round((yaw - toes) / (2 * np.pi))
             middle = (self.panels[toe] + self.panels[heel]) / 2
             return stage.ball_of(middle, toes), toes - foot.outward * np.radians(step.toe_out)
-        panel = self.panels[columns[0]]
-        return stage.landing_ball(panel, self._toes(foot, yaw), other, cut, step.edge_margin, step.clearance), yaw
+        panel, toes = self.panels[columns[0]], self._toes(foot, yaw)
+        for share in (1.0, 0.75, 0.5, 0.25, 0.0):  # the nearest to the other foot that leaves it room
+            ball = stage.landing_ball(panel, toes, other, cut * share, step.edge_margin, step.clearance)
+            if shoes_apart(stage.middle_of(ball, toes), toes, other, other_yaw) >= step.apart:
+                break
+        return ball, yaw
 
     def _pitches(
         self, cut: float, lift: float, most: float, land: float, columns: list[int]
