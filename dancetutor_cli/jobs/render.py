@@ -15,6 +15,7 @@ from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.pool import Task, Workers, open_workers
 from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.ffmpeg import EncoderError
 
 
 class Progress(Protocol):
@@ -39,6 +40,12 @@ def work_folder(output: Path) -> Iterator[Path]:
         raise FileError(output, f"cannot be written: {error.strerror}") from error
     try:
         yield folder
+    except EncoderError as error:
+        raise FileError(output, str(error)) from error
+    except OSError as error:
+        if error.filename is None:  # from a write to an open file: it is ours
+            raise FileError(output, f"cannot be written: {error.strerror or error}") from error
+        raise
     finally:
         _remove(folder)
 
