@@ -100,8 +100,8 @@ class Planner:
             self._turn(time, duration)
             self.previous = time
         for limb, columns in pressed.items():
-            for column in columns:
-                self._contact(i, time, limb, column)
+            for pressed_column in columns:
+                self._contact(i, time, limb, pressed_column)
 
     # steps and jumps
 
@@ -170,6 +170,7 @@ class Planner:
         flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
         take_off = min(max(time - flight, *(f.free for f in self.feet)), *(self._latest(f, time) for f in self.feet))
         height = GRAVITY * (time - take_off) ** 2 / 8
+        tuck = jump.tuck * (1.0 + 1.5 * min(far / jump.far, 1.5) ** 2)  # legs that reach far must not lock
         middles = _pair((old[0] + old[1]) / 2), _pair((goals[0][0] + goals[1][0]) / 2)
         for foot, (target, yaw) in zip(self.feet, goals, strict=True):
             pitches = self._pitches(cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, pressed[foot.side])
@@ -183,7 +184,7 @@ class Planner:
                 pitches,
                 (0.0, 0.0),
                 "jump",
-                jump.tuck,
+                tuck,
                 np.radians(turned),
                 *middles,
             )

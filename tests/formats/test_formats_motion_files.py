@@ -1,0 +1,125 @@
+"""Motions, moves and plays in files: what was written is read, what is wrong is said in one line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.bake import bake, plan_of
+from dancetutor_cli.chart import load
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.formats.moves_json import moves_data, write_moves
+from dancetutor_cli.formats.npz import read_npz, write_npz
+from dancetutor_cli.formats.play_json import read_play
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play import load_preset, prepare, solve_chart
+from dancetutor_cli.resources import charts_path
+
+
+@pytest.fixture(scope="module")
+def demo():  # type: ignore[no-untyped-def]
+    song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")
+    chart = next(c for c in song.charts if c.steps_type == "dance-single" and c.difficulty == "Hard")
+    play, pad = solve_chart(chart, load_preset("thesis")), load_pad(chart.steps_type)
+    return chart, play, pad
+
+
+def test_npz_gives_back_the_motion(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    motion = bake(*demo, section=(2.0, 6.0))
+    write_npz(tmp_path / "a.npz", motion)
+    back = read_npz(tmp_path / "a.npz")
+    np.testing.assert_array_equal(back.rotations, motion.rotations)
+    np.testing.assert_array_equal(back.times, motion.times)
+    assert back.contacts == motion.contacts and back.skeleton.names == motion.skeleton.names
+    write_npz(tmp_path / "b.npz", motion)
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_other_files_are_no_motion(tmp_path: Path) -> None:
+    (tmp_path / "a.npz").write_bytes(b"not a zip")
+    np.savez(tmp_path / "b.npz", x=np.zeros(3))
+    for name, said in (("a", "not an .npz"), ("b", "is missing"), ("none", "No such file")):
+        with pytest.raises(FileError, match=said):
+            read_npz(tmp_path / f"{name}.npz")
+
+
+def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    plan = plan_of(*demo)
+    write_moves(tmp_path / "m.json", plan, "Two Left Feet", "x", -1e9, 1e9)
+    data = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
+    assert len(data["contacts"]) == int((demo[1].limb >= 0).sum())
+    for limb in ("left_foot", "right_foot"):
+        place, end = data["start"][limb]["at"], -1e9
+        for move in (m for m in data["moves"] if m["limb"] == limb):
+            assert move["from"] == place and move["start"] >= end - 1e-6 and move["end"] > move["start"]
+            place, end = move["to"], move["end"]
+    late = moves_data(plan, "", "", 10.0, 20.0)
+    assert all(10.0 <= m["start"] <= 20.0 for m in late["moves"])
+
+
+def as_json(chart, play) -> dict:  # type: ignore[no-untyped-def, type-arg]
+    """The part of the JSON of analyze that a play needs, written here by hand from the page that describes it."""
+    limbs = {0: "left_foot", 1: "right_foot", 2: "left_hand", 3: "right_hand"}
+    rows = [
+        {
+            "beat": tick / 48,
+            "steps": [
+                {"column": int(c), "limb": limbs.get(int(play.limb[i, c])), "part": None} for c in np.flatnonzero(s)
+            ],
+            "feet": {k: None if f < 0 else int(f) for k, f in zip(("left", "right"), play.feet[i], strict=True)},
+            "facing": float(play.facing[i]),
+        }
+        for i, (tick, s) in enumerate(zip(play.rows.tick, play.rows.steps, strict=True))
+        if s.any()
+    ]
+    return {"schema": 1, "files": [{"charts": [{"index": chart.index, "steps_type": chart.steps_type, "rows": rows}]}]}
+
+
+def test_a_play_from_json_dances_the_same(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    chart, play, pad = demo
+    path = tmp_path / "play.json"
+    path.write_text(json.dumps(as_json(chart, play)), encoding="utf-8")
+    back = read_play(path, chart, prepare(chart, pad, 0.35), pad)
+    np.testing.assert_array_equal(back.limb, play.limb)
+    np.testing.assert_array_equal(back.feet, play.feet)
+    section = (24.0, 30.0)  # mines and rolls
+    first, second = (bake(chart, p, pad, section=section) for p in (play, back))
+    np.testing.assert_array_equal(first.rotations, second.rotations)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda d: d["files"][0]["charts"][0].update(index=99), "holds no chart"),
+        (lambda d: d["files"][0]["charts"][0]["rows"].pop(3), "is missing"),
+        (lambda d: d["files"][0]["charts"][0]["rows"][0].update(beat=0.01), "no row|is missing"),
+        (lambda d: d["files"][0]["charts"][0]["rows"][0]["steps"][0].update(limb="tail"), "no limb is called 'tail'"),
+        (lambda d: d["files"][0]["charts"][0]["rows"][0]["feet"].update(left=7), "no panel"),
+        (lambda d: d["files"][0]["charts"][0]["rows"][0].update(facing="north"), "no number"),
+        (lambda d: d.update(schema=2), "schema 2"),
+        (lambda d: d.pop("files"), "not the JSON"),
+    ],
+)
+def test_a_play_that_does_not_fit_is_refused(demo, spoil, said: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    chart, play, pad = demo
+    data = as_json(chart, play)
+    spoil(data)
+    path = tmp_path / "play.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    with pytest.raises(FileError, match=said):
+        read_play(path, chart, prepare(chart, pad, 0.35), pad)
+
+
+def test_half_speed_keeps_gravity(demo) -> None:  # type: ignore[no-untyped-def]
+    from dancetutor_cli.bake import report
+
+    chart, play, pad = demo
+    slow = replace(play, rows=replace(play.rows, second=play.rows.second * 2))
+    motion = bake(chart, slow, pad, section=(10.0, 40.0), rate=0.5)
+    measured = report(motion)
+    assert measured["flights"].value > 0 and measured["flight gravity off by"].met
+    assert measured["contact error"].met and measured["contacts missed"].value == 0
