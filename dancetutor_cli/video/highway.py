@@ -169,8 +169,10 @@ class Highway:
         room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
         size = 0.21 * geometry.lane
         edges = 0.8 * size + 5  # what the label adds to its words
-        size = max(0.6 * size, size * min(1.0, (room - edges) / self.face.width(text, size)))
-        return sprites.flag(self.face.fit(text, size, room - edges + 1), size, self.style.callout[severity], self.face)
+        least = 0.6 * size
+        while size > least and self.face.width(text, size) > room - edges:  # hinting makes widths uneven
+            size *= 0.97
+        return sprites.flag(self.face.fit(text, size, room - edges), size, self.style.callout[severity], self.face)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0

@@ -81,8 +81,8 @@ def test_a_note_reaches_its_receptor_at_its_time() -> None:
     )
     film = Film(plan)
     assert film.highway is not None
-    empty = Film(replace(plan, notes=film_plan(np.array([50.0]), size=(216, 144)).notes, presses=Presses(*(x[:0] for x in (
-        plan.presses.start, plan.presses.end, plan.presses.column, plan.presses.limb)))))  # fmt: skip
+    silent = Presses(plan.presses.start[:0], plan.presses.end[:0], plan.presses.column[:0], plan.presses.limb[:0])
+    empty = Film(replace(plan, notes=film_plan(np.array([50.0])).notes, presses=silent))
 
     def middle(frame: int) -> float:
         changed = np.abs(film.frame(frame).astype(int) - empty.frame(frame)).sum(axis=2) > 60
