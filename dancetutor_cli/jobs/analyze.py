@@ -78,7 +78,7 @@ def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartS
 
     for chart in charts:
         overrides, ignores, problems = overrides_for(song, chart)
-        play = solve_chart(chart, task.preset, overrides)
+        play = solve_chart(chart, task.preset, overrides, margins=True)
         yield ChartSubject(song, chart, play, load_pad(chart.steps_type), overrides, ignores, problems)
 
 

@@ -104,7 +104,7 @@ def default_folder() -> Path:
 
 @cache
 def _program() -> str:
-    """The program itself: its version, and size and time of the files that make results, to notice a checkout at work."""
+    """The program itself: its version, and size and time of the files that make results, to notice work on it."""
     parts = [dancetutor_cli.__version__]
     for root in (*(PACKAGE / room for room in _ROOMS), config_path("")):
         parts += [f"{path}{stat.st_size}{stat.st_mtime_ns}" for path, stat in _files(str(root))]

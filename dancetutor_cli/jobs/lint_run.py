@@ -49,6 +49,7 @@ class LintRun:
 
     request: Request
     _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
+    _sources: dict[Path, Path | None] = field(default_factory=dict)
     _presets: dict[str, Preset] = field(default_factory=dict)
     _baseline: Baseline | None = None
     _found: list[Key] = field(default_factory=list)
@@ -56,12 +57,17 @@ class LintRun:
     def configuration(self, path: Path) -> Configuration:
         """What holds for a file: --config, or the nearest dancetutor.yaml up the tree, and the command line on top."""
         given = self.request.config
-        source = None if given is not None else find_configuration(path.absolute().parent)
+        source = None if given is not None else self._source(path.parent)
         if source not in self._by_source:
             loaded = load_configuration(given if given is not None else source)
             loaded = with_assignments(loaded, self.request.assignments)
             self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
         return self._by_source[source]
+
+    def _source(self, folder: Path) -> Path | None:
+        if folder not in self._sources:
+            self._sources[folder] = find_configuration(folder)
+        return self._sources[folder]
 
     def preset(self, path: Path) -> Preset:
         """The cost preset for a file; UsageError if there is no such preset."""

@@ -39,7 +39,7 @@ def with_suggestions(
     for finding in findings:
         best: tuple[int, str] | None = None
         for edit in _edits(finding, subject.play) if finding.rule in MENDABLE else ():
-            play = solve(_edited(subject.play.rows, edit), subject.pad, preset, subject.overrides)
+            play = solve(_edited(subject.play.rows, edit), subject.pad, preset, subject.overrides, margins=True)
             found = _places(check_chart(replace(subject, play=play), settings))
             mended = (finding.rule, finding.beat) not in found and found <= before
             if mended and (best is None or play.total < best[0]):

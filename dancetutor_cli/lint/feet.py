@@ -105,8 +105,10 @@ class Feet:
                 np.diff(self._play.rows.second[steps.row])[moved],
             )
 
-    def releases(self) -> Iterator[tuple[int, int, float]]:
-        """Row, column and time (s) since the end of a hold which the same limb left to press another panel."""
+    def releases(self, min_seconds: float) -> Iterator[tuple[int, int, float]]:
+        """Row, column and time (s) since the end of a hold which the same limb left too soon for another panel."""
+        if min_seconds <= 0:
+            return
         rows = self._play.rows
         for limb in range(4):
             steps = self.presses.of(limb)
@@ -115,6 +117,8 @@ class Feet:
             moved = held[steps.column[held + 1] != steps.column[held]]
             ended = self._timing.seconds(rows.hold_end[steps.row[moved], steps.column[moved]])
             late = rows.second[steps.row[moved + 1]] - ended
+            soon = late < min_seconds - _EPSILON
+            moved, late = moved[soon], late[soon]
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
     def mines_under_held(self) -> Iterator[tuple[int, int, int]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from rich import box
 from rich.console import Console
@@ -15,32 +16,46 @@ from rich.table import Table
 
 from dancetutor_cli.jobs.result import ChartResult
 
-# Header -> name of the move that is counted.
-MOVE_COLUMNS = {
-    "double\nsteps": "doublestep",
-    "forced\ndouble\nsteps": "forced-doublestep",
-    "cross\nover\n135°": "crossover-half",
-    "cross\nover\n180°": "crossover-full",
-    "spins": "spin",
-    "jump\nfoot\nswitch": "jump-footswitch",
-    "jacks": "jack",
-    "candles": "candle",
-    "gallops": "gallop",
-    "hands": "hand",
-}
-_HEADERS = ("rows", "cost", *MOVE_COLUMNS)
-_WIDTHS = (5, 5, 6, 6, 5, 5, 5, 6, 5, 7, 7, 5)
+
+class Column(NamedTuple):
+    """A column of the table. `moves` are those it counts; one that is not `always` shows where there are any."""
+
+    header: str
+    width: int
+    moves: tuple[str, ...]
+    always: bool = True
+
+
+MOVE_COLUMNS = (
+    Column("double\nsteps", 6, ("doublestep",)),
+    Column("forced\ndouble\nsteps", 6, ("forced-doublestep",)),
+    Column("cross\nover\n135°", 5, ("crossover-half",)),
+    Column("cross\nover\n180°", 5, ("crossover-full",)),
+    Column("spins", 5, ("spin",)),
+    Column("jump\nfoot\nswitch", 6, ("jump-footswitch",)),
+    Column("foot\nswitch", 6, ("footswitch-up", "footswitch-down"), always=False),
+    Column("side\nswitch", 6, ("sideswitch-left", "sideswitch-right"), always=False),
+    Column("hold\nswitch", 6, ("holdswitch",), always=False),
+    Column("brackets", 8, ("bracket",), always=False),
+    Column("jacks", 5, ("jack",)),
+    Column("candles", 7, ("candle",)),
+    Column("gallops", 7, ("gallop",)),
+    Column("hands", 5, ("hand",)),
+)
+_ROWS, _COST = Column("rows", 5, ()), Column("cost", 6, ())
 
 
 def chart_table(chart: ChartResult, console: Console) -> str:
     """The table as text for this console, with a final newline."""
-    values = [chart.row_count, chart.cost, *(chart.counts.get(move, 0) for move in MOVE_COLUMNS.values())]
-    cells = [str(value) if value or not place else "·" for place, value in enumerate(values)]
-    if any(len(cell) > width for cell, width in zip(cells, _WIDTHS, strict=True)):
-        return _draw(console, cells)
-    drawing = _template(console, console.width)
-    for number, (cell, width) in enumerate(zip(cells, _WIDTHS, strict=True)):
-        drawing = drawing.replace(_placeholder(number, width), cell.rjust(width))
+    counts = {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
+    shown = tuple(column for column in MOVE_COLUMNS if column.always or counts[column])
+    columns = (_ROWS, _COST, *shown)
+    cells = [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
+    if any(len(cell) > column.width for cell, column in zip(cells, columns, strict=True)):
+        return _draw(console, columns, cells)
+    drawing = _template(console, console.width, columns)
+    for number, (cell, column) in enumerate(zip(cells, columns, strict=True)):
+        drawing = drawing.replace(_placeholder(number, column.width), cell.rjust(column.width))
     return drawing
 
 
@@ -48,15 +63,15 @@ def _placeholder(number: int, width: int) -> str:
     return chr(0xE000 + number) * width  # private use: stands nowhere else
 
 
-@lru_cache(maxsize=4)
-def _template(console: Console, width: int) -> str:
-    return _draw(console, [_placeholder(number, width) for number, width in enumerate(_WIDTHS)])
+@lru_cache(maxsize=64)
+def _template(console: Console, width: int, columns: tuple[Column, ...]) -> str:
+    return _draw(console, columns, [_placeholder(number, column.width) for number, column in enumerate(columns)])
 
 
-def _draw(console: Console, cells: Sequence[str]) -> str:
+def _draw(console: Console, columns: Sequence[Column], cells: Sequence[str]) -> str:
     table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False, header_style="dim")
-    for header, width in zip(_HEADERS, _WIDTHS, strict=True):
-        table.add_column(header, justify="right", min_width=width, vertical="bottom", no_wrap=True)
+    for column in columns:
+        table.add_column(column.header, justify="right", min_width=column.width, vertical="bottom", no_wrap=True)
     table.add_row(*cells)
     with console.capture() as capture:
         console.print(table)

@@ -49,7 +49,7 @@ def patterns(rule: type) -> list[Pattern]:
     return [pattern for pattern in found if pattern.rows]
 
 
-def subject(pattern: Pattern) -> ChartSubject:
+def subject(pattern: Pattern, code: str) -> ChartSubject:
     steps_type = STEPS_TYPES[max(map(len, pattern.rows))]
     notes = "\n".join(pattern.rows)
     text = f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:{steps_type}::Hard:9::\n{notes}\n;\n"
@@ -61,13 +61,15 @@ def subject(pattern: Pattern) -> ChartSubject:
         for column, letter in zip(columns, letters, strict=False):
             if letter in LIMBS:
                 forced[row * 48, column] = LIMBS[letter]
-    preset = load_preset("itg" if "r" in "".join(pattern.letters) else "thesis")
-    return ChartSubject(song, chart, solve_chart(chart, preset, Overrides.of(forced)), load_pad(steps_type))
+    preset = load_preset("itg" if code in NEEDS_ITG else "thesis")
+    return ChartSubject(
+        song, chart, solve_chart(chart, preset, Overrides.of(forced), margins=code == "DT207"), load_pad(steps_type)
+    )
 
 
 def findings(rule: Any, pattern: Pattern) -> list[str]:
     options = {**default_rules()[rule.code], "severity": "warning", **pattern.options}
-    return [finding.message for finding in rule(options).check(subject(pattern))]
+    return [finding.message for finding in rule(options).check(subject(pattern, rule.code))]
 
 
 @pytest.mark.parametrize("code", sorted(all_rules()))

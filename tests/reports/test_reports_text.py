@@ -68,7 +68,7 @@ def test_filling_the_drawn_table_equals_drawing_it(monkeypatch: pytest.MonkeyPat
     console = Console(file=io.StringIO(), width=100, color_system=None)
     filled = chart_table(CHART, console)
     monkeypatch.setattr(table, "_template", lambda *_: pytest.fail("not drawn"))
-    monkeypatch.setattr(table, "_WIDTHS", (2, *table._WIDTHS[1:]))  # 540 does not fit: it is drawn
+    monkeypatch.setattr(table, "_ROWS", table._ROWS._replace(width=2))  # 540 does not fit: it is drawn
     drawn = chart_table(CHART, console)
     assert [line.split() for line in filled.splitlines() if "540" in line] == [
         line.split() for line in drawn.splitlines() if "540" in line
@@ -115,3 +115,14 @@ def test_a_chart_without_a_pad_has_no_table() -> None:
 )
 def test_clock(second: float, text: str) -> None:
     assert clock(second) == text
+
+
+def test_columns_that_most_charts_do_not_need_show_only_where_they_count() -> None:
+    assert "brackets" not in printed(FILE)[0]
+    counted = replace(CHART, counts={**CHART.counts, "bracket": 7, "footswitch-up": 2, "footswitch-down": 3})
+    out, _ = printed(replace(FILE, charts=(counted,)))
+    lines = out.splitlines()
+    values = next(line for line in lines if " 540 " in line)
+    header = lines[lines.index(values) - 2]
+    assert values[: header.index("brackets") + len("brackets")].endswith(" 7")
+    assert " 5 " in values

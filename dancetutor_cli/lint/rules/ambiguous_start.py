@@ -19,10 +19,10 @@ class AmbiguousStart(ChartRule):
 
     Bad:
 
-        0100  L
-        0010  R
-        0100  L
-        0010  R
+        0100
+        0010
+        0100
+        0010
 
     Better: a panel of one side says which foot begins.
 

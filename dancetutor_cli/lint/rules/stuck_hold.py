@@ -43,8 +43,8 @@ class StuckHold(ChartRule):
         for row, column, seconds in feet.mines_after_holds(self.options["mine_seconds"]) if feet else ():
             message = f"a mine lies on this panel {seconds * 1000:.0f} ms after the end of its hold"
             yield self.finding(message, subject.at_row(row, column))
-        for row, column, seconds in feet.releases() if feet else ():
-            if feet and seconds < self.options["min_seconds"] - 1e-6:
-                late = f"{max(seconds, 0) * 1000:.0f} ms"
-                message = f"the {feet.limb_name(row, column)} holds another panel until {late} before this step"
-                yield self.finding(message, subject.at_row(row, column))
+        for row, column, seconds in feet.releases(self.options["min_seconds"]) if feet else ():
+            late = f"{max(seconds, 0) * 1000:.0f} ms"
+            name = feet.limb_name(row, column) if feet else ""
+            message = f"the {name} holds another panel until {late} before this step"
+            yield self.finding(message, subject.at_row(row, column))

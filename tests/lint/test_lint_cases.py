@@ -1,0 +1,79 @@
+"""The cases in cases/*.yml, run through the whole of `analyze`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
+from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.play import load_preset
+
+CASES = Path(__file__).parent / "cases"
+KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",
+         "options", "found", "says"}  # fmt: skip
+
+
+def load(path: Path) -> dict[str, Any]:
+    # Rows such as 0100 must not become numbers: everything is read as text, and lists of beats are made numbers below.
+    found: dict[str, Any] = yaml.load(path.read_text("utf-8"), Loader=yaml.BaseLoader)
+    return found
+
+
+def all_cases() -> list[Any]:
+    found = []
+    for path in sorted(CASES.glob("*.yml")):
+        data = load(path)
+        for name, case in data["cases"].items():
+            shared = {key: data[key] for key in ("preset", "options") if key in data}
+            found.append(pytest.param(path.stem, {**shared, **case}, id=f"{path.stem}-{name}"))
+    return found
+
+
+def chart_text(case: dict[str, Any]) -> str:
+    tags = case.get("tags", "#TITLE:T;#ARTIST:A;#CREDIT:C;").replace(";", ";\n")
+    notes = case["notes"] if "notes" in case else "\n".join(case["rows"])
+    head = [case.get("steps-type", "dance-single"), "C", case.get("difficulty", "Hard"), case.get("meter", "9"), ""]
+    return f"{tags}#BPMS:{case.get('bpms', '0=120')};\n#NOTES:{':'.join(head)}:{case.get('pin', '')}\n{notes}\n;\n"
+
+
+@pytest.mark.parametrize(("code", "case"), all_cases())
+def test_case(code: str, case: dict[str, Any], tmp_path: Path) -> None:
+    assert set(case) <= KNOWN
+    for name, content in case.get("files", {}).items():
+        (tmp_path / name).write_text(content)
+    path = tmp_path / "case.sm"
+    path.write_text(chart_text(case), encoding="utf-8")
+    assignments = [f"{code}.severity=warning"]
+    assignments += [f"{code}.{key}={_yaml(value)}" for key, value in case.get("options", {}).items()]
+    configuration = with_selection(with_assignments(load_configuration(None), assignments), [code], [])
+    preset = load_preset(case.get("preset", "thesis"))
+    path = tmp_path / case.get("analyse", path.name)
+    result = analyze_file(Task(path, preset, Selection(), configuration.settings))
+    assert result.error is None
+    found = [finding for finding, _ in result.all_findings()]
+    assert all(finding.rule == code for finding in found)
+    places = ["file" if finding.beat is None else finding.beat for finding in found]
+    expected = ["file" if beat == "file" else pytest.approx(float(beat), abs=1e-6) for beat in case["found"]]
+    assert places == expected
+    if "says" in case:
+        assert case["says"] in found[0].message
+
+
+def _yaml(value: Any) -> str:
+    return f"[{', '.join(value)}]" if isinstance(value, list) else str(value)
+
+
+def test_every_rule_has_failing_and_passing_cases() -> None:
+    without = {"DT101"}  # a file that cannot be read has no case that can: see test_cli_analyze.py
+    for code in sorted(set(all_rules()) - without):
+        path = CASES / f"{code}.yml"
+        assert path.exists(), f"{code} has no cases"
+        cases = load(path)["cases"].values()
+        assert any(case["found"] for case in cases), f"{code} has no failing case"
+        assert any(not case["found"] for case in cases), f"{code} has no passing case"
