@@ -217,8 +217,7 @@ class _Talk:
             has = _safe("; ".join(self.unselected[:20]))
             raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
         parts = ", ".join(f"{n} {name}" for name, n in sorted(self.files.items()) if n)
-        if total > 1:
-            click.echo(f"{total} files: {parts}", err=self.order.diff)
+        click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.order.diff)
         if self.files["failed"]:
             return 2
         return 1 if self.check and self.lacking else 0
