@@ -175,15 +175,15 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
     defaults = default_rules()[code]
     if not isinstance(options, Mapping):
         raise _ConfigError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
-    options = {key: "off" if key == "severity" and value is False else value for key, value in options.items()}
-    for key, value in options.items():
+    given: dict[str, Any] = {key: "off" if key == "severity" and value is False else value for key, value in options.items()}
+    for key, value in given.items():
         if key not in defaults:
             raise _ConfigError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
         if key == "severity" and value not in SEVERITIES:
             raise _ConfigError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
         if not _same_kind(value, defaults[key]):
             raise _ConfigError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
-    return options
+    return given
 
 
 def _same_kind(value: Any, default: Any) -> bool:

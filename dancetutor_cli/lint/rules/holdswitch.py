@@ -15,9 +15,19 @@ if TYPE_CHECKING:
 class Holdswitch(ChartRule):
     """A hold has to be handed from one foot to the other while it lasts.
 
-    Bad: the left foot holds and is needed on a panel the right foot cannot reach.
+    Bad: the right foot takes over the left panel, so that the left foot can step down.
 
-    Better: end the hold before that step.
+        2000  L
+        0001  R
+        0100  L
+        3001  L
+
+    Better: one foot holds, the other steps.
+
+        2000  L
+        0001  R
+        0100  R
+        3001  R
     """
 
     code = "DT211"
