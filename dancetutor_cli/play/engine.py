@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,13 @@ from numpy.typing import NDArray
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import store
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
+from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.kernel import run
-from dancetutor_cli.play.model import Rows
+from dancetutor_cli.play.model import Limb, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.store import Found, Nodes, RowArrays, Rules, Tables
 from dancetutor_cli.play.tables import MOST_MOVES, geometry, moves
+from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
 _EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
@@ -49,6 +53,35 @@ class Engine:
         forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
         margins : whether to look for the best way with other limbs, too
         """
+        return self._run(rows, forced, margins)[0]
+
+    def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
+        """Every state that the rows can end in, for a look at other ways than the cheapest."""
+        _, arrays, nodes = self._run(rows, forced, False)
+        state = self.tables.move[nodes.node[: nodes.row[-1, store.FIRST], store.MOVE], store.NEXT].tolist()
+        first = nodes.row[:, store.FIRST].tolist()
+        layers = [state[a:b] for a, b in pairwise(first)]
+        return Layers(layers, arrays.elapsed.tolist(), arrays.pattern.tolist(), self.tables.pair)
+
+    def found(self, rows: Rows, path: list[int], elapsed: list[int]) -> Found:
+        """What is to be known of a way through rows, given by its moves; without margins."""
+        t, move = self.tables, np.array(path, dtype=np.int32)
+        columns = np.arange(rows.steps.shape[1])
+        code = t.wide[move, store.ACTION][:, None] >> 3 * columns & 7
+        cost = t.terms[move]
+        for row, facts in enumerate(t.timed_key[t.move[move, store.FACTS]].tolist()):
+            if facts:
+                charge_time.py_func(facts, elapsed[row], self._rules.weights, self._rules.times, cost[row])
+        return Found(
+            move,
+            np.where(code == UNPLAYED, Limb.UNPLAYED, code - 1).astype(np.int8),
+            (t.wide[move, store.PART][:, None] >> 2 * columns & 3).astype(np.uint8),
+            cost,
+            np.empty(0, dtype=np.int64),
+            np.empty(0, dtype=np.uint8),
+        )
+
+    def _run(self, rows: Rows, forced: NDArray[np.int64] | None, margins: bool) -> tuple[Found, RowArrays, Nodes]:
         n, c = rows.steps.shape
         if self.tables.counts[store.MOVES] > _MOST_MOVES_KEPT:
             self.tables = _empty_tables(len(self.terms))
@@ -64,6 +97,7 @@ class Engine:
             np.empty((n, c), dtype=np.uint8),
             np.empty((n, len(self.terms)), dtype=np.int32),
             np.empty(n if margins else 0, dtype=np.int64),
+            np.empty(n if margins else 0, dtype=np.uint8),
         )
         slot = np.full(len(self.tables.state_key), -1, dtype=np.int32)
         nodes = Nodes(np.empty((n + 2, 2), dtype=np.int64), self._node, slot)
@@ -88,7 +122,30 @@ class Engine:
                 self.tables = _grown(self.tables, wanted, n)
             missing = len(self.tables.state_key) - len(nodes.slot)
             nodes = nodes._replace(node=self._node, slot=np.append(nodes.slot, np.full(missing, -1, dtype=np.int32)))
-        return found
+        return found, arrays, nodes
+
+
+@dataclass(frozen=True, slots=True)
+class Layers:
+    """The states that n rows can end in, and the moves between them, by their numbers in the engine's tables.
+
+    states : n + 1 lists, before each row and after the last; elapsed, pattern : see `RowArrays`, as lists
+    pair : `Tables.pair`
+    """
+
+    states: list[list[int]]
+    elapsed: list[int]
+    pattern: list[int]
+    pair: NDArray[np.int64]
+
+    def moves(self, row: int, state: int) -> range:
+        """Numbers of the moves of a state in a row."""
+        key, size = self.pattern[row] << 32 | state, len(self.pair)
+        at = (key * store.GOLDEN & (1 << 64) - 1) >> 32 & size - 1
+        while self.pair[at, 0] != key:
+            at = at + 1 & size - 1
+        packed = int(self.pair[at, 1])
+        return range(packed >> 16, (packed >> 16) + (packed & 0xFFFF))
 
 
 @lru_cache(maxsize=8)

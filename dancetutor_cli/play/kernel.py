@@ -15,7 +15,8 @@ from numba import njit
 from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.explore import source_stamp
-from dancetutor_cli.play.itg_moves import charge_time, start_itg
+from dancetutor_cli.play.itg_costs import charge_time
+from dancetutor_cli.play.itg_moves import start_itg
 from dancetutor_cli.play.store import (
     ACTION,
     BASE,
@@ -44,6 +45,7 @@ from dancetutor_cli.play.tables import MOST_MOVES, ROLL_TAPS, ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
 _FAR = 2147483647
+_NEVER = np.int64(1 << 60)
 
 
 @njit
@@ -204,37 +206,46 @@ def _trace(t, nodes, rows, rules, found):  # type: ignore[no-untyped-def]
 
 @njit(inline="always")
 def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
-    """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none."""
+    """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
+
+    Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
+    """
     first, node, slot, pair, moves, wide = nodes.row, nodes.node, nodes.slot, t.pair, t.move, t.wide
-    pattern, elapsed, path, margin, timed_cost = rows.pattern, rows.elapsed, found.move, found.margin, t.timed_cost
+    pattern, elapsed, path, timed_cost = rows.pattern, rows.elapsed, found.move, t.timed_cost
+    margin, ambiguity = found.margin, found.ambiguity
     n = len(path)
     least = first[n, BASE]
     widest = 0
     for r in range(n + 1):
         widest = max(widest, first[r + 1, FIRST] - first[r, FIRST])
     after, before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)
+    same_after, same_before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)  # with the same limbs
     for r in range(n - 1, -1, -1):
         low, high, top = first[r, FIRST], first[r + 1, FIRST], first[r + 2, FIRST]
         for u in range(high, top):
             slot[moves[node[u, MOVE], NEXT]] = u - high
-        chosen, other = wide[path[r], ACTION], np.int64(-1)
+        chosen, other, resolved = wide[path[r], ACTION], _NEVER, _NEVER
         for v in range(low, high):
             key = np.int64(pattern[r]) << 32 | moves[node[v, MOVE], NEXT]
             at = slot_of(key, len(pair))
             while pair[at, 0] != key:
                 at = (at + 1) & (len(pair) - 1)
             packed = pair[at, 1]
-            cheapest = np.int64(1) << 60
+            cheapest = same_cheapest = _NEVER
             reached = first[r, BASE] + node[v, REACHED]
             for move in range(packed >> 16, (packed >> 16) + (packed & 0xFFFF)):
-                cost = np.int64(moves[move, COST]) + timed_cost[elapsed[r], moves[move, FACTS]]
-                cost += after[slot[moves[move, NEXT]]]
+                price = np.int64(moves[move, COST]) + timed_cost[elapsed[r], moves[move, FACTS]]
+                state = slot[moves[move, NEXT]]
+                cost, same_cost = price + after[state], price + same_after[state]
                 cheapest = min(cheapest, cost)
-                if wide[move, ACTION] != chosen and (other < 0 or reached + cost < other):
-                    other = reached + cost
-            before[v - low] = cheapest
-        margin[r] = other - least if other >= 0 else -1
-        after, before = before, after
+                if wide[move, ACTION] == chosen:
+                    same_cheapest = min(same_cheapest, same_cost)
+                else:
+                    other, resolved = min(other, reached + cost), min(resolved, reached + same_cost)
+            before[v - low], same_before[v - low] = cheapest, min(same_cheapest, _NEVER)
+        margin[r] = other - least if other < _NEVER else -1
+        ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
+        after, before, same_after, same_before = before, after, same_before, same_after
 
 
 def _compile(stamp: str) -> Any:

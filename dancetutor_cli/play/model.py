@@ -24,6 +24,14 @@ class StepKind(IntEnum):
     ROLL_TAP = 5  # a virtual tap of a roll
 
 
+class Ambiguity(IntEnum):
+    """Whether a row could be stepped with other limbs at the same cost."""
+
+    NONE = 0
+    RESOLVED = 1  # whichever limb comes, the rows after it are stepped the same way
+    OPEN = 2  # what follows depends on the limb
+
+
 @dataclass(frozen=True, slots=True)
 class Rows:
     """The rows a solver sees: beats with at least one step or mine, rolls already tapped. n rows, c columns.
@@ -56,6 +64,7 @@ class Play:
     facing : float64 (n,), degrees after the row, positive left
     terms : names of the cost terms, in the preset's order; cost : int64 (n, t), cost of each row by term
     margin : int64 (n,) or None; how much more the best play with other limbs in this row costs, -1: no other way
+    ambiguity : uint8 (n,) or None, `Ambiguity` of each row
     moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
     preset : name of the cost preset
     """
@@ -70,6 +79,7 @@ class Play:
     margin: NDArray[np.int64] | None
     moves: tuple[tuple[str, ...], ...]
     preset: str
+    ambiguity: NDArray[np.uint8] | None = None
 
     @property
     def total(self) -> int:

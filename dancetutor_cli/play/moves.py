@@ -19,7 +19,9 @@ from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 
 _EPSILON = 1e-6
-_JACK, _CANDLE, _GALLOP = (1 << EVENTS.index(name) for name in ("jack", "candle", "gallop"))
+_JACK, _CANDLE, _GALLOP, _STREAM, _DRILL = (
+    1 << EVENTS.index(name) for name in ("jack", "candle", "gallop", "stream", "drill")
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +44,8 @@ def name_moves(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.
         found[steps.row[1:][_jacks(steps)]] |= _JACK
         found[steps.row[2:][_candles(steps, pad)]] |= _CANDLE
         found[steps.row[1:][_gallops(steps, rows)]] |= _GALLOP
+        found[steps.row[_streams(steps, rows)]] |= _STREAM
+        found[steps.row[_drills(steps, rows)]] |= _DRILL
     names = {bits: _names(bits) for bits in set(found.tolist())}
     return tuple([names[bits] for bits in found.tolist()])
 
@@ -77,14 +81,52 @@ def _candles(steps: _Steps, pad: Pad) -> NDArray[np.bool_]:
 
 def _gallops(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
     """Rows from the second on that follow the row before closely with the other foot, their neighbours well apart."""
-    foot, second, tick = steps.foot, rows.second[steps.row], rows.tick[steps.row]
-    gap, ticks = np.diff(second), np.diff(tick)
+    foot, second = steps.foot, rows.second[steps.row]
+    gap = np.diff(second)
     around = np.concatenate([[np.inf], gap, [np.inf]])
     apart = np.minimum(around[:-2], around[2:]) >= _threshold("gallop", "neighbours") * gap - _EPSILON
-    close = (ticks <= _threshold("gallop", "beats") * TICKS_PER_BEAT) & (
-        gap <= _threshold("gallop", "seconds") + _EPSILON
+    return np.asarray(
+        (foot[1:] >= 0) & (foot[:-1] >= 0) & (foot[1:] != foot[:-1]) & apart & _close(steps, rows, "gallop")
     )
-    return np.asarray((foot[1:] >= 0) & (foot[:-1] >= 0) & (foot[1:] != foot[:-1]) & close & apart)
+
+
+def _streams(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
+    """Rows in a long run of single steps close to each other."""
+    single = steps.foot >= 0
+    return _runs(single[1:] & single[:-1] & _close(steps, rows, "stream"), int(_threshold("stream", "length")))
+
+
+def _drills(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
+    """Rows in a run in which the feet alternate on two panels, close to each other."""
+    foot, panel = steps.foot, steps.panel
+    linked = (foot[1:] >= 0) & (foot[:-1] >= 0) & (foot[1:] != foot[:-1]) & _close(steps, rows, "drill")
+    linked &= panel[1:] != panel[:-1]
+    back = np.ones(len(linked), dtype=bool)
+    back[1:] = (panel[2:] == panel[:-2]) | ~linked[:-1]  # the second step of a run is on whatever panel
+    drill = np.zeros(len(foot), dtype=bool)
+    start, length = 0, int(_threshold("drill", "length"))
+    for end in np.flatnonzero(np.append(~(linked & back), True)).tolist():
+        if end + 1 - start >= length:
+            drill[start : end + 1] = True
+        start = end if end < len(linked) and linked[end] else end + 1
+    return drill
+
+
+def _close(steps: _Steps, rows: Rows, move: str) -> NDArray[np.bool_]:
+    """Whether each row from the second on follows the one before closely enough for a move."""
+    ticks, seconds = np.diff(rows.tick[steps.row]), np.diff(rows.second[steps.row])
+    near = (ticks <= _threshold(move, "beats") * TICKS_PER_BEAT) & (seconds <= _threshold(move, "seconds") + _EPSILON)
+    return np.asarray(near)
+
+
+def _runs(linked: NDArray[np.bool_], length: int) -> NDArray[np.bool_]:
+    """Which of n rows are in a run of at least `length` rows, by whether each is linked to the one before (n - 1,)."""
+    edges = np.diff(np.concatenate([[False], linked, [False]]).astype(np.int8))
+    inside = np.zeros(len(linked) + 1, dtype=bool)
+    for first, last in zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True):
+        if last - first + 1 >= length:
+            inside[first : last + 1] = True
+    return inside
 
 
 @cache

@@ -13,7 +13,7 @@ from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.play.vocabulary import MODELS, Model
 from dancetutor_cli.resources import config_path
 
-DEFAULT_PRESET = "thesis"
+DEFAULT_PRESET = "itg"
 MAX_WEIGHT = 1_000_000
 _KEYS = ("extends", "model", "roll-window", "switches", "weights", "times")
 

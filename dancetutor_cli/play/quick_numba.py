@@ -1,8 +1,8 @@
 """Start numba without scipy: an import of this module before the first kernel saves a command a third of a second.
 
 On its first kernel numba imports `scipy.linalg` only to see whether there is BLAS for `np.cov` and `np.corrcoef`,
-which no kernel here uses. With the import
-refused for that moment, everything else stays as it is: matrix products ask again.
+which no kernel here uses. With the import refused for that moment, everything else stays as it is: matrix products
+ask again.
 """
 
 from __future__ import annotations

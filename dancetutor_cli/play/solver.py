@@ -19,7 +19,7 @@ from dancetutor_cli.play.store import EVENTS, NEXT, Found
 _PLACE = (1 << PLACE_BITS) - 1
 
 
-def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = False) -> Play:
+def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True) -> Play:
     """The cheapest way to play rows: the true minimum of the preset's costs; of several, always the same one.
 
     Parameters
@@ -27,18 +27,18 @@ def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = No
     rows : n rows of the pad's c columns, as `prepare` makes them
     overrides : limbs that must be kept, even against the rules; those of cells without a step, and those nobody can
         follow (one foot on two panels that are no bracket), are left out of account
-    margins : whether `Play.margin` is wanted; it takes about as long again
+    margins : whether `Play.margin` and `Play.ambiguity` are wanted; they take about as long again
 
     Raises ValueError if rows and pad do not fit.
     """
     if rows.steps.shape[1] != len(pad):
         raise ValueError(f"rows have {rows.steps.shape[1]} columns, {pad.steps_type} has {len(pad)} panels")
     engine = engine_for(pad, preset)
-    return _play(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins))
+    return play_of(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins))
 
 
 def solve_chart(
-    chart: Chart, preset: Preset, overrides: Overrides | None = None, *, margins: bool = False
+    chart: Chart, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True
 ) -> Play | None:
     """The cheapest way to play a chart, or None if its steps type has no pad."""
     pad = load_pad(chart.steps_type)
@@ -61,7 +61,8 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
     return forced
 
 
-def _play(rows: Rows, engine: Engine, found: Found) -> Play:
+def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
+    """The play that a way through the rows is."""
     t, g = engine.tables, engine.geometry
     move = t.move[found.move]
     state = t.state_key[move[:, NEXT]]
@@ -79,6 +80,7 @@ def _play(rows: Rows, engine: Engine, found: Found) -> Play:
         terms=engine.terms,
         cost=found.cost.astype(np.int64),
         margin=found.margin if len(found.margin) or not len(rows) else None,
+        ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
         moves=name_moves(rows, found.limb, engine.pad, move[:, EVENTS]),
         preset=engine.preset.name,
     )

@@ -17,7 +17,7 @@ REACHED, MOVE, PARENT = range(3)  # columns of `Nodes.node`
 DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TIMED, UNEXPLORED = range(9)
 UNKNOWN = -1
 MOST_MS = 2047  # longer times cost like this one
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 
 
 class Tables(NamedTuple):
@@ -87,7 +87,7 @@ class Rules(NamedTuple):
 class Found(NamedTuple):
     """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c); cost : int32 (n, t).
 
-    margin : int64 (n,), -1 no other way; of length 0 if nobody wants to know
+    margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
     """
 
     move: NDArray[np.int32]
@@ -95,12 +95,13 @@ class Found(NamedTuple):
     part: NDArray[np.uint8]
     cost: NDArray[np.int32]
     margin: NDArray[np.int64]
+    ambiguity: NDArray[np.uint8]
 
 
 @njit
 def slot_of(value, size):  # type: ignore[no-untyped-def]
     """Where the search for a number in a hash table of a power of two starts."""
-    return np.int64((np.uint64(value) * _GOLDEN) >> np.uint64(32)) & (size - 1)
+    return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
 
 
 @njit

@@ -34,11 +34,11 @@ UNPLAYED = 5
     CROSSOVER, DOUBLESTEP, JUMP_FOOTSWITCH, SPIN, TURN_135, TURN_180,
     HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYABLE,
 ) = range(11)  # fmt: skip
-_HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPLAYABLE = (
+_HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPLAYABLE, _FRONT, _BACK = (
     1 << NAMES.index(name)
     for name in (
         "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand",
-        "jump", "unplayable",
+        "jump", "unplayable", "crossover-front", "crossover-back",
     )
 )  # fmt: skip
 _MASK = (1 << COLUMN_BITS) - 1
@@ -132,7 +132,8 @@ def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no
             events |= _UNPLAYABLE
     if g.right[s[1], 0] < g.left[s[0], 0] - EPSILON:
         terms[CROSSOVER] = w[CROSSOVER]
-        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF
+        ahead = g.left[s[0], 1] - g.right[s[1], 1] if press[0] >= 0 else g.right[s[1], 1] - g.left[s[0], 1]
+        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF | (_FRONT if ahead > 0 else _BACK)
     if doublestep == 2:
         terms[DOUBLESTEP] = w[DOUBLESTEP]
         events |= _DOUBLESTEP
