@@ -110,7 +110,7 @@ L . R . L* . . .                                # mine: lift the left foot
 L . . . DU . . . L R . . . . . .                # gallop: two feet a 16th apart
 L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
 U L D L U L D L                                 # candles
-L( . . . R( . . . U . . . LR) . . .             # hand: both feet hold, a hand taps up
+L( . . . R( . . . U . . . LR) . . .             # hand (preset itg: a bracket): both feet hold, a third panel
 L R L R D U L R
 LR . . . . . . .                                # jump, the end
 """
@@ -132,9 +132,9 @@ R . L . R . L . R . L . R . . .
 L . R . LR* . . . D . U . . . . .               # mines under both feet: a hop to the centre
 L R . . D U . . L R . . D U . .                 # gallops
 L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
-LDR . . . . . . . LUR . . . . . . .             # hands: three panels at once
+LDR . . . . . . . LUR . . . . . . .             # hands (preset itg: brackets): three panels at once
 U L D L U L D L R L R L R L R L                 # candles, then a drill
-L( . . . R( . . . U . D . LR) . . .             # hands: both feet hold
+L( . . . R( . . . U . D . LR) . . .             # hands (preset itg: brackets): both feet hold
 L R D U L D U R L D U R L U D R                 # stream
 LR . . .                                        # jump, the end
 """
@@ -158,7 +158,7 @@ R L R L R L R .
 L . R . L* . . .                                # mine: lift the left foot
 L . . . DU . . . L R . . . . . .                # gallop: two feet a 16th apart
 L< . . . . . . . R . . . L) . . .               # roll, a tap beside it
-L( . . . R( . . . U . . . LR) . . .             # hand: both feet hold, a hand taps up
+L( . . . R( . . . U . . . LR) . . .             # hand (preset itg: a bracket): both feet hold, a third panel
 L R U D L U r L                                 # run to the left pad
 rL . . . . . . .                                # jump, the end
 """

@@ -36,7 +36,11 @@ def load(path: Path) -> Song:
 def _why_unreadable(path: Path, error: Exception) -> str:
     if os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
         readable = os.access(path, os.R_OK | os.X_OK)
-        return "no .sm or .ssc file in this folder or below it" if readable else "the folder cannot be read"
+        if not readable:
+            return "the folder cannot be read"
+        # Commands that take folders search them first; what comes here has no charts, or one file was wanted.
+        inside = any(entry.suffix.lower() in (".sm", ".ssc") for entry in path.rglob("*"))
+        return "is a folder; name one of its files" if inside else "no .sm or .ssc file in this folder or below it"
     if isinstance(error, FileNotFoundError):
         return "no such file or folder"
     return getattr(error, "strerror", None) or str(error)

@@ -50,6 +50,8 @@ def chart_table(chart: ChartResult, console: Console) -> str:
     counts = {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
     shown = tuple(column for column in MOVE_COLUMNS if column.always or counts[column])
     columns = (_ROWS, _COST, *shown)
+    if sum(column.width + 1 for column in columns) > console.width:
+        return _listed(chart, counts, shown)
     cells = [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
     if any(len(cell) > column.width for cell, column in zip(cells, columns, strict=True)):
         return _draw(console, columns, cells)
@@ -57,6 +59,14 @@ def chart_table(chart: ChartResult, console: Console) -> str:
     for number, (cell, column) in enumerate(zip(cells, columns, strict=True)):
         drawing = drawing.replace(_placeholder(number, column.width), cell.rjust(column.width))
     return drawing
+
+
+def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Column]) -> str:
+    """The same numbers one below the other, for a terminal that is too narrow for the table."""
+    numbers = {"rows": chart.row_count, "cost": chart.cost}
+    numbers.update({" ".join(column.header.split("\n")): counts[column] for column in shown})
+    width = max(len(str(number)) for number in numbers.values())
+    return "".join(f"{number!s:>{width}} {name}\n" for name, number in numbers.items())
 
 
 def _placeholder(number: int, width: int) -> str:
