@@ -12,13 +12,14 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.resources import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
-BUILT_IN = ("dancer", "mannequin")
+DANCER = "dancer"  # who dances where nobody else is asked for
+BUILT_IN = (DANCER, "mannequin")
 SUFFIXES = (".glb", ".vrm")
 
 
 def load_dancer() -> Character:
     """The project's own dancer, on the joints of `rig.skeleton.dancer_skeleton`, shoes in the configured colours."""
-    return _built_in("dancer")
+    return _built_in(DANCER)
 
 
 def load_character(name_or_path: str) -> Character:
@@ -37,6 +38,17 @@ def load_character(name_or_path: str) -> Character:
     from dancetutor_cli.character.fitting import fit_character
 
     return fit_character(path)
+
+
+def check_character(name_or_path: str) -> str:
+    """The name, or the file's absolute path, after making sure that `load_character` takes it.
+
+    Raises what `load_character` raises. It is for refusing a character before the dear work begins.
+    """
+    if name_or_path in BUILT_IN:
+        return name_or_path
+    load_character(name_or_path)
+    return str(Path(name_or_path).absolute())
 
 
 def _built_in(name: str) -> Character:

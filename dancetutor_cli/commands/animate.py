@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
+from dancetutor_cli.commands.selection import Selection, character_option, preset_option, selection_options
 from dancetutor_cli.errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import Report
+    from dancetutor_cli.character.model import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.bake import Asked, BakeTask
     from dancetutor_cli.motion.model import Motion
@@ -33,34 +34,46 @@ _FILE = click.Path(path_type=Path)
 )
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option(
-    "--report", "report_to", is_flag=False, flag_value=_TABLE, metavar="[FILE.json]", help="Measure the motion."
+    "--report",
+    "report_to",
+    is_flag=False,
+    flag_value=_TABLE,
+    metavar="[FILE.json]",
+    help="Measure the motion (the dancer's, whoever dances).",
 )
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
+@character_option
 @selection_options
 @preset_option
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None,
-    report_to: str | None, plot: Path | None, preset: str, **selection: Any,
+    report_to: str | None, plot: Path | None, character: str, preset: str, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
     capture; .json, only the moves: what moves when, from where to where.
     """
+    from dancetutor_cli.character import DANCER, load_character
     from dancetutor_cli.jobs.bake import BakeTask, ask
 
     if output is not None:
         _check_target(output, SUFFIXES)
     if plot is not None:
         _check_target(plot, (".svg", ".png"))
+    if character != DANCER and output is not None and output.suffix.lower() == ".json":
+        raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
+    dances = load_character(character)
     task = BakeTask(file, Selection(**selection), preset, fps, section, rate, play_file)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))
     _check_target(target, SUFFIXES)
-    _bake_and_write(asked, task, target, report_to, plot)
+    _bake_and_write(asked, task, target, dances, report_to, plot)
 
 
-def _bake_and_write(asked: Asked, task: BakeTask, target: Path, report_to: str | None, plot: Path | None) -> None:
+def _bake_and_write(
+    asked: Asked, task: BakeTask, target: Path, character: Character, report_to: str | None, plot: Path | None
+) -> None:
     from dancetutor_cli.jobs.bake import bake_asked, plan_asked
 
     label = asked.chart.label
@@ -74,7 +87,9 @@ def _bake_and_write(asked: Asked, task: BakeTask, target: Path, report_to: str |
         return
     motion = bake_asked(asked, task)
     if target.suffix.lower() != ".json":
-        write_motion(target, motion)
+        from dancetutor_cli.character.retarget import retarget
+
+        write_motion(target, retarget(motion, character), character)
         click.echo(f"{target}: {len(motion.times)} keys, {motion.times[-1] - motion.times[0]:.1f} s, {label}")
     if report_to is not None or plot is not None:
         from dancetutor_cli.bake import mines_of, report
@@ -89,8 +104,8 @@ def default_name(song: Song, chart: Chart) -> str:
     return f"{plain or 'dance'}.glb"
 
 
-def write_motion(path: Path, motion: Motion) -> None:
-    """Write a motion in the format that the file's name asks for."""
+def write_motion(path: Path, motion: Motion, character: Character) -> None:
+    """Write a motion of `character` in the format that the file's name asks for."""
     if path.suffix.lower() == ".npz":
         from dancetutor_cli.formats.npz import write_npz
 
@@ -100,10 +115,9 @@ def write_motion(path: Path, motion: Motion) -> None:
 
         write_bvh(path, motion)
     else:
-        from dancetutor_cli.character import load_dancer
         from dancetutor_cli.formats.glb import write_glb
 
-        write_glb(path, load_dancer(), motion)
+        write_glb(path, character, motion)
 
 
 def _check_target(path: Path, suffixes: tuple[str, ...]) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import Selection
+from dancetutor_cli.commands.selection import Selection, character_option
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Practice, Request
@@ -46,6 +46,7 @@ _OPTIONS = (
     click.option(
         "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."
     ),
+    character_option,
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -99,6 +100,7 @@ def film_options(command: _Command) -> _Command:
 
 
 def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
+    from dancetutor_cli.character import check_character
     from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.video.encoder import even_size
     from dancetutor_cli.video.film_look import FilmLook
@@ -132,6 +134,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         mute=options["mute"],
         practice=_practice(options, layout),
         play=options["play"],
+        character=check_character(options["character"]),
     )
 
 

@@ -9,7 +9,7 @@ import click
 
 from dancetutor_cli.jobs.selection import Selection
 
-__all__ = ["Selection", "preset_option", "selection_options"]
+__all__ = ["Selection", "character_option", "preset_option", "selection_options"]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -31,5 +31,17 @@ def preset_option(command: _Command) -> _Command:
     """Add --preset; the function gets keyword argument `preset`, to be given to `play.load_preset`."""
     option = click.option(
         "--preset", default="thesis", show_default=True, metavar="NAME|FILE", help="Cost preset of the solver."
+    )
+    return option(command)
+
+
+def character_option(command: _Command) -> _Command:
+    """Add --character; the function gets keyword argument `character`, to be given to `character.load_character`."""
+    option = click.option(
+        "--character",
+        default="dancer",
+        show_default=True,
+        metavar="NAME|FILE",
+        help="Who dances: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
     )
     return option(command)

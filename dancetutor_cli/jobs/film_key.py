@@ -29,6 +29,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         _preset(request.preset),
         b"" if request.play is None else file_hash(request.play).encode(),
         _feet(subject.song.path.parent / "data.sme"),
+        _character(request.character),
     )
     for part in parts:
         out.update(len(part).to_bytes(8, "little"))
@@ -40,6 +41,13 @@ def _preset(name: str) -> bytes:
     """The content of a preset given as a file; those by name are part of the program."""
     path = Path(name)
     return path.read_bytes() if path.suffix and path.is_file() else b""
+
+
+def _character(name: str) -> bytes:
+    """The content of a character's file; those by name are part of the program."""
+    from dancetutor_cli.character import BUILT_IN
+
+    return (name if name in BUILT_IN else file_hash(Path(name))).encode()
 
 
 def _feet(path: Path) -> bytes:

@@ -27,6 +27,7 @@ from dancetutor_cli.video.text import Typeface, clean
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from dancetutor_cli.character.model import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.chart.timing import Timing
     from dancetutor_cli.motion.model import Motion
@@ -67,6 +68,8 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     start, end = clock.passes[0].start, clock.passes[-1].end
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
+    motion = _motion(request, chart, play, pad, (start, end))
+    character, motion = _fitted(request.character, motion)
     plan = FilmPlan(
         look=request.look,
         clock=clock,
@@ -78,9 +81,10 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         beats=scrolls.shown(chart.timing.beats(seconds)),
         fastest_bpm=fastest_bpm(chart),
         directions=directions_of(pad),
-        motion=_motion(request, chart, play, pad, (start, end)),
+        motion=motion,
         pad=pad,
         rows=step_rows(play),
+        character=character,
         callouts=callouts_of(ChartSubject(song, chart, play, pad, ignores=ignores), highway_style().callouts, scrolls),
     )
     fade = 0.0 if request.section else 1.0
@@ -239,3 +243,15 @@ def _motion(request: Request, chart: Chart, play: Play, pad: Pad, span: tuple[fl
     from dancetutor_cli.bake import bake
 
     return bake(chart, play, pad, fps=request.fps, section=span)
+
+
+def _fitted(name: str, motion: Motion | None) -> tuple[Character | None, Motion | None]:
+    """The character who dances and the motion for its skeleton; None for the dancer, whom whoever draws has at hand."""
+    from dancetutor_cli.character import DANCER, load_character
+
+    if motion is None or name == DANCER:
+        return None, motion
+    from dancetutor_cli.character.retarget import retarget
+
+    character = load_character(name)
+    return character, retarget(motion, character)

@@ -43,6 +43,7 @@ class Request:
     path : the chart file; selection : which chart; preset : name or file of the cost preset
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
+    character : a name of `character.BUILT_IN`, or a .glb or .vrm file
     sync : seconds by which the music plays late against the notes
     """
 
@@ -56,6 +57,7 @@ class Request:
     mute: bool = False
     practice: Practice = Practice()
     play: Path | None = None
+    character: str = "dancer"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from dancetutor_cli.video.scene import FootMark, FrameState, Scene, foot_marks
 from dancetutor_cli.video.stage import PANEL
 
 if TYPE_CHECKING:
+    from dancetutor_cli.character.model import Character
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.video.camera import Camera
     from dancetutor_cli.video.lights import PanelLights
@@ -35,9 +36,10 @@ class Dancer:
         camera: str,
         quality: renderer.Quality,
         kind: renderer.RendererKind,
+        character: Character | None = None,
     ) -> None:
         self.motion, self.lights = motion, lights
-        self.scene = Scene(load_dancer(), pad)
+        self.scene = Scene(character or load_dancer(), pad)
         self.camera: Camera = self.scene.camera(camera, size)
         self.renderer = renderer.create(self.scene, size, quality, kind)
         skeleton, names = self.scene.character.skeleton, motion.skeleton.names

@@ -25,6 +25,7 @@ from dancetutor_cli.video.television import Television
 from dancetutor_cli.video.text import Typeface
 
 if TYPE_CHECKING:
+    from dancetutor_cli.character.model import Character
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.video.dancer import Dancer
     from dancetutor_cli.video.stage import PadLike
@@ -39,6 +40,7 @@ class FilmPlan:
 
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
+    character : who dances, the motion is for its skeleton; None for the project's own dancer
     motion : the dancer's, or None where the layout has none; rows : the play's, for the next rows' pads
     """
 
@@ -56,6 +58,7 @@ class FilmPlan:
     pad: PadLike | None
     rows: StepRows | None = None
     callouts: tuple[Callout, ...] = ()
+    character: Character | None = None
 
 
 class Film:
@@ -134,7 +137,9 @@ class Film:
         assert self.layout.dancer is not None and plan.motion is not None and plan.pad is not None
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
-        return dancer.Dancer(plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer)
+        return dancer.Dancer(
+            plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character
+        )
 
     @cached_property
     def _screen(self) -> Television | None:
