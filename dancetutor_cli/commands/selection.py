@@ -29,10 +29,15 @@ def selection_options(command: _Command) -> _Command:
 
 def preset_option(command: _Command) -> _Command:
     """Add --preset; the function gets keyword argument `preset`, to be given to `play.load_preset`."""
-    option = click.option(
-        "--preset", default="thesis", show_default=True, metavar="NAME|FILE", help="Cost preset of the solver."
-    )
+    option = click.option("--preset", default=_default_preset, metavar="NAME|FILE", help="Cost preset of the solver.")
     return option(command)
+
+
+def _default_preset() -> str:
+    """Looked up when it is needed: presets are read with YAML, which `--help` can do without."""
+    from dancetutor_cli.play import DEFAULT_PRESET
+
+    return DEFAULT_PRESET
 
 
 def character_option(command: _Command) -> _Command:
