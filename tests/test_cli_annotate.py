@@ -220,18 +220,18 @@ def test_the_preset_of_the_configuration_holds(ssc: Path) -> None:
 
 
 def test_pinned_feet_stay_and_guide_the_solver(ssc: Path) -> None:
-    Said([ssc, "--index", 0])
+    Said([ssc, "--preset", "thesis", "--index", 0])
     marked = ssc.read_bytes()
     pinned = marked.replace(b"measure 1 {dt1 LR}", b"measure 1 {dt1! RL}", 1)
     assert pinned != marked
     ssc.write_bytes(pinned)
-    said = Said([ssc, "--index", 0])
+    said = Said([ssc, "--preset", "thesis", "--index", 0])
     assert said.status == 0
     assert "1 pinned, left alone" in said.out
     after = ssc.read_bytes()
     assert b"{dt1! RL}" in after
     assert after != pinned, "the feet around a pinned measure must follow it"
-    assert Said([ssc, "--index", 0, "--check"]).status == 0
+    assert Said([ssc, "--preset", "thesis", "--index", 0, "--check"]).status == 0
     Said([ssc, "--strip"])
     assert ssc.read_bytes().count(b"{dt1") == 1
     Said([ssc, "--strip", "--force"])

@@ -69,7 +69,7 @@ def check(path: Path, styles: tuple[str, ...], into_file: bool = False) -> Count
 
 
 def run(path: Path, styles: tuple[str, ...], strip: bool = False, into_file: bool = False) -> Outcome:
-    order = Order(styles, "thesis", Selection(), strip=strip, into_file=into_file)
+    order = Order(styles, None, Selection(), strip=strip, into_file=into_file)
     (outcome,) = annotate_song([Item(path, path)], order)
     if outcome.error and "no chart" not in outcome.error and "--into-file" not in outcome.error:
         print(FileError(path, outcome.error), file=sys.stderr)

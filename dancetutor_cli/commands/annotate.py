@@ -51,7 +51,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
 @click.option(
-    "--preset", metavar="NAME|FILE", help="Cost preset of the solver; default: as dancetutor.yaml says, else thesis."
+    "--preset", metavar="NAME|FILE", help="Cost preset of the solver; default: as dancetutor.yaml says, else itg."
 )
 @selection_options
 def command(
