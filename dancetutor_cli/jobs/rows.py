@@ -17,7 +17,10 @@ _PARTS = {Part.HEEL: "heel", Part.TOE: "toe"}
 
 
 def json_rows(subject: ChartSubject) -> Iterator[dict[str, Any]]:
-    """One mapping for each row with a step, keys in the documented order; none for a chart without a play."""
+    """One mapping for each row with a step, keys in the documented order; none for a chart without a play.
+
+    A row of mines alone is there too if it costs something, so that the rows add up to the chart's cost.
+    """
     play = subject.play
     if play is None:
         return
@@ -25,7 +28,7 @@ def json_rows(subject: ChartSubject) -> Iterator[dict[str, Any]]:
     ticks, seconds = play.rows.tick.tolist(), play.rows.second.tolist()
     steps, costs = play.rows.steps.tolist(), play.cost.tolist()
     margins: list[int] = [-1] * len(ticks) if play.margin is None else play.margin.tolist()
-    for row in np.flatnonzero(play.rows.steps.any(axis=1)).tolist():
+    for row in np.flatnonzero(play.rows.steps.any(axis=1) | (play.cost != 0).any(axis=1)).tolist():
         left, right = (None if panel < 0 else panel for panel in feet[row])
         yield {
             "beat": round(ticks[row] / TICKS_PER_BEAT, 6),
