@@ -145,10 +145,12 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
     else:
         events |= EVENT_HALF
         ahead = g.left[s[0], 1] - g.right[s[1], 1]
-        in_front = ahead > 0 if pressed[0] else ahead < 0
-        events |= EVENT_FRONT if in_front else EVENT_BACK
-        if not in_front:
-            terms[CROSSOVER_BACK] = w[CROSSOVER_BACK]
+        if not (pressed[0] and pressed[1]):
+            if ahead > 0 if pressed[0] else ahead < 0:
+                events |= EVENT_FRONT
+            else:
+                events |= EVENT_BACK
+                terms[CROSSOVER_BACK] = w[CROSSOVER_BACK]
     if g.panels[s[0], 0, 1] >= 0 or g.panels[s[1], 1, 1] >= 0:
         terms[TWISTED] = w[TWISTED]
     return events

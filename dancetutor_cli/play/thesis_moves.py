@@ -132,8 +132,10 @@ def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no
             events |= _UNPLAYABLE
     if g.right[s[1], 0] < g.left[s[0], 0] - EPSILON:
         terms[CROSSOVER] = w[CROSSOVER]
-        ahead = g.left[s[0], 1] - g.right[s[1], 1] if press[0] >= 0 else g.right[s[1], 1] - g.left[s[0], 1]
-        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF | (_FRONT if ahead > 0 else _BACK)
+        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF
+        ahead = g.left[s[0], 1] - g.right[s[1], 1]
+        if events & _HALF and (press[0] < 0) != (press[1] < 0):  # one foot moved: before or behind the other
+            events |= _FRONT if (ahead > 0 if press[0] >= 0 else ahead < 0) else _BACK
     if doublestep == 2:
         terms[DOUBLESTEP] = w[DOUBLESTEP]
         events |= _DOUBLESTEP

@@ -1,0 +1,106 @@
+"""Presets: names that exist are told with file and line, one may extend another, and roll gaps follow the window."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli import play
+from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.play.rows import roll_gap
+from dancetutor_cli.play.vocabulary import MODELS
+from dancetutor_cli.resources import config_path
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "mine.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_presets_that_come_along() -> None:
+    assert play.preset_names() == ["ddr", "itg", "stamina", "thesis"]
+    assert play.DEFAULT_PRESET == "itg"
+    for name in play.preset_names():
+        preset = play.load_preset(name)
+        assert preset.name == name and preset == pickle.loads(pickle.dumps(preset)) and hash(preset)
+        assert [n for n, _ in preset.weights] == list(MODELS[preset.model].weights)
+
+
+@pytest.mark.parametrize("name", ["itg", "thesis"])
+def test_every_value_has_a_sentence(name: str) -> None:
+    preset = play.load_preset(name)
+    lines = config_path(f"presets/{name}.yaml").read_text(encoding="utf-8").splitlines()
+    for key, _ in (*preset.weights, *preset.times, *preset.switches):
+        number = next(i for i, line in enumerate(lines) if line.startswith(f"  {key}:"))
+        assert "#" in lines[number] or lines[number - 1].strip().startswith("#"), key
+
+
+def test_thesis_is_the_cost_model() -> None:
+    thesis = play.load_preset("thesis")
+    assert [value for _, value in thesis.weights] == [1, 12, 10, 3, 5, 15, 1, 5, 1, 2, 1000]
+    assert thesis.roll_window == 0.35 and thesis.switch("allow-doublestep")
+
+
+def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
+    path = written(tmp_path, "extends: thesis\nweights:\n  spin: 50\n")
+    mine, thesis = play.load_preset(path), play.load_preset("thesis")
+    assert mine.weight("spin") == 50 and mine.weight("doublestep") == thesis.weight("doublestep")
+    (tmp_path / "other.yaml").write_text("extends: mine.yaml\nswitches: {allow-doublestep: false}\n")
+    other = play.load_preset(str(tmp_path / "other.yaml"))
+    assert other.weight("spin") == 50 and not other.switch("allow-doublestep") and other.name == "other"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("extends: thesis\nweights:\n  spinn: 5\n", 3, "unknown key 'spinn' in 'weights'; there are: crossover, doubl"),
+        ("extends: thesis\nwheights: {}\n", 2, "unknown key 'wheights'; there are: extends, model"),
+        ("extends: thesis\nswitches:\n  brackets: true\n", 3, "there are: allow-doublestep"),
+        ("extends: thesis\ntimes:\n  jack-fast: 100\n", 3, "there are: none"),
+        ("extends: thesis\nweights:\n  spin: lots\n", 3, "whole number"),
+        ("extends: thesis\nweights:\n  spin: -1\n", 3, "whole number"),
+        ("extends: thesis\nswitches:\n  allow-doublestep: 1\n", 3, "true or false"),
+        ("extends: thesis\nroll-window: 0\n", 2, "seconds"),
+        ("extends: itg\nmodel: thesis\n", 2, "'itg'"),
+        ("extends: no-such\n", 1, "there are: ddr, itg, stamina, thesis"),
+        ("extends: mine.yaml\n", 1, "extends itself"),
+        ("model: thesis\nroll-window: 0.35\n", None, "'switches' lacks 'allow-doublestep'"),
+        ("roll-window: 0.35\n", None, "'model' must be one of thesis, itg"),
+        ("extends: thesis\nweights: 7\n", 2, "mapping"),
+    ],
+)
+def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, line: int | None, words: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(UsageError) as caught:
+        play.load_preset(path)
+    place = f"{path}:{line}: " if line else f"{path}: "
+    assert str(caught.value).startswith(place) and words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_preset_names_those_that_exist(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="ddr, itg, stamina, thesis"):
+        play.load_preset("gpt")
+    with pytest.raises(DancetutorError, match="cannot be read"):
+        play.load_preset(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    ("bpm", "window", "ticks"),
+    [
+        (171.0, 0.35, 24),
+        (60 / 0.35, 0.35, 48),
+        (172.0, 0.35, 48),
+        (120.0, 0.35, 24),
+        (60.0, 0.35, 16),
+        (1.0, 0.35, 3),
+        (120.0, 0.5, 48),
+        (400.0, 0.35, 48),
+    ],
+)
+def test_gap_of_a_roll(bpm: float, window: float, ticks: int) -> None:
+    """The longest of 1, 1/2, 1/3 ... 1/16 beat that the window allows, 1/16 if none does."""
+    assert roll_gap(bpm, window) == ticks
