@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -86,8 +87,16 @@ def _room(t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-def _compile(expand: Any, stamp: str) -> Any:
-    @njit(cache=True)
+expand: Any = None  # a global of each explorer's own; see `_compile`
+
+
+def _compile(name: str, rules: Any, stamp: str) -> Any:
+    """An explorer for the rules of one model.
+
+    `expand` is a global and no variable of this function: numba's cache takes those for a part of the key, and a
+    kernel looks different in every process, so that nothing would ever be found again.
+    """
+
     def explore(row, pattern, t, nodes, g, weights, switches, out):  # type: ignore[no-untyped-def]
         """From the nodes before `row` to the last row: meet every state, keep all moves. Returns what has no room."""
         assert len(stamp)
@@ -131,9 +140,11 @@ def _compile(expand: Any, stamp: str) -> Any:
             now, coming, many = coming, now, found
         return DONE
 
-    return explore
+    own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name, None, explore.__closure__)
+    own.__qualname__ = name  # the name of the cache's files, too
+    return njit(cache=True)(own)
 
 
 Explorer = Callable[..., int]
-explore_thesis: Explorer = _compile(expand_thesis, source_stamp())
-explore_itg: Explorer = _compile(expand_itg, source_stamp())
+explore_thesis: Explorer = _compile("explore_thesis", expand_thesis, source_stamp())
+explore_itg: Explorer = _compile("explore_itg", expand_itg, source_stamp())
