@@ -13,6 +13,7 @@ from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.diagram import Foot
+from dancetutor_cli.video.follow import Follow, is_wide
 from dancetutor_cli.video.scene import FootMark, FrameState, Scene, foot_marks
 from dancetutor_cli.video.stage import PANEL
 
@@ -23,9 +24,15 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.lights import PanelLights
     from dancetutor_cli.video.stage import PadLike
 
+ALONG = 0.9  # of a camera's sideways that is the pad's: only such cameras, back and front, follow her by a pan
+BELOW_TITLE = (0.0, 0.08, 1.0, 1.0)  # the part of the picture she fills then: nearer, she would reach into the title
+
 
 class Dancer:
-    """Draws the dancer at any second. Made in the process that draws: it may hold a GL context."""
+    """Draws the dancer at any second. Made in the process that draws: it may hold a GL context.
+
+    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    """
 
     def __init__(
         self,
@@ -37,10 +44,12 @@ class Dancer:
         quality: renderer.Quality,
         kind: renderer.RendererKind,
         character: Character | None = None,
+        stands: bool = False,
     ) -> None:
         self.motion, self.lights = motion, lights
         self.scene = Scene(character or load_dancer(), pad)
         self.camera: Camera = self.scene.camera(camera, size)
+        self._follow = None if stands else self._follower(camera, size)
         self.renderer = renderer.create(self.scene, size, quality, kind)
         skeleton, names = self.scene.character.skeleton, motion.skeleton.names
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in names])
@@ -49,7 +58,22 @@ class Dancer:
     def frame(self, second: float, joints: NDArray[np.float64]) -> Frame:
         """The picture at `second` of the music, uint8 (h, w, 3); overwritten by the next call."""
         lit, by = self._lit(second)
-        return self.renderer.frame(FrameState(joints, self.camera, lit, by))
+        return self.renderer.frame(FrameState(joints, self.view(second), lit, by))
+
+    def view(self, second: float) -> Camera:
+        """The camera at `second`: the standing one, or the one that follows her across a wide pad."""
+        return self.camera if self._follow is None else self._follow.at(second)
+
+    def _follower(self, camera: str, size: tuple[int, int]) -> Follow | None:
+        """The camera that goes with her across a wide pad, if it looks along the pad's short side.
+
+        It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
+        """
+        along = abs(float(self.camera.axes()[0][0])) > ALONG
+        named = camera in self.scene.look.cameras
+        if not (named and along and is_wide(self.scene)) or self.camera.feet_only:
+            return None
+        return Follow(self.scene, camera, size, self.motion.times, self.motion.root, BELOW_TITLE)
 
     def still(self) -> Frame:
         """The room without the dancer."""
