@@ -94,14 +94,7 @@ class Film:
         geometry = HighwayGeometry(box, lane, receptor, plan.directions, down)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         return Highway(
-            plan.notes,
-            plan.presses,
-            plan.lines,
-            geometry,
-            scroll,
-            plan.fastest_bpm,
-            self.face,
-            plan.callouts,
+            plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face, plan.callouts
         )
 
     @cached_property
@@ -113,26 +106,14 @@ class Film:
             out.append(overlay.Header(self.plan.words, box, self.scale * part.text, self.face, self.style))
         if part := self.layout.legend:
             limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
-            out.append(
-                overlay.Legend(
-                    limbs,
-                    pixels(part.box, self.size),
-                    self.scale * part.text,
-                    self.face,
-                )
-            )
+            out.append(overlay.Legend(limbs, pixels(part.box, self.size), self.scale * part.text, self.face))
         return out
 
     @cached_property
     def _moving(self) -> tuple[overlay.Progress | None, overlay.Runs | None]:
         """What is written and changes."""
         progress, header = self.layout.progress, self.layout.header
-        runs = overlay.Runs(
-            self.plan.clock,
-            self.size,
-            self.scale * (header.text if header else 1.0),
-            self.face,
-        )
+        runs = overlay.Runs(self.plan.clock, self.size, self.scale * (header.text if header else 1.0), self.face)
         if not progress:
             return None, runs
         box = pixels(progress.box, self.size)
@@ -157,16 +138,9 @@ class Film:
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
         return dancer.Dancer(
-            plan.motion,
-            plan.pad,
-            self.lights,
-            size,
-            camera,
-            look.quality,
-            look.renderer,
-            plan.character,
+            plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character,
             stands=self.layout.screen is not None,
-        )
+        )  # fmt: skip
 
     @cached_property
     def _screen(self) -> Television | None:
@@ -180,11 +154,7 @@ class Film:
             return None, None
         large, small = None, None
         if feet:
-            pads = PadMap(
-                plan.pad,
-                plan.directions,
-                self.layout.box("feet", self.size, self.columns),
-            )
+            pads = PadMap(plan.pad, plan.directions, self.layout.box("feet", self.size, self.columns))
             large = FeetDiagram(pads, self.lights, self.face)
         if after and plan.rows is not None:
             box = self.layout.box("next", self.size, self.columns)
