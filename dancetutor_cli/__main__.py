@@ -14,6 +14,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     from dancetutor_cli.commands import cli
     from dancetutor_cli.errors import DancetutorError
 
+    sys.unraisablehook = _interrupt_again
     try:
         status = cli.main(arguments, prog_name="dancetutor", standalone_mode=False)
         sys.stdout.flush()
@@ -46,6 +47,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _say(f"internal error: {type(error).__name__}: {error}; set DANCETUTOR_TRACEBACK=1 to see where, and report it")
         status = 2
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _interrupt_again(unraisable: sys.UnraisableHookArgs) -> None:
+    """A Ctrl-C that falls into a callback of the compiler is swallowed there: it comes again a moment later."""
+    if not issubclass(unraisable.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(unraisable)
+        return
+    import _thread
+    import threading
+
+    again = threading.Timer(0.05, _thread.interrupt_main)
+    again.daemon = True
+    again.start()
 
 
 def _say(message: str) -> None:

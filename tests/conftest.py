@@ -41,3 +41,10 @@ def corpus() -> Path:
 def hostile() -> Path:
     """The odd and broken files with expectations.csv; they are the project's own."""
     return ROOT / "tests" / "data" / "hostile"
+
+
+@pytest.fixture(autouse=True)
+def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the surroundings say of a terminal (pytest-xdist sets COLUMNS) must not change what is printed."""
+    for name in ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR"):
+        monkeypatch.delenv(name, raising=False)
