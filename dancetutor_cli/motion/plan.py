@@ -294,11 +294,15 @@ class Planner:
     # mines, hands, contacts
 
     def _mines(self, i: int, time: float, pressed: dict[int, list[int]]) -> None:
-        """Feet that the solver sends home are threatened by a mine: up they go, and down again behind it."""
+        """Feet on a mine go up, and down again behind it: thesis sends them home, itg lifts them where they are."""
         if i == 0:
             return
-        now, before = self.play.feet[i], self.play.feet[i - 1]
-        threatened = [f for f in self.feet if now[f.side] < 0 <= before[f.side] and f.side not in pressed]
+        now, before, mines = self.play.feet[i], self.play.feet[i - 1], self.play.rows.mines[i]
+        threatened = [
+            f
+            for f in self.feet
+            if f.side not in pressed and before[f.side] >= 0 and (now[f.side] < 0 or mines[before[f.side]])
+        ]
         for foot in threatened:
             self._evade(foot, time, self.panels[before[foot.side]], hop=len(threatened) == 2)
 
