@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Fit the weights of a preset to feet that people have written down, by coordinate search.
 
-usage: tools/fit_weights.py LABELS_DIR [--preset NAME|FILE] [--only WEIGHT ...] [--rounds N] [--leave-one-out] [--out FILE]
+usage: tools/fit_weights.py LABELS_DIR [--preset NAME|FILE] [--only WEIGHT ...] [--rounds N] [--leave-one-out]
+                            [--out FILE]
 
 LABELS_DIR holds labels.json and the charts, in the form that tools/score_feet.py of the shared data reads. One weight
 at a time is made smaller and larger; what lowers the loss stays. The loss of a row is 1 where a labelled foot is

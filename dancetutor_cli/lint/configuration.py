@@ -175,7 +175,9 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
     defaults = default_rules()[code]
     if not isinstance(options, Mapping):
         raise _ConfigError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
-    given: dict[str, Any] = {key: "off" if key == "severity" and value is False else value for key, value in options.items()}
+    given: dict[str, Any] = {
+        key: "off" if key == "severity" and value is False else value for key, value in options.items()
+    }
     for key, value in given.items():
         if key not in defaults:
             raise _ConfigError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
