@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import store
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
-from dancetutor_cli.play.itg_costs import charge_time
-from dancetutor_cli.play.kernel import run
+from dancetutor_cli.play.kernel import PRICE, run
 from dancetutor_cli.play.model import Limb, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.store import Found, Nodes, RowArrays, Rules, Tables
@@ -23,6 +22,8 @@ from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
 _EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
+_NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
+_NODES_A_ROW = 10  # and one for each column: so many nodes a long chart is first given room for
 _MOST_MOVES_KEPT = 4_000_000  # then the tables start anew, so that a long run does not fill the memory
 
 
@@ -43,7 +44,7 @@ class Engine:
         )
         self._moves = moves(len(self.terms))
         self.tables = _empty_tables(len(self.terms))
-        self._node = np.zeros((1 << 15, 3), dtype=np.int32)
+        self._node = np.zeros((_NODES_KEPT, 2), dtype=np.int32)
 
     def cheapest(self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False) -> Found:
         """The cheapest way through rows.
@@ -53,76 +54,99 @@ class Engine:
         forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
         margins : whether to look for the best way with other limbs, too
         """
-        return self._run(rows, forced, margins)[0]
+        return self._run(_arrays(rows, forced), margins)[0]
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
-        _, arrays, nodes = self._run(rows, forced, False)
+        arrays = _arrays(rows, forced)
+        _, nodes = self._run(arrays, False)
         state = self.tables.move[nodes.node[: nodes.row[-1, store.FIRST], store.MOVE], store.NEXT].tolist()
-        first = nodes.row[:, store.FIRST].tolist()
-        layers = [state[a:b] for a, b in pairwise(first)]
+        layers = [state[a:b] for a, b in pairwise(nodes.row[:, store.FIRST].tolist())]
         return Layers(layers, arrays.elapsed.tolist(), arrays.pattern.tolist(), self.tables.pair)
 
-    def found(self, rows: Rows, path: list[int], elapsed: list[int]) -> Found:
-        """What is to be known of a way through rows, given by its moves; without margins."""
-        t, move = self.tables, np.array(path, dtype=np.int32)
-        columns = np.arange(rows.steps.shape[1])
-        code = t.wide[move, store.ACTION][:, None] >> 3 * columns & 7
-        cost = t.terms[move]
-        for row, facts in enumerate(t.timed_key[t.move[move, store.FACTS]].tolist()):
-            if facts:
-                charge_time.py_func(facts, elapsed[row], self._rules.weights, self._rules.times, cost[row])
+    def found(self, path: list[int]) -> Found:
+        """A way through rows, given by its moves; without margins."""
+        move = np.array(path, dtype=np.int32)
+        columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.ACTION][:, None]
+        code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
         return Found(
             move,
             np.where(code == UNPLAYED, Limb.UNPLAYED, code - 1).astype(np.int8),
-            (t.wide[move, store.PART][:, None] >> 2 * columns & 3).astype(np.uint8),
-            cost,
-            np.empty(0, dtype=np.int64),
-            np.empty(0, dtype=np.uint8),
+            (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
+            nothing,
+            nothing.astype(np.uint8),
         )
 
-    def _run(self, rows: Rows, forced: NDArray[np.int64] | None, margins: bool) -> tuple[Found, RowArrays, Nodes]:
-        n, c = rows.steps.shape
+    def price(self, rows: Rows, found: Found) -> NDArray[np.int32]:
+        """Cost of each row of a way by term, (n, t)."""
+        cost = np.empty((len(rows), len(self.terms)), dtype=np.int32)
+        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node, 0), cost, found)
+        return cost
+
+    def _call(
+        self, arrays: RowArrays, row: int, nodes: Nodes, cost: NDArray[np.int32], found: Found
+    ) -> tuple[int, int]:
+        return run(arrays, row, self.tables, nodes, self._model, self.geometry, self._rules, cost, found)
+
+    def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, Nodes]:
+        n, c = arrays.steps.shape
         if self.tables.counts[store.MOVES] > _MOST_MOVES_KEPT:
             self.tables = _empty_tables(len(self.terms))
-        if forced is None:
-            forced = np.zeros(n, dtype=np.int64)
-        arrays = RowArrays(
-            rows.tick, rows.steps, rows.hold_end, rows.mines, rows.milliseconds, forced,
-            np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32),
-        )  # fmt: skip
         found = Found(
             np.empty(n, dtype=np.int32),
             np.empty((n, c), dtype=np.int8),
             np.empty((n, c), dtype=np.uint8),
-            np.empty((n, len(self.terms)), dtype=np.int32),
             np.empty(n if margins else 0, dtype=np.int64),
             np.empty(n if margins else 0, dtype=np.uint8),
         )
-        slot = np.full(len(self.tables.state_key), -1, dtype=np.int32)
-        nodes = Nodes(np.empty((n + 2, 2), dtype=np.int64), self._node, slot)
+        wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
+        node = self._node if wanted_nodes <= _NODES_KEPT else np.empty((wanted_nodes, 2), dtype=np.int32)
+        nodes = _nodes(n, node, len(self.tables.state_key))
         row, wanted = 0, store.UNKNOWN
         while wanted != store.DONE:
-            row, wanted = run(
-                arrays, row, self.tables, nodes, self._model, self.geometry, self._rules, self._moves.terms[0], found
-            )
-            while wanted == store.UNEXPLORED:
-                wanted = self._explore(
-                    row, arrays.pattern, self.tables, nodes, self.geometry, self._rules.weights, self._rules.switches,
-                    self._moves,
-                )  # fmt: skip
-                if wanted != store.DONE:
-                    self.tables = _grown(self.tables, wanted, n)
-                    wanted = store.UNEXPLORED
-                else:
-                    wanted = store.UNKNOWN
-            if wanted == store.MORE_NODES:
-                self._node = _longer(self._node)
-            elif wanted in (store.MORE_PATTERNS, store.MORE_TIMED):
+            row, wanted = self._call(arrays, row, nodes, self._moves.terms, found)
+            if wanted == store.UNEXPLORED:
+                self._explore_from(row, arrays, nodes)
+                missing = np.full(len(self.tables.state_key) - len(nodes.slot), -1, dtype=np.int32)
+                nodes = nodes._replace(slot=np.append(nodes.slot, missing))
+            elif wanted == store.MORE_NODES:
+                nodes = nodes._replace(node=_more_nodes(nodes.node, row, n))
+            elif wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, n)
-            missing = len(self.tables.state_key) - len(nodes.slot)
-            nodes = nodes._replace(node=self._node, slot=np.append(nodes.slot, np.full(missing, -1, dtype=np.int32)))
-        return found, arrays, nodes
+        return found, nodes
+
+    def _explore_from(self, row: int, arrays: RowArrays, nodes: Nodes) -> None:
+        """Meet every state from a row on, so that the programme can go on there."""
+        wanted = store.UNEXPLORED
+        while wanted != store.DONE:
+            wanted = self._explore(
+                row, arrays.pattern, self.tables, nodes, self.geometry, self._rules.weights, self._rules.switches,
+                self._moves,
+            )  # fmt: skip
+            if wanted != store.DONE:
+                self.tables = _grown(self.tables, wanted, len(arrays.tick))
+
+
+def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
+    n = len(rows)
+    return RowArrays(
+        rows.tick, rows.steps, rows.hold_end, rows.mines, rows.milliseconds,
+        np.zeros(0, dtype=np.int64) if forced is None else forced,
+        np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32),
+    )  # fmt: skip
+
+
+def _nodes(rows: int, node: NDArray[np.int32], states: int) -> Nodes:
+    return Nodes(np.empty((rows + 2, 2), dtype=np.int64), node, np.full(states, -1, dtype=np.int32))
+
+
+def _more_nodes(node: NDArray[np.int32], row: int, rows: int) -> NDArray[np.int32]:
+    """Room for as many nodes as the rest of the rows will need if it goes on like this, or half as many again."""
+    used = len(node)
+    like_this = used * rows // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
+    more = np.empty((min(max(like_this, used * 9 // 8 + MOST_MOVES), 2 * used), 2), dtype=np.int32)
+    more[:used] = node
+    return more
 
 
 @dataclass(frozen=True, slots=True)

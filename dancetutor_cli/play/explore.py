@@ -33,7 +33,8 @@ from dancetutor_cli.play.store import (
     MOVES,
     NEXT,
     PAIRS,
-    PART,
+    PART_SHIFT,
+    SOURCE,
     STATES,
     number_of_facts,
     number_of_state,
@@ -52,8 +53,8 @@ def source_stamp() -> str:
 
 
 @njit
-def _keep(count, out, t):  # type: ignore[no-untyped-def]
-    """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move and number of moves."""
+def _keep(state, count, out, t):  # type: ignore[no-untyped-def]
+    """Number and keep the moves of a state in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
     counts, moves, wide, terms, known = t.counts, t.move, t.wide, t.terms, t.timed_key
     keys, numbers, given, given_terms = t.state_key, t.state_hash, out.wide, out.terms
     first = counts[MOVES]
@@ -61,8 +62,8 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
         move = first + i
         moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
         moves[move, FACTS] = number_of_facts(given[i, _TIMED], known, counts)
-        moves[move, EVENTS] = given[i, _EVENTS]
-        wide[move, ACTION], wide[move, PART] = given[i, _ACTION], given[i, _PART]
+        moves[move, SOURCE] = state
+        wide[move, ACTION], wide[move, EVENTS] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT, given[i, _EVENTS]
         cost = 0
         for term in range(terms.shape[1]):
             terms[move, term] = given_terms[i, term]
@@ -123,7 +124,7 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
                         t.state_key[now[i]], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], g, weights, switches,
                         out,
                     )  # fmt: skip
-                    t.pair[at, 0], t.pair[at, 1] = key, _keep(count, out, t)
+                    t.pair[at, 0], t.pair[at, 1] = key, _keep(now[i], count, out, t)
                     t.counts[PAIRS] += 1
                 packed = t.pair[at, 1]
                 if found + (packed & 0xFFFF) > len(coming):

@@ -15,10 +15,10 @@ from dancetutor_cli.play.vocabulary import EVENTS as NAMES
 
 (
     DOUBLESTEP, FAST_JACK, FOOTSWITCH, SLOW_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET, SLOW_BRACKET,
-    FAST_JUMP, CROSSOVER, CROSSOVER_BACK, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING, DISTANCE, STRETCH, TWISTED,
-    MINE, RELEASE, HAND, HAND_HOLD, UNPLAYABLE, RESTED_DOUBLESTEP, MARKED_DOUBLESTEP, RELEASED_DOUBLESTEP,
-    MARKED_FOOTSWITCH,
-) = range(29)  # fmt: skip
+    FAST_JUMP, CROSSOVER, CROSSOVER_START, CROSSOVER_BACK, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING, DISTANCE,
+    STRETCH, TWISTED, MINE, RELEASE, HAND, HAND_HOLD, UNPLAYABLE, RESTED_DOUBLESTEP, MARKED_DOUBLESTEP,
+    RELEASED_DOUBLESTEP, MARKED_FOOTSWITCH,
+) = range(30)  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
     EVENT_HALF, EVENT_FULL, EVENT_FRONT, EVENT_BACK, EVENT_SPIN, EVENT_DOUBLESTEP, EVENT_FORCED, EVENT_JUMP_FOOTSWITCH,
@@ -70,14 +70,15 @@ def charge_feet(before, s, pressed, released, terms, g, w):  # type: ignore[no-u
             terms[BRACKET] += w[BRACKET]
             facts |= _F_BRACKET
             events |= EVENT_BRACKET
-        if released & mask_of(before[foot], foot, g) and s[foot] != before[foot]:
+        old = mask_of(before[foot], foot, g)
+        if released & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
     if left and right:
         events |= EVENT_JUMP
         facts |= _F_JUMP
         for foot in range(2):
-            old = mask_of(before[foot], foot, g)
-            if old & pressed[1 - foot] and not old & pressed[foot] and not before[LEFT_HELD + foot]:
+            old, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
+            if old & pressed[1 - foot] & ~other and not old & pressed[foot] and not before[LEFT_HELD + foot]:
                 terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
                 events |= EVENT_JUMP_FOOTSWITCH
     elif left or right:
@@ -111,9 +112,11 @@ def _charge_step(before, foot, pressed, released, terms, g, w):  # type: ignore[
     if again and pressed & ~stands:
         if before[LEFT_HELD + 1 - foot] or before[LEFT_HELD + foot]:
             events |= EVENT_FORCED
+        elif released & other:
+            facts |= _F_DOUBLESTEP | _F_RELEASED
+            events |= EVENT_FORCED
         else:
             facts |= _F_DOUBLESTEP | (_F_MARKED if before[LEFT_LIFTED + foot] else 0)
-            facts |= _F_RELEASED if released & other else 0
             events |= EVENT_DOUBLESTEP
     return facts, events
 
@@ -139,6 +142,8 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
     if g.right[s[1], 0] >= g.left[s[0], 0] - EPSILON:
         return events
     terms[CROSSOVER] = w[CROSSOVER]
+    if g.right[before[1], 0] >= g.left[before[0], 0] - EPSILON:
+        terms[CROSSOVER_START] = w[CROSSOVER_START]
     if size >= 180.0 - EPSILON:
         terms[CROSSOVER_FULL] = w[CROSSOVER_FULL]
         events |= EVENT_FULL

@@ -29,6 +29,7 @@ from dancetutor_cli.play.tables import (
     ACTION,
     COLUMN_BITS,
     EVENTS,
+    FRESH,
     HOLDS,
     KEY,
     MINES,
@@ -107,7 +108,8 @@ def _emit(out, m, row, steps, pressed, holders, switched, kept, g, w):  # type: 
     left, right = pressed[0] & ~kept, pressed[1] & ~kept
     pressed[4], pressed[5] = left, right
     feet = pressed[4:6]
-    facts, events = charge_feet(before, s, feet, row >> RELEASED & _MASK, terms, g, w)
+    just_released = row >> RELEASED & _MASK if row >> FRESH & 1 else np.int64(0)
+    facts, events = charge_feet(before, s, feet, just_released, terms, g, w)
     if left or right:
         events |= charge_pose(before, s, feet, terms, g, w)
     holds, rolls = row >> HOLDS & _MASK, row >> ROLLS & _MASK

@@ -18,7 +18,7 @@ from dancetutor_cli.play.engine import Engine, Layers, engine_for
 from dancetutor_cli.play.model import Play, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.solver import forced_limbs, play_of
-from dancetutor_cli.play.store import ACTION, COST, FACTS, NEXT
+from dancetutor_cli.play.store import ACTION, COST, FACTS, LIMBS, NEXT
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ def alternatives(
     layers = engine.layers(rows, forced_limbs(rows, overrides))
     ways = _Ways(engine, layers)
     paths = [path for path, _ in zip(ways.cheapest(), range(count), strict=False)]
-    plays = [play_of(rows, engine, engine.found(rows, path, layers.elapsed)) for path in paths]
+    plays = [play_of(rows, engine, engine.found(path)) for path in paths]
     return tuple(_against(plays[0], play) for play in plays)
 
 
@@ -73,7 +73,7 @@ class _Ways:
         self._layers = layers
         t = engine.tables
         self._next, self._cost, self._facts = (t.move[:, column].tolist() for column in (NEXT, COST, FACTS))
-        self._action, self._time = t.wide[:, ACTION].tolist(), t.timed_cost
+        self._action, self._time = (t.wide[:, ACTION] & LIMBS).tolist(), t.timed_cost
         self._known: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
         self._rest = self._cheapest_rest()
 

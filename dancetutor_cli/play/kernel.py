@@ -25,6 +25,7 @@ from dancetutor_cli.play.store import (
     FACTS,
     FACTS_KNOWN,
     FIRST,
+    LIMBS,
     MORE_NODES,
     MORE_PATTERNS,
     MORE_TIMED,
@@ -32,10 +33,10 @@ from dancetutor_cli.play.store import (
     MOVE,
     MOVES,
     NEXT,
-    PARENT,
-    PART,
+    PART_SHIFT,
     PATTERNS,
     REACHED,
+    SOURCE,
     UNEXPLORED,
     UNKNOWN,
     number_of_state,
@@ -44,6 +45,7 @@ from dancetutor_cli.play.store import (
 from dancetutor_cli.play.tables import MOST_MOVES, ROLL_TAPS, ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
+PRICE = -1  # instead of a row to start from
 _FAR = 2147483647
 _NEVER = np.int64(1 << 60)
 
@@ -84,25 +86,25 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     """Pack every row and number it; False if the tables have no room for as many patterns."""
     steps, hold_end, mines, tick, forced = rows.steps, rows.hold_end, rows.mines, rows.tick, rows.forced
     patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
-    milliseconds, elapsed, pattern = rows.milliseconds, rows.elapsed, rows.pattern
+    pattern = rows.pattern
     n, c = steps.shape
     if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
         return False
     goes_on = _rolls_on(steps) if keep_rolls else np.zeros(n, dtype=np.int32)
     ends = np.zeros(c, dtype=np.int64)
-    held, waited = 0, MOST_MS
+    held = 0
     for r in range(n):
         row = np.int64(goes_on[r]) << ROLLS
         if held:
             for p in range(c):
                 if held >> p & 1 and ends[p] <= tick[r]:
                     row |= 1 << p + columns.RELEASED
+                    if keep_rolls and tick[r] - ends[p] <= columns.FRESH_TICKS:
+                        row |= 1 << columns.FRESH
                     held &= ~(1 << p)
-        stepped = False
         for p in range(c):
             step = steps[r, p]
             if step:
-                stepped = True
                 if step == 3:
                     row |= 1 << p + columns.HOLDS
                     ends[p] = hold_end[r, p]
@@ -111,12 +113,21 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
                     row |= 1 << p + (ROLL_TAPS if step == 5 and keep_rolls else columns.TAPS)
             if mines[r, p]:
                 row |= 1 << p + columns.MINES
+        pattern[r] = _pattern(row, forced[r] if len(forced) else np.int64(0), patterns, numbers, counts)
+    return True
+
+
+@njit
+def _wait(rows):  # type: ignore[no-untyped-def]
+    """Milliseconds since the last row with steps, for every row."""
+    steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
+    waited = MOST_MS
+    for r in range(len(elapsed)):
         waited = min(waited + milliseconds[r], MOST_MS)
         elapsed[r] = waited
-        if stepped:
-            waited = 0
-        pattern[r] = _pattern(row, forced[r], patterns, numbers, counts)
-    return True
+        for p in range(steps.shape[1]):
+            if steps[r, p]:
+                waited = 0
 
 
 @njit
@@ -165,7 +176,7 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
                     slot[state] = u
                 elif cost >= node[u, REACHED]:
                     continue
-                node[u, REACHED], node[u, MOVE], node[u, PARENT] = cost, move, v
+                node[u, REACHED], node[u, MOVE] = cost, move
                 cheapest = min(cheapest, cost)
         if wanted != DONE:
             for u in range(high, used):
@@ -179,11 +190,10 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _trace(t, nodes, rows, rules, found):  # type: ignore[no-untyped-def]
-    """Walk back from the cheapest last node: the moves of the rows, who presses what, and what it costs."""
-    first, node, moves, wide, move_terms, timed_key = nodes.row, nodes.node, t.move, t.wide, t.terms, t.timed_key
-    limb, part, cost, path, elapsed = found.limb, found.part, found.cost, found.move, rows.elapsed
-    weights, times = rules.weights, rules.times
+def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
+    """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
+    first, node, moves, wide = nodes.row, nodes.node, t.move, t.wide
+    limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
     at = first[n, FIRST]
     for u in range(first[n, FIRST], first[n + 1, FIRST]):
@@ -192,16 +202,26 @@ def _trace(t, nodes, rows, rules, found):  # type: ignore[no-untyped-def]
     for r in range(n - 1, -1, -1):
         move = node[at, MOVE]
         path[r] = move
-        at = node[at, PARENT]
-        action, parts = wide[move, ACTION], wide[move, PART]
+        at = first[r, FIRST]
+        while moves[node[at, MOVE], NEXT] != moves[move, SOURCE]:
+            at += 1
+        action = wide[move, ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
             limb[r, p] = -2 if code == 5 else code - 1
-            part[r, p] = parts >> 2 * p & 3
+            part[r, p] = action >> PART_SHIFT + 2 * p & 3
+
+
+@njit(inline="always")
+def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
+    """Cost of every row of a path by term."""
+    moves, terms, timed_key, elapsed = t.move, t.terms, t.timed_key, rows.elapsed
+    weights, times = rules.weights, rules.times
+    for r in range(len(path)):
         for term in range(cost.shape[1]):
-            cost[r, term] = move_terms[move, term]
-        if moves[move, FACTS]:
-            charge_time(timed_key[moves[move, FACTS]], elapsed[r], weights, times, cost[r])
+            cost[r, term] = terms[path[r], term]
+        if moves[path[r], FACTS]:
+            charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], weights, times, cost[r])
 
 
 @njit(inline="always")
@@ -224,7 +244,7 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
         low, high, top = first[r, FIRST], first[r + 1, FIRST], first[r + 2, FIRST]
         for u in range(high, top):
             slot[moves[node[u, MOVE], NEXT]] = u - high
-        chosen, other, resolved = wide[path[r], ACTION], _NEVER, _NEVER
+        chosen, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
         for v in range(low, high):
             key = np.int64(pattern[r]) << 32 | moves[node[v, MOVE], NEXT]
             at = slot_of(key, len(pair))
@@ -238,7 +258,7 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
                 state = slot[moves[move, NEXT]]
                 cost, same_cost = price + after[state], price + same_after[state]
                 cheapest = min(cheapest, cost)
-                if wide[move, ACTION] == chosen:
+                if wide[move, ACTION] & LIMBS == chosen:
                     same_cheapest = min(same_cheapest, same_cost)
                 else:
                     other, resolved = min(other, reached + cost), min(resolved, reached + same_cost)
@@ -250,9 +270,16 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
 
 def _compile(stamp: str) -> Any:
     @njit(cache=True)
-    def run(rows, start_row, t, nodes, model, g, rules, scratch, found):  # type: ignore[no-untyped-def]
-        """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE."""
+    def run(rows, start_row, t, nodes, model, g, rules, cost, found):  # type: ignore[no-untyped-def]
+        """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
+
+        From PRICE on: write the cost of the rows of `found.move` by term into `cost` (n, t); else that is scratch.
+        """
         assert len(stamp)
+        if start_row == PRICE:
+            _wait(rows)
+            _price(t, rows, rules, found.move, cost)
+            return start_row, DONE
         if t.counts[MOVES] == 0:  # move 0 leads to the start of every play
             key = start_thesis(g) if model == 0 else start_itg(rules.home)
             t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
@@ -260,13 +287,14 @@ def _compile(stamp: str) -> Any:
         if start_row == 0:
             if not _number_rows(rows, model > 0, t):
                 return 0, MORE_PATTERNS
+            _wait(rows)
             nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
-            nodes.node[0, REACHED], nodes.node[0, MOVE], nodes.node[0, PARENT] = 0, 0, 0
+            nodes.node[0, REACHED], nodes.node[0, MOVE] = 0, 0
         if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
             return start_row, MORE_TIMED
-        row, wanted = _advance(start_row, rows, t, nodes, rules, scratch)
+        row, wanted = _advance(start_row, rows, t, nodes, rules, cost[0])
         if wanted == DONE:
-            _trace(t, nodes, rows, rules, found)
+            _trace(t, nodes, found)
             if len(found.margin):
                 _margins(rows, t, nodes, found)
         return row, wanted

@@ -62,7 +62,7 @@ class Play:
     limb : int8 (n, c), `Limb`; part : uint8 (n, c), `Part`
     feet : int16 (n, 2), panel that the left and right foot stand on after the row (a bracket: the heel's), -1 at home
     facing : float64 (n,), degrees after the row, positive left
-    terms : names of the cost terms, in the preset's order; cost : int64 (n, t), cost of each row by term
+    terms : names of the cost terms, in the preset's order; cost : int32 (n, t), cost of each row by term
     margin : int64 (n,) or None; how much more the best play with other limbs in this row costs, -1: no other way
     ambiguity : uint8 (n,) or None, `Ambiguity` of each row
     moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
@@ -75,7 +75,7 @@ class Play:
     feet: NDArray[np.int16]
     facing: NDArray[np.float64]
     terms: tuple[str, ...]
-    cost: NDArray[np.int64]
+    cost: NDArray[np.int32]
     margin: NDArray[np.int64] | None
     moves: tuple[tuple[str, ...], ...]
     preset: str

@@ -64,13 +64,13 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
     """The play that a way through the rows is."""
     t, g = engine.tables, engine.geometry
-    move = t.move[found.move]
-    state = t.state_key[move[:, NEXT]]
+    moves = name_moves(rows, found.limb, engine.pad, t.wide[found.move, EVENTS])
+    state = t.state_key[t.move[found.move, NEXT]].astype(np.int32)
     left, right = state & _PLACE, state >> PLACE_BITS & _PLACE
-    side = state >> 2 * PLACE_BITS & 3
     facing = g.angle[left, right]
-    facing[(side == 2) & (facing > 179.0)] = -180.0  # reached by turning right
+    facing[(state >> 2 * PLACE_BITS & 3 == 2) & (facing > 179.0)] = -180.0  # reached by turning right
     feet = np.stack([g.panels[left, 0, 0], g.panels[right, 1, 0]], axis=1).astype(np.int16)
+    del state, left, right
     return Play(
         rows=rows,
         limb=found.limb,
@@ -78,9 +78,9 @@ def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
         feet=feet,
         facing=facing,
         terms=engine.terms,
-        cost=found.cost.astype(np.int64),
+        cost=engine.price(rows, found),  # the largest array comes last, when nothing else is needed any more
         margin=found.margin if len(found.margin) or not len(rows) else None,
         ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
-        moves=name_moves(rows, found.limb, engine.pad, move[:, EVENTS]),
+        moves=moves,
         preset=engine.preset.name,
     )

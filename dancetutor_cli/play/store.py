@@ -9,13 +9,15 @@ from numba import njit
 from numpy.typing import NDArray
 
 STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN = range(5)  # places in `counts`
-NEXT, COST, FACTS, EVENTS = range(4)  # columns of `Tables.move`
-ACTION, PART = range(2)  # columns of `Tables.wide`
+NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`
+ACTION, EVENTS = range(2)  # columns of `Tables.wide`
 FIRST, BASE = range(2)  # columns of `Nodes.row`
-REACHED, MOVE, PARENT = range(3)  # columns of `Nodes.node`
+REACHED, MOVE = range(2)  # columns of `Nodes.node`
 # what a kernel wants before it can go on
 DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TIMED, UNEXPLORED = range(9)
 UNKNOWN = -1
+PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
+LIMBS = (1 << PART_SHIFT) - 1
 MOST_MS = 2047  # longer times cost like this one
 GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 
@@ -27,8 +29,8 @@ class Tables(NamedTuple):
     state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
-    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, events
-    wide : int64 (, 2), limb codes and parts; terms : int32 (, t)
+    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, state it comes from
+    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`, and events; terms : int32 (, t)
     timed_key : int64, packed facts; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
     """
 
@@ -49,7 +51,7 @@ class Nodes(NamedTuple):
     """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
-    node : int32 (, 3), cost, move that led there, parent
+    node : int32 (, 2), cost, move that led there
     slot : int32, by state: its node, if that belongs to the row at hand
     """
 
@@ -61,7 +63,8 @@ class Nodes(NamedTuple):
 class RowArrays(NamedTuple):
     """`Rows` for the kernels, n rows and c columns, and what is made of them.
 
-    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column; pattern : int32 (n,), its number
+    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column, or of length 0 if there are none
+    pattern : int32 (n,), number of the row's pattern
     elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
     """
 
@@ -85,7 +88,7 @@ class Rules(NamedTuple):
 
 
 class Found(NamedTuple):
-    """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c); cost : int32 (n, t).
+    """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
     """
@@ -93,7 +96,6 @@ class Found(NamedTuple):
     move: NDArray[np.int32]
     limb: NDArray[np.int8]
     part: NDArray[np.uint8]
-    cost: NDArray[np.int32]
     margin: NDArray[np.int64]
     ambiguity: NDArray[np.uint8]
 

@@ -19,6 +19,8 @@ EPSILON = 1e-6  # every comparison of cost-model.md: degrees, panel widths, seco
 MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
 COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
 TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
+FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
+FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
 DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 
 # columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each

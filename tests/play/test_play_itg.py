@@ -68,12 +68,17 @@ def move_rows(found: Play, move: str) -> list[int]:
         ("1... 1... ...1", "jack", [1]),
         ("1..1 1..1", "jump", [0, 1]),
         ("2... ...1 ..1. 3...", "forced-doublestep", [2]),
-        ("1... .1.. ...1 ..1. 1...", "spin", [3]),
         ("22.. ..22 .... 3333", "bracket", [1]),
     ],
 )
 def test_moves_by_name(picture: str, move: str, rows: list[int]) -> None:
     assert move_rows(solved(picture), move) == rows
+
+
+def test_a_spin_comes_before_a_doublestep_only_in_a_hurry() -> None:
+    around = "1... .1.. ...1 ..1. 1... .1.. ...1"
+    assert move_rows(solved(around, gap=12), "spin") and not move_rows(solved(around, gap=12), "doublestep")
+    assert move_rows(solved(around, gap=24), "doublestep") and not move_rows(solved(around, gap=24), "spin")
 
 
 def test_four_steps_are_two_brackets_and_never_hands() -> None:

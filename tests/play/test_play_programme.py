@@ -14,7 +14,7 @@ from dancetutor_cli import play
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import Ambiguity, Preset, Rows
 from dancetutor_cli.play.engine import engine_for
-from dancetutor_cli.play.store import ACTION, COST, FACTS, NEXT
+from dancetutor_cli.play.store import ACTION, COST, FACTS, LIMBS, NEXT
 
 PRESETS = {name: play.load_preset(name) for name in play.preset_names()}
 Ways = dict[tuple[int, ...], int]
@@ -32,7 +32,7 @@ def every_way(rows: Rows, pad: Pad, preset: Preset) -> Ways:
             for state, cost in states.items():
                 for move in layers.moves(row, state):
                     price = int(t.move[move, COST]) + int(t.timed_cost[layers.elapsed[row], t.move[move, FACTS]])
-                    reached = following[(*limbs, int(t.wide[move, ACTION]))]
+                    reached = following[(*limbs, int(t.wide[move, ACTION]) & LIMBS)]
                     to = int(t.move[move, NEXT])
                     reached[to] = min(cost + price, reached.get(to, cost + price))
         ways = following
