@@ -56,6 +56,7 @@ def command(
     """
     from dancetutor_cli.character import DANCER, load_character
     from dancetutor_cli.jobs.bake import BakeTask, ask
+    from dancetutor_cli.library import one_song
 
     if output is not None:
         _check_target(output, SUFFIXES)
@@ -64,7 +65,7 @@ def command(
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
-    task = BakeTask(file, Selection(**selection), preset, fps, section, rate, play_file)
+    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))
     _check_target(target, SUFFIXES)

@@ -66,6 +66,7 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     poses = options["poses"]
     if sum(one is not None for one in (output, frames, poses)) > 1:
         raise UsageError("give one of --output, --frames and --poses")
+    path = _one_film(path, output, options)
     if path.is_dir():
         for name in ("poses", "poster", "srt"):
             if options[name]:
@@ -78,6 +79,19 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
         if options[name] is not None:
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
     _render_one(path, output, frames or poses, yes, quiet, options)
+
+
+def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
+    """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
+    film = output is not None and output.suffix.lower() in (".mp4", ".gif", ".webp") and not output.is_dir()
+    if not path.is_dir() or not (film or options["poses"] or options["poster"] or options["srt"]):
+        return path
+    from dancetutor_cli.library import one_song
+
+    file = one_song(path)
+    if film and file == path:
+        raise UsageError(f"{output} is one film, and {path} holds not just one song; name one of its files")
+    return file
 
 
 def _render_one(

@@ -45,3 +45,12 @@ def twin(path: Path) -> Path | None:
         if os.path.isfile(candidate):  # noqa: PTH113 (Path.is_file may raise)
             return candidate
     return None
+
+
+def one_song(path: Path) -> Path:
+    """The chart file a folder of one song stands for: its .ssc or .sm. Any other path is given back as it is."""
+    if not os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
+        return path
+    found = find_files([path])
+    songs = [file for file in found if file.suffix.lower() == ".ssc" or (twin(file) is None and file != path)]
+    return songs[0] if len(songs) == 1 else path

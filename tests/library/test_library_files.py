@@ -148,3 +148,17 @@ def test_selection(tmp_path: Path) -> None:
         select_one(found, ["pump-single"])
     with pytest.raises(UsageError, match="Beginner, Easy, Medium, Hard, Challenge, Edit"):
         select(found, [], ["insane"])
+
+
+def test_a_folder_of_one_song_stands_for_its_file(tmp_path: Path) -> None:
+    from dancetutor_cli.library import one_song
+
+    song = tmp_path / "pack" / "song"
+    song.mkdir(parents=True)
+    assert one_song(song) == song  # nothing in it
+    (song / "a.sm").write_text("")
+    assert one_song(song) == song / "a.sm" == one_song(song / "a.sm")
+    (song / "a.ssc").write_text("")
+    assert one_song(tmp_path) == song / "a.ssc"
+    (song / "b.sm").write_text("")
+    assert one_song(song) == song
