@@ -10,13 +10,14 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help setup setup-dev demo test lint bench character clean
+.PHONY: help setup setup-dev demo test lint bench motion-report character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
 	@echo "make test    run the tests (sets up the development tools too)"
 	@echo "make lint    ruff and mypy --strict"
 	@echo "make bench   measure speed; print a table"
+	@echo "make motion-report  the quality of the motion on 40 charts (COUNT=400: more); a table in build/"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make clean   remove $(VENV), build/ and caches"
@@ -66,6 +67,10 @@ character: build/venv-character/.ready
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)
+
+COUNT ?= 40
+motion-report: setup-dev
+	@$(BIN)/python tools/motion_report.py --count $(COUNT) $(REPORT_ARGS)
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

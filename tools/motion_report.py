@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Bake many charts and measure each: which goals of the quality report are met, on what, and by how much not.
+
+usage: tools/motion_report.py [--count 40] [--seed 6] [--jobs N] [--out build/motion-report] [PATH ...]
+Without paths: the demo song, every chart of goin_under, and COUNT charts of the corpus, as many of each meter from 1 to
+13 and more as there are, the same ones for the same seed. With paths: every dance-single and dance-double chart there.
+Writes OUT.txt (worst charts first) and OUT.json, and prints the summary. Exit status 1 if a chart breaks.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import math
+import sys
+import time
+from collections import defaultdict
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.jobs.pool import Task, default_jobs, open_workers
+
+ROOT = Path(__file__).resolve().parent.parent
+CORPUS = ROOT / "build" / "corpus" / "dev"
+ALWAYS = (ROOT / "charts" / "two_left_feet", ROOT.parent / "shared" / "data" / "songs" / "goin_under")
+TYPES = ("dance-single", "dance-double")
+HIGHEST = 13  # this meter and all above it are one group
+FEWEST = 20  # rows with steps; a chart with fewer says little
+FAST = 12.0  # steps per second over which a goal may be missed, with a reason
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A chart to measure: its file, its place in it, and what it is called."""
+
+    path: str
+    index: int
+    label: str
+    meter: int
+
+
+@dataclass
+class Measured:
+    """One chart's figures. value None: nothing to measure; met None: no goal, or nothing to measure."""
+
+    path: str
+    index: int
+    label: str
+    steps: int = 0
+    seconds: float = 0.0
+    peak: float = 0.0
+    took: float = 0.0
+    error: str = ""
+    figures: list[dict[str, Any]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def missed(self) -> list[dict[str, Any]]:
+        return [f for f in self.figures if f["met"] is False]
+
+    @property
+    def badness(self) -> tuple[bool, int, float]:
+        return bool(self.error), len(self.missed), sum(excess(f) for f in self.missed)
+
+
+def excess(figure: dict[str, Any]) -> float:
+    """How far a missed figure is beyond its goal, as a part of the goal, at most 100."""
+    beyond = abs(figure["value"] - figure["goal"])
+    return float(min(beyond / max(abs(figure["goal"]), 0.5), 100.0))
+
+
+def main() -> None:
+    options = _options()
+    wanted = _everything(options.paths) if options.paths else _everything(ALWAYS) + pick(options.count, options.seed)
+    if not wanted:
+        sys.exit("no dance-single or dance-double chart was found")
+    results, started = [], time.monotonic()
+    workers = open_workers(min(options.jobs, len(wanted)), lambda key, n: None)
+    try:
+        for chart in wanted:
+            workers.submit(Task(chart, measure, (chart, options.preset)))
+        for done in workers.done():
+            chart = done.key
+            results.append(done.result or Measured(chart.path, chart.index, chart.label, error=str(done.error)))
+            _progress(len(results), len(wanted), started)
+    finally:
+        workers.close()
+    results.sort(key=lambda m: (*(-x for x in m.badness), m.path, m.index))
+    _write(options.out, results)
+    print(summary(results))
+    print(f"{options.out}.txt and .json: every figure of every chart")
+    sys.exit(any(m.error for m in results))
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("paths", nargs="*", type=Path)
+    parser.add_argument("--count", type=int, default=40, help="charts of the corpus")
+    parser.add_argument("--seed", type=int, default=6)
+    parser.add_argument("--jobs", type=int, default=default_jobs())
+    parser.add_argument("--preset", default="itg")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "motion-report")
+    return parser.parse_args()
+
+
+def pick(count: int, seed: int) -> list[Wanted]:
+    """`count` charts of the corpus, by turns of each meter and, within it, of singles and doubles."""
+    if not CORPUS.is_dir():
+        print(f"{CORPUS} is not there (the tests unpack it): only the project's own songs", file=sys.stderr)
+        return []
+    groups: dict[tuple[int, str], list[Wanted]] = defaultdict(list)
+    for chart in _everything((CORPUS,)):
+        groups[min(chart.meter, HIGHEST), chart.label.split()[0]].append(chart)
+
+    def draw(chart: Wanted) -> bytes:  # a shuffle that is the same in every version of Python
+        name = Path(chart.path).relative_to(CORPUS).as_posix()
+        return hashlib.sha256(f"{seed} {name} {chart.index}".encode()).digest()
+
+    for group in groups.values():
+        group.sort(key=draw, reverse=True)
+    picked: list[Wanted] = []
+    while len(picked) < count and any(groups.values()):
+        for meter in sorted({m for m, _ in groups}):
+            both = [groups[meter, t] for t in TYPES if groups.get((meter, t))]
+            if both and len(picked) < count:
+                picked.append(both[len(picked) % len(both)].pop())
+    return picked
+
+
+def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
+    """Every chart of the two steps types below `paths` with enough steps; of a .sm and .ssc of one song the latter."""
+    from dancetutor_cli.chart import load
+    from dancetutor_cli.chart.model import Kind
+    from dancetutor_cli.library import find_files, twin
+
+    out = []
+    for path in find_files([p for p in paths if p.exists()]):
+        if path.suffix.lower() == ".sm" and twin(path) is not None:
+            continue
+        try:
+            song = load(path)
+        except DancetutorError:
+            continue
+        for chart in song.charts:
+            steps = chart.notes.judged & (chart.notes.kind != Kind.MINE)
+            if chart.steps_type in TYPES and len(np.unique(chart.notes.tick[steps])) >= FEWEST:
+                out.append(Wanted(str(path), chart.index, chart.label, chart.meter))
+    return out
+
+
+def measure(_: Any, wanted: Wanted, preset: str) -> Measured:
+    """Bake one chart and report on it; runs in a worker process."""
+    from dancetutor_cli.bake import mines_of, report
+    from dancetutor_cli.commands.animate import as_json
+    from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+    from dancetutor_cli.jobs.selection import Selection
+
+    started = time.monotonic()
+    task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset)
+    asked = ask(task)
+    stepped = asked.play.rows.second[(asked.play.limb >= 0).any(axis=1)]
+    found = as_json(report(bake_asked(asked, task), mines_of(asked.play, asked.pad)))
+    return Measured(
+        wanted.path, wanted.index, wanted.label, len(stepped), float(np.ptp(stepped)), peak_rate(stepped),
+        round(time.monotonic() - started, 2), "", found["figures"], found["notes"],
+    )  # fmt: skip
+
+
+def peak_rate(seconds: np.ndarray[Any, Any]) -> float:
+    """Most rows per second over any eight gaps between rows, or over all if there are fewer."""
+    gaps = min(8, len(seconds) - 1)
+    return 0.0 if gaps < 1 else float(gaps / max(np.min(seconds[gaps:] - seconds[:-gaps]), 1e-3))
+
+
+def summary(results: list[Measured]) -> str:
+    """How many charts meet all goals, and for each figure who does not; slow and fast charts apart."""
+    slow = [m for m in results if m.peak <= FAST and not m.error]
+    fast = [m for m in results if m.peak > FAST and not m.error]
+    lines = [f"{len(results)} charts, {sum(m.took for m in results):.0f} s of work"]
+    for name, group in ((f"at most {FAST:g} steps/s", slow), (f"faster than {FAST:g} steps/s", fast)):
+        lines.append(f"  {name}: {sum(not m.missed for m in group)} of {len(group)} meet every goal")
+    lines += [f"  broken: {m.path} {m.label}: {m.error}" for m in results if m.error]
+    names = [f["name"] for m in slow[:1] or fast[:1] for f in m.figures if f["goal"] is not None]
+    lines.append(f"{'figure':32}{'goal':>9}{'missed by':>12}{'of these slow':>15}{'median':>10}{'worst':>10}  on")
+    for name in names:
+        rows = [(m, f) for m in results for f in m.figures if f["name"] == name and f["value"] is not None]
+        if rows:
+            lines.append(_figure_line(name, rows))
+    return "\n".join(lines)
+
+
+def _figure_line(name: str, rows: list[tuple[Measured, dict[str, Any]]]) -> str:
+    sign = -1.0 if rows[0][1]["at_least"] else 1.0
+    missed = [m for m, f in rows if f["met"] is False]
+    worst, figure = max(rows, key=lambda r: sign * r[1]["value"])
+    median = float(np.median([f["value"] for _, f in rows]))
+    slow = sum(m.peak <= FAST for m in missed)
+    return (
+        f"{name:32}{figure['goal']:>9g}{len(missed):>12}{slow:>15}{median:>10.4g}{figure['value']:>10.4g}"
+        f"  {_short(worst)}"
+    )
+
+
+def _short(m: Measured) -> str:
+    return f"{Path(m.path).stem[:40]} #{m.index} {m.label}"
+
+
+def _write(out: Path, results: list[Measured]) -> None:
+    out.parent.mkdir(parents=True, exist_ok=True)
+    lines = [summary(results), "", "charts, worst first: steps, seconds, most steps/s, and which goals are missed"]
+    for m in results:
+        lines.append(f"{_short(m)}: {m.steps} rows, {m.seconds:.0f} s, {m.peak:.1f}/s, {m.path}")
+        lines += [f"    {m.error}"] if m.error else []
+        for f in sorted(m.missed, key=excess, reverse=True):
+            lines.append(f"    {f['name']}: {f['value']:.4g} {f['unit']}, goal {f['goal']:g}")
+    lines += ["", "all figures; ! stands behind a missed goal", *_table(results)]
+    out.with_suffix(".txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    data = [{**asdict(m), "missed": [f["name"] for f in m.missed]} for m in results]
+    out.with_suffix(".json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+
+
+def _table(results: list[Measured]) -> list[str]:
+    """One line per chart, one column per figure."""
+    names = list(dict.fromkeys(f["name"] for m in results for f in m.figures))
+    lines = [f"{k:>3}  {name}" for k, name in enumerate(names)]
+    lines.append(f"{'steps/s':>8}" + "".join(f"{k:>9}" for k in range(len(names))))
+    for m in results:
+        values = {f["name"]: f for f in m.figures}
+        cells = [_cell(values.get(name)) for name in names]
+        lines.append(f"{m.peak:8.1f}" + "".join(f"{c:>9}" for c in cells) + f"  {_short(m)}")
+    return lines
+
+
+def _cell(figure: dict[str, Any] | None) -> str:
+    if figure is None or figure["value"] is None:
+        return "-"
+    value = figure["value"]
+    text = f"{value:.0f}" if math.isfinite(value) and abs(value) >= 100 else f"{value:.3g}"
+    return text + ("!" if figure["met"] is False else "")
+
+
+def _progress(done: int, count: int, started: float) -> None:
+    if sys.stderr.isatty() or done % 20 == 0:
+        end = "\r" if sys.stderr.isatty() and done < count else "\n"
+        print(f"{done} of {count} charts, {time.monotonic() - started:.0f} s", end=end, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()
