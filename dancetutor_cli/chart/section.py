@@ -16,6 +16,11 @@ _POINT = re.compile(
 _HOW = "write START:END in seconds (10:25), beats (b16:b48) or measures (m4:m12); either end may be left out"
 
 
+def check_section(text: str) -> None:
+    """Raise `UsageError` for what is no section, whatever the song: so that a slip is told before a chart is read."""
+    _ends(text)
+
+
 def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, float]:
     """First and last second of a section.
 
@@ -26,11 +31,9 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
 
     Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.
     """
-    start_text, colon, end_text = text.partition(":")
-    if not colon or ":" in end_text or not (start_text.strip() or end_text.strip()):
-        raise UsageError(f"section '{text}' cannot be read; {_HOW}")
-    start = _second(start_text, timing, text) if start_text.strip() else 0.0
-    end = _second(end_text, timing, text) if end_text.strip() else end_second
+    first, last = _ends(text)
+    start = _second(*first, timing) if first else 0.0
+    end = _second(*last, timing) if last else end_second
     if start >= end_second:
         raise UsageError(f"section '{text}' starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
     if end <= start:
@@ -38,7 +41,17 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
     return start, min(end, end_second)
 
 
-def _second(point: str, timing: Timing, whole: str) -> float:
+def _ends(text: str) -> tuple[tuple[float, str] | None, tuple[float, str] | None]:
+    """Number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
+    start, colon, end = text.partition(":")
+    if not colon or ":" in end or not (start.strip() or end.strip()):
+        raise UsageError(f"section '{text}' cannot be read; {_HOW}")
+    return _point(start, text), _point(end, text)
+
+
+def _point(point: str, whole: str) -> tuple[float, str] | None:
+    if not point.strip():
+        return None
     match = _POINT.fullmatch(point)
     try:
         number = float(match["after"] or match["number"]) if match else math.nan
@@ -46,7 +59,10 @@ def _second(point: str, timing: Timing, whole: str) -> float:
         number = math.nan
     if match is None or not math.isfinite(number):
         raise UsageError(f"section '{whole}': '{point.strip()}' cannot be read; {_HOW}")
-    unit = (match["unit"] or match["suffix"] or "s").lower()
+    return number, (match["unit"] or match["suffix"] or "s").lower()
+
+
+def _second(number: float, unit: str, timing: Timing) -> float:
     if unit == "s":
         return number
     beat = number * 4 if unit == "m" else number

@@ -51,6 +51,10 @@ def ask(task: BakeTask) -> Asked:
     """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli import chart as charts
 
+    if task.section is not None:
+        from dancetutor_cli.chart.section import check_section
+
+        check_section(task.section)
     song = charts.load(task.path)
     chart = task.selection.one(song)
     play, pad = _play(task, song, chart)

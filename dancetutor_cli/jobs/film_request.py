@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+_FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)  # a section around a finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,10 @@ class Subject:
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     from dancetutor_cli import chart as charts
+    from dancetutor_cli.chart.section import check_section
 
+    if request.section is not None and not _FINDING.fullmatch(request.section):
+        check_section(request.section)
     song = charts.load(request.path)
     chart = request.selection.one(song)
     music, warnings = (None, ()) if request.mute else find_music(song)
@@ -154,7 +158,7 @@ def _section(request: Request, song: Song, chart: Chart) -> tuple[float, float]:
         return whole
     from dancetutor_cli.chart.section import parse_section
 
-    if match := re.fullmatch(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", request.section, re.IGNORECASE):
+    if match := _FINDING.fullmatch(request.section):
         return _around_finding(request, song, chart, match[1].upper(), int(match[2]), whole)
     return parse_section(request.section, chart.timing, whole[1])
 

@@ -18,11 +18,12 @@ class Rule(ABC):
     """A check with a code ("DT201") and a name ("doublestep").
 
     The code's first digit is the family (`FAMILIES`). Severity and options come from configs/lint/default.yaml;
-    `options` is what holds for the chart in hand.
+    `options` is what holds for the chart in hand. `codes` : warnings of the reader that the rule is about.
     """
 
     code: ClassVar[str]
     name: ClassVar[str]
+    codes: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, options: Mapping[str, Any]) -> None:
         self.options = options
@@ -49,9 +50,7 @@ class ChartRule(Rule):
 
 
 class ReaderRule(Rule):
-    """A rule that hands on warnings of the reader, about the song or about a chart. `codes` : those it claims."""
-
-    codes: ClassVar[frozenset[str]]
+    """A rule that hands on warnings of the reader, about the song or about a chart: those of its `codes`."""
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each warning that is claimed."""

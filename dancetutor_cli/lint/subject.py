@@ -14,7 +14,7 @@ from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
 from dancetutor_cli.lint.feet import Feet
 from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.model import Ambiguity, Limb, Play
 
 
 @dataclass(frozen=True)
@@ -114,6 +114,16 @@ class ChartSubject:
         """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
         margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
         return None if margin < 0 else margin
+
+    def ties(self) -> Iterator[tuple[int, bool]]:
+        """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
+        if self.play is None or self.play.margin is None:
+            return
+        rows = np.array(self.step_rows(), dtype=np.int64)
+        tied = self.play.margin[rows] == 0
+        for first in rows[tied & ~np.concatenate([[False], tied[:-1]])].tolist():
+            known = self.play.ambiguity
+            yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:
         """Time from the first to the last row with a step."""

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from dancetutor_cli.chart.section import parse_section
+from dancetutor_cli.chart.section import check_section, parse_section
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import UsageError
 
@@ -40,3 +40,11 @@ def test_nonsense_is_refused_in_one_line(text: str) -> None:
         parse_section(text, TIMING, 60.0)
     assert "\n" not in str(caught.value)
     assert text in str(caught.value)
+
+
+def test_a_slip_is_told_without_a_song() -> None:
+    for text in ("10:25", ":25", "m4:b20"):
+        check_section(text)
+    for text in ("", "m1", "1:2:3", "b:m"):
+        with pytest.raises(UsageError):
+            check_section(text)

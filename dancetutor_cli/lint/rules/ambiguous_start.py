@@ -13,9 +13,11 @@ if TYPE_CHECKING:
 
 
 class AmbiguousStart(ChartRule):
-    """The first step can be played as well with the other foot: players will start on different feet.
+    """A step can be played as well with the other foot: players will begin the chart, or a passage, on different feet.
 
-    Needs a cost preset with margins; a play with the other foot that costs the same is a tie.
+    The message tells apart what follows: the same steps whichever foot comes, so that nothing is lost, or all other
+    feet. A tie is a play with the other foot that costs the same. Jumps have both feet, and the steps after a jump that
+    can be turned round are not reported for it.
 
     Bad:
 
@@ -36,8 +38,9 @@ class AmbiguousStart(ChartRule):
     name = "ambiguous-start"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """At most one finding: at the first row with a step."""
-        for row in subject.step_rows()[:1]:
-            if subject.margin(row) == 0 and not subject.is_jump(row):
-                message = "either foot can begin: the best play is no better than with the other foot"
-                yield self.finding(message, subject.at_row(row))
+        """One finding for each run of rows that are ties, at its first; none where that is a jump."""
+        for number, (row, resolved) in enumerate(subject.ties()):
+            if not subject.is_jump(row):
+                where = "begin" if number == 0 and row == subject.step_rows()[0] else "come"
+                after = "the rows after it are stepped the same way" if resolved else "what follows depends on it"
+                yield self.finding(f"either foot can {where} here at the same cost; {after}", subject.at_row(row))

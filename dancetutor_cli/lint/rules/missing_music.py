@@ -23,6 +23,7 @@ class MissingMusic(FileRule):
 
     code = "DT107"
     name = "missing-music"
+    codes = frozenset({"unsafe-music"})  # the music itself is looked for, which says the same and more
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""

@@ -29,7 +29,6 @@ class OddNotes(ReaderRule):
     name = "odd-notes"
     codes = frozenset(
         {
-            "odd-row",
             "compound-note",
             "odd-keysound",
             "long-row",

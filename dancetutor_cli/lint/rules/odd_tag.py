@@ -6,7 +6,7 @@ from dancetutor_cli.lint.rule import ReaderRule
 
 
 class OddTag(ReaderRule):
-    """A tag is not what it should be: a decimal comma, a meter that is no number, a title that starts with #.
+    """A tag is not what it should be: a decimal comma, a meter that is no number, an unknown difficulty, a # in a title.
 
     Bad: #OFFSET:1,5;
 
@@ -15,4 +15,14 @@ class OddTag(ReaderRule):
 
     code = "DT104"
     name = "odd-tag"
-    codes = frozenset({"odd-offset", "odd-meter", "odd-time-signature", "hash-in-value", "nul-byte", "cr-only"})
+    codes = frozenset(
+        {
+            "odd-offset",
+            "odd-meter",
+            "odd-difficulty",
+            "odd-time-signature",
+            "hash-in-value",
+            "nul-byte",
+            "cr-only",
+        }
+    )
