@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -115,10 +115,16 @@ def _watch(request: Request, options: dict[str, Any]) -> int:
 
     if any(str(path) == "-" for path in options["paths"]):
         raise UsageError("--watch needs files or folders, not standard input")
-    for _, changed in changes(lambda: find_files(options["paths"])):
+    run = LintRun(request)  # a new one each time: configurations may have changed
+
+    def needs(path: Path) -> Iterable[Path]:
+        return run.needs(path)
+
+    for _, changed in changes(lambda: find_files(options["paths"]), needs):
+        run = LintRun(request)
         if changed:
             click.clear()  # nothing without a terminal
-            _report_errors(partial(_run, LintRun(request), [(file, None) for file in changed], options))
+            _report_errors(partial(_run, run, [(file, None) for file in changed], options))
             click.echo("waiting for changes; Ctrl-C ends", err=True)
     return 0
 

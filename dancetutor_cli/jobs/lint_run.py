@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.jobs.result import ChartResult, FileResult
@@ -15,6 +17,7 @@ from dancetutor_cli.lint.configuration import (
     Configuration,
     find_configuration,
     load_configuration,
+    places_for_configuration,
     with_assignments,
     with_selection,
 )
@@ -77,6 +80,26 @@ class LintRun:
         if name not in self._presets:
             self._presets[name] = load_preset(name)
         return self._presets[name]
+
+    def needs(self, path: Path) -> Iterator[Path]:
+        """What else the findings in a file depend on, there or not: what the author said elsewhere, settings, baseline.
+
+        A configuration that cannot be read is no error here: only what it names is not known.
+        """
+        yield path.parent / "data.sme"
+        yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
+        if self.request.config is None:
+            yield from places_for_configuration(path.parent)
+        else:
+            yield Path(self.request.config)
+        with suppress(DancetutorError):
+            configuration = self.configuration(path)
+            yield from configuration.sources
+            if preset := self.request.preset or configuration.preset:
+                yield Path(preset)
+            baseline = self.request.baseline or configuration.baseline
+            if baseline is not None and not self.request.update_baseline:
+                yield baseline
 
     def task(self, path: Path, data: bytes | None = None) -> Task:
         """The piece of work for a file."""

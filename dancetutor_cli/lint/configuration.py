@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -37,10 +37,10 @@ _WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Everything a configuration file may say. `path` is the file, None when there is none."""
+    """Everything a configuration file may say. `sources` : the files it was read from, with what they extend."""
 
     settings: Settings
-    path: Path | None = None
+    sources: tuple[Path, ...] = ()
     preset: str | None = None
     fail_on: str | None = None
     baseline: Path | None = None
@@ -57,17 +57,19 @@ class _ConfigError(Exception):
 
 def find_configuration(start: Path) -> Path | None:
     """The nearest dancetutor.yaml in the folder of `start` or above it."""
+    return next((place for place in places_for_configuration(start) if place.is_file()), None)
+
+
+def places_for_configuration(start: Path) -> Iterator[Path]:
+    """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
     folder = start.absolute()
     for candidate in (folder, *folder.parents):
-        if (candidate / FILE_NAME).is_file():
-            return candidate / FILE_NAME
-    return None
+        yield candidate / FILE_NAME
 
 
 def load_configuration(source: str | Path | None) -> Configuration:
     """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults)."""
     base = _extend(Configuration(Settings()), config_path("lint/default.yaml"), seen=())
-    base = replace(base, path=None)
     return base if source is None else _extend(base, _located(source), seen=())
 
 
@@ -129,7 +131,7 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configur
         beside = path.parent / str(name)
         base = _extend(base, beside if beside.is_file() else _located(str(name)), (*seen, path.resolve()))
     try:
-        return replace(_apply(base, data, path.parent), path=path)
+        return replace(_apply(base, data, path.parent), sources=(*base.sources, path))
     except _ConfigError as fault:
         raise source.error(fault.keys, fault.message) from None
 
@@ -153,7 +155,7 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Config
     preset = data.get("preset", base.preset)
     if preset is not None and (folder / str(preset)).is_file():
         preset = str(folder / str(preset))
-    return Configuration(replace(settings, stream_rows=stream_rows), base.path, preset, fail_on, baseline)
+    return Configuration(replace(settings, stream_rows=stream_rows), base.sources, preset, fail_on, baseline)
 
 
 def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...]) -> Layer:

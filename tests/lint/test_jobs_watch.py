@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.jobs.watch import changes
 
 
@@ -29,10 +30,10 @@ def write(path: Path, text: str, stamp: int) -> Callable[[], None]:
     return act
 
 
-def seen(folder: Path, sleeper: Sleeper) -> list[list[str]]:
+def seen(folder: Path, sleeper: Sleeper, needs: Callable[[Path], Iterable[Path]] = lambda _: ()) -> list[list[str]]:
     out = []
     try:
-        for _, changed in changes(lambda: sorted(folder.glob("*.sm")), sleeper):
+        for _, changed in changes(lambda: sorted(folder.glob("*.sm")), needs, sleeper):
             out.append([path.name for path in changed])
     except KeyboardInterrupt:
         pass
@@ -59,3 +60,45 @@ def test_a_file_that_goes_away_is_noticed(tmp_path: Path) -> None:
     a = tmp_path / "a.sm"
     write(a, "1", 1_000)()
     assert seen(tmp_path, Sleeper(a.unlink, str, str)) == [["a.sm"], []]
+
+
+def test_what_a_result_depends_on_counts_as_a_change_of_the_file(tmp_path: Path) -> None:
+    nothing = Sleeper.__name__.upper
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        write(tmp_path / name / "a.sm", "#TITLE:T;", 1_000)()
+    (tmp_path / "known.json").write_text("{}")
+    run = LintRun(Request(baseline=tmp_path / "known.json"))
+    steps = [
+        *(nothing, write(tmp_path / "one" / "data.sme", "{}", 2_000), nothing),  # comes to be
+        *(nothing, write(tmp_path / "dancetutor.yaml", "rules: {spin: off}", 3_000), nothing),
+        *(nothing, write(tmp_path / "dancetutor.yaml", "rules: {spin: error}", 4_000), nothing),
+        *(nothing, write(tmp_path / "known.json", "{ }", 5_000), nothing),
+        *(nothing, (tmp_path / "one" / "data.sme").unlink, nothing),
+        *(nothing, write(tmp_path / "two" / "a.ssc", "#TITLE:T;", 6_000), nothing),  # its twin
+        *(nothing, write(tmp_path / "two" / "notes.txt", "other", 6_000), nothing),
+    ]
+    out = []
+    try:
+        for _, changed in changes(lambda: sorted(tmp_path.glob("*/*.sm")), run.needs, Sleeper(*steps)):
+            out.append([path.parent.name for path in changed])
+    except KeyboardInterrupt:
+        pass
+    assert out == [["one", "two"], ["one"], ["one", "two"], ["one", "two"], ["one", "two"], ["one"], ["two"]]
+
+
+def test_a_configuration_names_what_else_is_watched(tmp_path: Path) -> None:
+    chart = tmp_path / "pack" / "a.sm"
+    (tmp_path / "house.yaml").write_text("rules: {spin: error}\n")
+    (tmp_path / "dancetutor.yaml").write_text("extends: house.yaml\nbaseline: known.json\npreset: mine.yaml\n")
+    (tmp_path / "mine.yaml").write_text("extends: itg\n")
+    watched = set(LintRun(Request()).needs(chart))
+    wanted = {tmp_path / name for name in ("house.yaml", "dancetutor.yaml", "known.json", "mine.yaml")}
+    assert wanted | {chart.parent / "dancetutor.yaml", chart.parent / "data.sme"} <= watched
+    writing = LintRun(Request(update_baseline=True))
+    assert tmp_path / "known.json" not in set(writing.needs(chart))  # each run writes it: that would never end
+
+
+def test_a_broken_configuration_does_not_end_the_watch(tmp_path: Path) -> None:
+    (tmp_path / "dancetutor.yaml").write_text("rules: {nonsense: off}\n")
+    assert tmp_path / "dancetutor.yaml" in set(LintRun(Request()).needs(tmp_path / "a.sm"))

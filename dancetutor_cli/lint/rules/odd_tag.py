@@ -6,7 +6,7 @@ from dancetutor_cli.lint.rule import ReaderRule
 
 
 class OddTag(ReaderRule):
-    """A tag is not what it should be: a decimal comma, a meter that is no number, an unknown difficulty, a # in a title.
+    """A tag is not what it should be: a decimal comma, a meter that is no number, a difficulty no game knows.
 
     Bad: #OFFSET:1,5;
 
