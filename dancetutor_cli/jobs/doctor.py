@@ -36,6 +36,8 @@ def examine() -> list[Check]:
 # name of --encoder -> ffmpeg's encoder
 ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac", "webp": "libwebp_anim"}
 _NEEDED = ("x264", "aac")
+# Scripts in which titles come, with letters that tell whether a font has them.
+SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
 
 
 def _guarded(name: str, look: Callable[[], Check]) -> Check:
@@ -120,11 +122,17 @@ def _cache() -> Check:
 
 
 def _font() -> Check:
+    from dancetutor_cli.video.fonts import system_fonts
     from dancetutor_cli.video.text import Typeface
 
-    missing = Typeface().missing("AZaz09 é日")
-    note = f"; it has no {' '.join(missing)}: give --font FILE for such titles" if missing else ""
-    return Check("font", "ok", f"Pillow's built-in one{note}")
+    missing = Typeface().missing("".join(SCRIPTS.values()))
+    others = [Path(path).name for path in system_fonts()]
+    message = "Pillow's built-in one" + (f", and for other letters {', '.join(others[:6])}" if others else "")
+    if not missing:
+        return Check("font", "ok", message)
+    lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
+    mend = "install fonts-dejavu-core and fonts-noto-cjk (or Noto Sans CJK), or give --font FILE for such titles"
+    return Check("font", "without", f"{message}; no letters for {lost}", mend)
 
 
 def _disk() -> Check:

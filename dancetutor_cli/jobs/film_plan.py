@@ -190,8 +190,8 @@ def title_warnings(song: Song, words: Words, look: FilmLook) -> tuple[str, ...]:
     lost = "?" in words.title.replace("?", "", song.title.count("?")) or "?" in words.artist
     if not missing or not lost:
         return ()
-    font = "the built-in font" if look.font is None else str(look.font)
-    return (f"{font} has no letters for {missing[:12]!r} in title or artist; give another with --font FILE",)
+    font = "no font here" if look.font is None else f"neither {look.font} nor a font of the system"
+    return (f"{font} has letters for {missing[:12]!r} in title or artist; give one with --font FILE",)
 
 
 def clicks_of(request: Request, subject: Subject, presses: Presses) -> tuple[Click, ...]:

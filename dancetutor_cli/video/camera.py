@@ -103,7 +103,7 @@ def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: 
     if name not in look.cameras:
         raise UsageError(f"no camera '{name}'; there are: {', '.join(look.cameras)}, or POSITION/TARGET as x,y,z/x,y,z")
     settings = look.cameras[name]
-    box = _box(extent, settings)
+    box = _box(extent, settings, look.stage.pad_height)
     target = (box.min(0) + box.max(0)) / 2
     azimuth, elevation = math.radians(settings.azimuth), math.radians(settings.elevation)
     away = np.array(
@@ -160,12 +160,13 @@ def with_pan_range(camera: Camera, low: float, high: float) -> Camera:
     return replace(camera, pan_range=(min(low, high), max(low, high)))
 
 
-def _box(extent: tuple[Array, Array], settings: CameraLook) -> Array:
+def _box(extent: tuple[Array, Array], settings: CameraLook, thick: float) -> Array:
     """Points (n, 3) of what must be seen: the pad, arms stretched sideways over it, and hands up in the middle."""
     low, high = extent
     middle = (low[2] + high[2]) / 2
     shoulder = min(1.45, settings.height)
     layers = (
+        (-thick, settings.margin, low[2] - settings.margin, high[2] + settings.margin),
         (0.0, settings.margin, low[2] - settings.margin, high[2] + settings.margin),
         (shoulder, settings.arms, middle - 0.2, middle + 0.2),
         (settings.height, -0.1, middle - 0.2, middle + 0.2),

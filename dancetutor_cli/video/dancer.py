@@ -12,6 +12,7 @@ from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.blit import Frame
+from dancetutor_cli.video.camera import WHOLE, Region
 from dancetutor_cli.video.diagram import Foot
 from dancetutor_cli.video.follow import Follow, is_wide
 from dancetutor_cli.video.scene import FootMark, FrameState, Scene, foot_marks
@@ -24,13 +25,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.lights import PanelLights
     from dancetutor_cli.video.stage import PadLike
 
-ALONG = 0.9  # of a camera's sideways that is the pad's: only such cameras, back and front, follow her by a pan
-BELOW_TITLE = (0.0, 0.08, 1.0, 1.0)  # the part of the picture she fills then: nearer, she would reach into the title
-
 
 class Dancer:
     """Draws the dancer at any second. Made in the process that draws: it may hold a GL context.
 
+    region : share of the picture that she fills
     stands : the camera may not follow her, because something else in the picture is drawn for one place
     """
 
@@ -44,12 +43,13 @@ class Dancer:
         quality: renderer.Quality,
         kind: renderer.RendererKind,
         character: Character | None = None,
+        region: Region = WHOLE,
         stands: bool = False,
     ) -> None:
         self.motion, self.lights = motion, lights
         self.scene = Scene(character or load_dancer(), pad)
-        self.camera: Camera = self.scene.camera(camera, size)
-        self._follow = None if stands else self._follower(camera, size)
+        self.camera: Camera = self.scene.camera(camera, size, region)
+        self._follow = None if stands else self._follower(camera, size, region)
         self.renderer = renderer.create(self.scene, size, quality, kind)
         skeleton, names = self.scene.character.skeleton, motion.skeleton.names
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in names])
@@ -64,16 +64,19 @@ class Dancer:
         """The camera at `second`: the standing one, or the one that follows her across a wide pad."""
         return self.camera if self._follow is None else self._follow.at(second)
 
-    def _follower(self, camera: str, size: tuple[int, int]) -> Follow | None:
+    def _follower(self, camera: str, size: tuple[int, int], region: Region) -> Follow | None:
         """The camera that goes with her across a wide pad, if it looks along the pad's short side.
 
         It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
         """
-        along = abs(float(self.camera.axes()[0][0])) > ALONG
-        named = camera in self.scene.look.cameras
+        look = self.scene.look
+        along = abs(float(self.camera.axes()[0][0])) > look.follow.along
+        named = camera in look.cameras
         if not (named and along and is_wide(self.scene)) or self.camera.feet_only:
             return None
-        return Follow(self.scene, camera, size, self.motion.times, self.motion.root, BELOW_TITLE)
+        if region == WHOLE:
+            region = look.follow.region
+        return Follow(self.scene, camera, size, self.motion.times, self.motion.root, region)
 
     def still(self) -> Frame:
         """The room without the dancer."""

@@ -125,8 +125,25 @@ class FeetDiagram:
             blit(frame, shoe, round(x - size / 2), y - size / 2)
 
 
+def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
+    """A box in `count` equal parts with gaps: beside each other for axis 0, below each other for axis 1."""
+    low, high = box[axis], box[axis + 2]
+    gap = round((0.04 if axis == 0 else 0.06) * (high - low))
+    length = (high - low - (count - 1) * gap) // count
+    parts = []
+    for number in range(count):
+        start = low + number * (length + gap)
+        part = list(box)
+        part[axis], part[axis + 2] = start, start + length
+        parts.append((part[0], part[1], part[2], part[3]))
+    return parts
+
+
 class NextRows:
-    """Small pads with the next rows: which panels come, by which limb, and where the feet stand then."""
+    """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
+
+    They lie beside or below each other, whichever makes them larger.
+    """
 
     def __init__(
         self,
@@ -138,12 +155,9 @@ class NextRows:
         face: Typeface,
     ) -> None:
         self.rows, self.face = rows, face
-        left, top, right, bottom = box
-        gap = round(0.04 * (right - left))
-        width = (right - left - (count - 1) * gap) // count
-        boxes = [(left + i * (width + gap), top, left + i * (width + gap) + width, bottom) for i in range(count)]
-        self.boxes = boxes
-        self.pads = [PadMap(pad, directions, one) for one in boxes]
+        beside = [PadMap(pad, directions, one) for one in cut(box, count, 0)]
+        below = [PadMap(pad, directions, one) for one in cut(box, count, 1)]
+        self.pads = max(beside, below, key=lambda pads: pads[0].unit)
 
     def draw(self, frame: Frame, second: float) -> None:
         """Draw the rows that come after `second`."""

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.video import overlay
+from dancetutor_cli.video.announce import Calls, Runs
 from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.diagram import FeetDiagram, NextRows, PadMap, StepRows
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.highway import Highway, HighwayGeometry
-from dancetutor_cli.video.layout import pixels
+from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.scroll import parse_scroll
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.stage import PadLike
 
 BACKGROUND = (11, 12, 22)
+LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
 BLOCK = 64  # frames whose joints are made at once
 
 
@@ -85,9 +87,9 @@ class Film:
     def _highway(self) -> Highway:
         plan, part = self.plan, self.layout.highway
         assert part is not None
-        box = self.layout.box("highway", self.size, self.columns)
+        box = self._box("highway")
         scale = 1.0 if self.layout.screen else self.scale
-        lane = min(part.lane * scale, 0.8 * (box[2] - box[0]) / max(1, self.columns))
+        lane = min(part.lane * scale, LANES * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
@@ -97,35 +99,53 @@ class Film:
             plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face, plan.callouts
         )
 
-    @cached_property
-    def _words(self) -> list[overlay.Header | overlay.Legend]:
-        """What is written and never changes."""
-        out: list[overlay.Header | overlay.Legend] = []
-        if part := self.layout.header:
-            box = pixels(part.box, self.size)
-            out.append(overlay.Header(self.plan.words, box, self.scale * part.text, self.face, self.style))
-        if part := self.layout.legend:
-            limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
-            out.append(overlay.Legend(limbs, pixels(part.box, self.size), self.scale * part.text, self.face))
-        return out
+    def _box(self, name: str) -> PixelBox:
+        return self.layout.box(name, self.size, self.columns)
 
     @cached_property
-    def _moving(self) -> tuple[overlay.Progress | None, overlay.Runs | None]:
-        """What is written and changes."""
-        progress, header = self.layout.progress, self.layout.header
-        runs = overlay.Runs(self.plan.clock, self.size, self.scale * (header.text if header else 1.0), self.face)
-        if not progress:
-            return None, runs
-        box = pixels(progress.box, self.size)
-        return overlay.Progress(self.plan.song, box, self.scale * progress.text, self.face, self.style), runs
+    def _header(self) -> overlay.Header | None:
+        if (part := self.layout.header) is None:
+            return None
+        scale = self.scale * part.text
+        return overlay.Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
 
     @cached_property
-    def _calls(self) -> overlay.Calls | None:
-        """What is called out over the dancer shortly before it comes."""
+    def _legend(self) -> overlay.Legend | None:
+        if (part := self.layout.legend) is None:
+            return None
+        limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
+        return overlay.Legend(limbs, self._box("legend"), self.scale * part.text, self.face)
+
+    @cached_property
+    def _progress(self) -> overlay.Progress | None:
+        if (part := self.layout.progress) is None:
+            return None
+        return overlay.Progress(self.plan.song, self._box("progress"), self.scale * part.text, self.face, self.style)
+
+    @cached_property
+    def _runs(self) -> Runs:
+        """The label stands in its box, else below the header, else at the bottom of the picture."""
+        box: tuple[float, ...] = 0, 0.84 * self.size[1], self.size[0], 0.93 * self.size[1]
+        scale = self.scale
+        if self.layout.runs is not None:
+            box, scale = self._box("runs"), self.scale * self.layout.runs.text
+        elif self._header is not None and self.layout.header is not None:
+            scale = self.scale * self.layout.header.text
+            box = self._box("header")[0], self._header.bottom + 9 * scale
+        return Runs(self.plan.clock, self.size, box, scale, self.face)
+
+    @cached_property
+    def _calls(self) -> Calls | None:
+        """What is called out shortly before it comes, in its box, else at the top right of the dancer's."""
         if not self.layout.dancer or not self.plan.callouts:
             return None
-        box = self.layout.box("dancer", self.size, self.columns)
-        return overlay.Calls(self.plan.callouts, box, self.scale, self.face, self.style)
+        if (part := self.layout.calls) is not None:
+            return Calls(self.plan.callouts, self._box("calls"), self.scale * part.text, self.face, self.style)
+        left, top, right, bottom = self._box("dancer")
+        scale = self.scale * (self.layout.header.text if self.layout.header is not None else 1.0)
+        gap = round(22 * scale)
+        box = (left + round(0.55 * (right - left)), top + gap, right - gap, bottom)
+        return Calls(self.plan.callouts, box, scale, self.face, self.style)
 
     @cached_property
     def _dancer(self) -> Dancer:
@@ -133,13 +153,13 @@ class Film:
         from dancetutor_cli.video import dancer
 
         plan, look = self.plan, self.plan.look
-        left, top, right, bottom = self.layout.box("dancer", self.size, self.columns)
+        left, top, right, bottom = self._box("dancer")
         assert self.layout.dancer is not None and plan.motion is not None and plan.pad is not None
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
         return dancer.Dancer(
             plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character,
-            stands=self.layout.screen is not None,
+            self.layout.dancer.region, stands=self.layout.screen is not None,
         )  # fmt: skip
 
     @cached_property
@@ -154,10 +174,10 @@ class Film:
             return None, None
         large, small = None, None
         if feet:
-            pads = PadMap(plan.pad, plan.directions, self.layout.box("feet", self.size, self.columns))
+            pads = PadMap(plan.pad, plan.directions, self._box("feet"))
             large = FeetDiagram(pads, self.lights, self.face)
         if after and plan.rows is not None:
-            box = self.layout.box("next", self.size, self.columns)
+            box = self._box("next")
             small = NextRows(plan.rows, plan.pad, plan.directions, box, after.count, self.face)
         return large, small
 
@@ -167,7 +187,7 @@ class Film:
         beat = float(self.plan.beats[number])
         picture = self.base.copy()
         if self.layout.dancer and self.plan.motion is not None:
-            left, top, right, bottom = self.layout.box("dancer", self.size, self.columns)
+            left, top, right, bottom = self._box("dancer")
             picture[top:bottom, left:right] = self._room(number, second, beat)
         if self.highway and not self.layout.screen:
             self.highway.draw(picture, second, beat)
@@ -176,15 +196,13 @@ class Film:
             large.draw(picture, second, self._dancer.feet(self._joints(number)))
         if small:
             small.draw(picture, second)
-        for words in self._words:
-            words.draw(picture)
-        progress, runs = self._moving
-        if progress:
-            progress.draw(picture, second)
-        if self._calls:
-            self._calls.draw(picture, second)
-        if runs:
-            runs.draw(picture, second, run)
+        for words in (self._header, self._legend):
+            if words:
+                words.draw(picture)
+        for moving in (self._progress, self._calls):
+            if moving:
+                moving.draw(picture, second)
+        self._runs.draw(picture, second, run)
         return picture
 
     def _joints(self, number: int) -> NDArray[np.float64]:

@@ -54,7 +54,7 @@ class Follow:
         places = np.column_stack([np.interp(regular, seconds, roots[:, k]) for k in range(3)])
         reach = (high[0] - low[0]) / 2 - half
         # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
-        places[:, 0] = _smooth(np.clip(places[:, 0], middle[0] - reach, middle[0] + reach), look.follow_seconds)
+        places[:, 0] = _smooth(np.clip(places[:, 0], middle[0] - reach, middle[0] + reach), look.follow.seconds)
         # Her height and depth do not move the camera: the pan is that of a point at waist height over the pad's middle.
         points = np.column_stack([places[:, 0], np.full(count, 0.9), np.full(count, middle[2])])
         centre = np.array([[middle[0], 0.9, middle[2]]])

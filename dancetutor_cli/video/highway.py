@@ -18,6 +18,19 @@ from dancetutor_cli.video.scroll import Scroll
 from dancetutor_cli.video.text import Typeface
 
 BEATS_PER_MEASURE = 4
+FLAG_LEAST = 0.7  # of its size a label may shrink to before its words are cut off
+
+
+def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
+    """Words in lines of at most `width` pixels where a word is not wider itself; three lines at most."""
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]} {word}"
+        if len(lines) == 3 or face.width(longer, size) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +50,7 @@ class HighwayGeometry:
     def left(self) -> float:
         """x of the first lane; more room is left on the right, where words stand, than for the measure numbers."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
-        return self.box[0] + 0.33 * spare
+        return self.box[0] + 0.3 * spare
 
 
 class Highway:
@@ -167,12 +180,16 @@ class Highway:
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
         room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
-        size = 0.21 * geometry.lane
-        edges = 0.8 * size + 5  # what the label adds to its words
-        least = 0.6 * size
-        while size > least and self.face.width(text, size) > room - edges:  # hinting makes widths uneven
-            size *= 0.97
-        return sprites.flag(self.face.fit(text, size, room - edges), size, self.style.callout[severity], self.face)
+        size = 0.24 * geometry.lane
+        room -= 0.8 * size + 5  # what the label adds to its words
+        whole, low = self.face.shrink(text, size, room, FLAG_LEAST)
+        words = text.split()
+        if len(words) == 1 or (whole == text and low > 0.95 * size):
+            return sprites.flag([whole], low, self.style.callout[severity], self.face)
+        lines = wrapped(words, size, room, self.face)
+        fitted = [self.face.shrink(line, size, room, FLAG_LEAST) for line in lines]
+        size = min(size for _, size in fitted)
+        return sprites.flag([line for line, _ in fitted], size, self.style.callout[severity], self.face)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0

@@ -15,10 +15,11 @@ WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
 
 @dataclass(frozen=True, slots=True)
 class DancerPart:
-    """box : share of the picture; camera : name of a camera."""
+    """box : share of the picture; camera : name of a camera; region : share of the box that she fills."""
 
     box: Box
     camera: str = "back"
+    region: Box = (0.0, 0.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,15 @@ class Part:
 
     box: Box
     text: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class HeaderPart:
+    """The song's words. room : share of the box's width that the lines below the title may take, beside her head."""
+
+    box: Box
+    text: float = 1.0
+    room: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,22 +77,32 @@ class PracticePart:
 
 @dataclass(frozen=True, slots=True)
 class WideBoxes:
-    """Other boxes for pads of more than five panels."""
+    """Other boxes for pads of more than five panels; None where the part stays where it is."""
 
     dancer: Box | None = None
     highway: Box | None = None
+    header: Box | None = None
+    legend: Box | None = None
+    calls: Box | None = None
+    runs: Box | None = None
     feet: Box | None = None
     next: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for."""
+    """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for.
+
+    calls : where moves are called out, in the dancer's box if not said; runs : which run this is, below the header if
+    not said
+    """
 
     size: tuple[int, int]
     dancer: DancerPart | None = None
     highway: HighwayPart | None = None
-    header: Part | None = None
+    header: HeaderPart | None = None
+    calls: Part | None = None
+    runs: Part | None = None
     legend: Part | None = None
     progress: Part | None = None
     screen: ScreenPart | None = None
@@ -96,13 +116,11 @@ class Layout:
         return min(size[0] / self.size[0], size[1] / self.size[1])
 
     def box(self, name: str, size: tuple[int, int], columns: int) -> PixelBox:
-        """The box of a part ("dancer", "highway", "feet", "next") in pixels: of the picture, or, for the highway, of
-
-        the screen that it is shown on.
-        """
+        """The box of a part ("dancer", "highway" ...) in pixels: of the picture, or, for the highway, of the screen
+        that it is shown on."""
         if name == "highway" and self.screen is not None:
             size = self.screen.pixels
-        other = getattr(self.wide, name) if self.wide is not None and columns > WIDE_PAD else None
+        other = getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
         return pixels(other or getattr(self, name).box, size)
 
 
@@ -134,10 +152,12 @@ def _checked(path: Path) -> Layout:
         raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
     if layout.feet is not None and layout.dancer is None:
         raise FileError(path, "feet need a dancer, whose feet they are")
-    for name in ("dancer", "highway", "header", "legend", "progress", "feet", "next"):
-        part = getattr(layout, name)
-        if part is not None and not _inside(part.box):
-            raise FileError(path, f"{name}.box: left, top, right, bottom must be shares 0 to 1 in rising order")
+    for name in ("dancer", "highway", "header", "calls", "runs", "legend", "progress", "feet", "next"):
+        part, other = getattr(layout, name), getattr(layout.wide, name, None)
+        inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
+        for where, box in ((f"{name}.region", inner), (f"{name}.box", part and part.box), (f"wide.{name}", other)):
+            if box is not None and not _inside(box):
+                raise FileError(path, f"{where}: left, top, right, bottom must be shares 0 to 1 in rising order")
     return layout
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.resources import config_path
-from dancetutor_cli.video.settings import load
+from dancetutor_cli.video.settings import Box, load
 
 RGB = tuple[int, int, int]
 
@@ -24,6 +24,19 @@ class CameraLook:
     margin: float
     arms: float
     feet_only: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class FollowLook:
+    """How the camera goes with her across a wide pad.
+
+    seconds : how slowly; along : how much of the camera's sideways must be the pad's, 0..1; region : left, top, right,
+    bottom of the part of the picture that she fills
+    """
+
+    seconds: float
+    along: float
+    region: Box
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +96,7 @@ class Look:
 
     cameras: dict[str, CameraLook]
     free_field: float
-    follow_seconds: float
+    follow: FollowLook
     light: LightLook
     toon: ToonLook
     stage: StageLook
@@ -97,7 +110,7 @@ def read_look(path: Path) -> Look:
             raise FileError(path, f"cameras.{name}: field must be 1..120 degrees and elevation -89.99..89.99")
     positive = {
         "free_field": look.free_field,
-        "follow_seconds": look.follow_seconds,
+        "follow.seconds": look.follow.seconds,
         "toon.soft": look.toon.soft,
         "stage.tile": look.stage.tile,
         "stage.pool": look.stage.pool,
@@ -110,6 +123,9 @@ def read_look(path: Path) -> Look:
     for name, value in positive.items():
         if not value > 0:
             raise FileError(path, f"{name}: {value:g} must be more than 0")
+    left, top, right, bottom = look.follow.region
+    if not (0 <= left < right <= 1 and 0 <= top < bottom <= 1):
+        raise FileError(path, "follow.region: left, top, right, bottom must be shares 0 to 1 in rising order")
     if not 20 <= look.light.elevation <= 89:
         raise FileError(path, f"light.elevation: {look.light.elevation:g} must be 20..89 degrees")
     return look

@@ -1,8 +1,7 @@
-"""The words of the picture: title, artist, difficulty, legend, and the strip with density, position and time."""
+"""The standing words of the picture: title, artist, difficulty, legend; the strip with density, position and time."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,16 +10,13 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video import shapes, sprites
 from dancetutor_cli.video.blit import Frame, Sprite, blit, rectangle
-from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
-from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.sprites import HighwayStyle
 from dancetutor_cli.video.text import Typeface
 
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)
 INK = (12, 13, 22)
-CALL_STAYS = 0.35  # seconds that a call stays after its note
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,37 +32,44 @@ class Words:
 
 
 class Header:
-    """Title, artist and badge at the top left of its box, drawn once."""
+    """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
 
-    def __init__(self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
-        self.box = box
-        width = box[2] - box[0]
-        title_size, small = 33 * scale, 19 * scale
+    room : share of the box's width for the lines below the title; longer ones are written smaller, then cut off
+    """
+
+    def __init__(
+        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: float = 1.0
+    ) -> None:
         self.lines: list[tuple[Sprite, float, float]] = []
-        y = float(box[1])
-        title = face.fit(words.title, title_size, 0.97 * width)
-        y = self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], y)
+        self._scale, self._face = scale, face
+        self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
+        title_size, small = 33 * scale, 19 * scale
+        title = face.fit(words.title, title_size, 0.97 * (box[2] - box[0]))
+        self.bottom = float(box[1])
+        self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], 0)
         if words.artist:
-            artist = face.fit(words.artist, small, 0.97 * width)
-            y = self._add(
-                face.sprite(artist, small, SOFT, weight=0.25 * scale, shadow=1.5 * scale), box[0], y + 1 * scale
-            )
-        colour = style.difficulty.get(words.difficulty, style.difficulty["Edit"])
-        badge = pill(words.badge, small * 0.95, colour, face, scale)
-        self._add(badge, box[0] + 2 * scale, y + 6 * scale)
+            self._line(words.artist, small, box[0], 1 * scale, weight=0.25)
+        badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
+        top = self.bottom + 6 * scale
+        self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
             x = box[0] + badge.shape[1] + 10 * scale
-            detail = face.fit(words.detail, small * 0.85, width - badge.shape[1] - 12 * scale)
-            text = face.sprite(detail, small * 0.85, SOFT, shadow=1.5 * scale)
-            self._add(text, x, y + 6 * scale + (badge.shape[0] - text.shape[0]) / 2)
+            self.lines.append(self._beside(words.detail, small * 0.85, x, top + badge.shape[0] / 2))
         if words.credit:
-            credit = face.fit(words.credit, small * 0.85, 0.42 * width)  # the dancer's head is further right
-            line = face.sprite(credit, small * 0.85, SOFT, shadow=1.5 * scale)
-            self._add(line, box[0], y + 6 * scale + badge.shape[0] + 3 * scale)
+            self._line(words.credit, small * 0.85, box[0], 3 * scale)
 
-    def _add(self, sprite: Sprite, x: float, y: float) -> float:
-        self.lines.append((sprite, x, y))
-        return float(y + sprite.shape[0])
+    def _add(self, sprite: Sprite, x: float, gap: float) -> None:
+        self.lines.append((sprite, x, self.bottom + gap))
+        self.bottom += gap + sprite.shape[0]
+
+    def _line(self, text: str, size: float, x: float, gap: float, weight: float = 0.0) -> None:
+        text, size = self._face.shrink(text, size, self._right - x)
+        self._add(self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale), x, gap)
+
+    def _beside(self, text: str, size: float, x: float, middle: float) -> tuple[Sprite, float, float]:
+        text, size = self._face.shrink(text, size, self._right - x)
+        sprite = self._face.sprite(text, size, SOFT, shadow=1.5 * self._scale)
+        return sprite, x, middle - sprite.shape[0] / 2
 
     def draw(self, frame: Frame) -> None:
         """Lay the words over the picture."""
@@ -74,106 +77,60 @@ class Header:
             blit(frame, sprite, x, round(y))
 
 
-def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface, scale: float) -> Sprite:
+def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
     """Dark words on a coloured lozenge."""
-    words = face.sprite(text, size, INK, weight=0.3 * scale)
+    words = face.sprite(text, size, INK, weight=size / 62)
     height = max(8, round(1.55 * size))
     width = max(words.shape[1] + height // 2 + 2, height)
+    return lozenge(height, width, height / 2 - 1, colour, words)
+
+
+def lozenge(
+    height: int,
+    width: int,
+    radius: float,
+    colour: tuple[int, int, int],
+    words: Sprite | None = None,
+    opacity: float = 1,
+) -> Sprite:
+    """A box with round corners, words in its middle."""
     painter = shapes.Painter(height, width)
-    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, height / 2 - 1)
-    painter.paint(shapes.cover(d), colour)
+    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
+    painter.paint(shapes.cover(d), colour, opacity)
     out = painter.sprite()
-    sprites.centre(out, words)
+    if words is not None:
+        sprites.centre(out, words)
     return out
 
 
 class Legend:
-    """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them."""
+    """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them.
+
+    A dark plate below keeps them readable over a panel of the pad.
+    """
 
     def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface) -> None:
         names = ("left foot", "right foot", "left hand", "right hand")
-        self.lines: list[tuple[Sprite, float, float]] = []
-        step = 31 * scale
-        middle = box[3] - step / 2
-        for limb in sorted({0, 1} | limbs, reverse=True):
+        shown = sorted({0, 1} | limbs)
+        step, edge = 31 * scale, 8 * scale
+        top = box[3] - step * len(shown)
+        lines: list[tuple[Sprite, float, float]] = []
+        right = float(box[0])
+        for row, limb in enumerate(shown):
+            middle = top + (row + 0.5) * step
             mark = sprites.marker(max(8, round(24 * scale)), limb, face)
-            text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale, shadow=1.5 * scale)
-            self.lines.append((mark, box[0], middle - mark.shape[0] / 2))
-            self.lines.append((text, box[0] + mark.shape[1] + 5 * scale, middle - text.shape[0] / 2))
-            middle -= step
+            text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale)
+            x = box[0] + mark.shape[1] + 5 * scale
+            lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
+            right = max(right, x + text.shape[1])
+        size = round(box[3] - top + 1.2 * edge), round(right - box[0] + 2 * edge)
+        plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
+        self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
 
     def draw(self, frame: Frame) -> None:
         """Lay the legend over the picture."""
         for sprite, x, y in self.lines:
             blit(frame, sprite, x, round(y))
-
-
-class Runs:
-    """Which run of a practice film this is and how fast, at the bottom; and the numbers of the count-in."""
-
-    def __init__(self, clock: Clock, size: tuple[int, int], scale: float, face: Typeface) -> None:
-        self.clock, self.size, self.scale = clock, size, scale
-        several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
-        texts = [self._text(number) for number in range(len(clock.passes))] if several else []
-        self.labels = [pill(text, 20 * scale, WHITE, face, scale) for text in texts]
-        counts = range(1, max(one.count for one in clock.passes) + 1)
-        big = 150 * scale
-        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=3 * scale, shadow=5 * scale) for n in counts}
-
-    def _text(self, number: int) -> str:
-        one, count = self.clock.passes[number], len(self.clock.passes)
-        speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
-        return f"{speed} · {number + 1} of {count}" if count > 1 else speed
-
-    def draw(self, frame: Frame, second: float, run: int) -> None:
-        """Draw at `second` of the music in pass `run`."""
-        if self.labels:
-            label = self.labels[run]
-            blit(frame, label, (self.size[0] - label.shape[1]) / 2, round(0.875 * self.size[1]))
-        one = self.clock.passes[run]
-        if one.count and second < one.sound_from - 1e-6:
-            left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
-            number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
-            fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
-            x, y = (self.size[0] - number.shape[1]) / 2, (self.size[1] - number.shape[0]) / 2
-            blit(frame, number, x, round(y), fade)
-
-
-class Calls:
-    """Moves called out over the dancer before they come, at the top right of her box, with the time left as a bar."""
-
-    SHOWN = 2  # at a time, the nearest on top
-
-    def __init__(
-        self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
-    ) -> None:
-        self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
-        self.seconds = np.array([one.second for one in callouts])
-        self._sprite = lru_cache(maxsize=32)(self._pill)
-
-    def _pill(self, text: str, severity: str) -> Sprite:
-        size = 24 * self.scale
-        room = 0.45 * (self.box[2] - self.box[0])
-        return pill(self.face.fit(text, size, room), size, self.style.callout[severity], self.face, self.scale)
-
-    def draw(self, frame: Frame, second: float) -> None:
-        """Draw what comes within the next `callout_seconds` after `second`."""
-        first = int(np.searchsorted(self.seconds, second - CALL_STAYS))
-        y = self.box[1] + 22 * self.scale
-        for one in self.callouts[first : first + self.SHOWN]:
-            left = one.second - second
-            if left > self.style.callout_seconds:
-                break
-            label = self._sprite(one.text, one.severity)
-            x = self.box[2] - label.shape[1] - 22 * self.scale
-            fade = min(1.0, (self.style.callout_seconds - left) / 0.15, 1.0 + left / CALL_STAYS)
-            blit(frame, label, x, round(y), fade)
-            y += label.shape[0] + 4 * self.scale
-            share = min(1.0, max(0.0, left / self.style.callout_seconds))
-            bar = (label.shape[1] - 8 * self.scale) * share
-            edge = x + 4 * self.scale
-            rectangle(frame, edge, y, edge + bar, y + 4 * self.scale, self.style.callout[one.severity], 0.9 * fade)
-            y += 14 * self.scale
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -194,17 +195,19 @@ def centre(target: Sprite, ink: Sprite) -> None:
     place[...] = (place * keep + 127) // 255 + ink
 
 
-def flag(text: str, size: float, colour: RGB, face: Typeface) -> Sprite:
-    """Words on a dark label whose left edge points to the row they are about."""
-    words = face.sprite(text, size, colour, weight=0.012 * size)
-    height = max(6, round(1.5 * size))
-    width = words.shape[1] + height // 2
+def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface) -> Sprite:
+    """Lines of words on a dark label that stands beside the row they are about."""
+    words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
+    one, step = max(6, round(1.5 * size)), round(1.15 * size)
+    height = one + step * (len(lines) - 1)
+    width = max(line.shape[1] for line in words) + one // 2
     p = shapes.Painter(height, width)
-    d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * height)
+    d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)
     p.paint(shapes.cover(d), colour, 0.9)
     p.paint(shapes.cover(d + 0.07 * size), (16, 18, 32))
     out = p.sprite()
-    centre(out, words)
+    for number, line in enumerate(words):
+        centre(out[number * step : number * step + one], line)
     return out
 
 

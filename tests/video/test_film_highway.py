@@ -22,7 +22,7 @@ from dancetutor_cli.video.notes import Callout, Presses
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.settings import load
 from dancetutor_cli.video.subtitles import subtitles
-from dancetutor_cli.video.text import Typeface, clean
+from dancetutor_cli.video.text import Typeface
 
 
 def test_a_sprite_between_pixels_is_shared_by_both() -> None:
@@ -154,14 +154,6 @@ def test_the_style_file_is_complete() -> None:
     style = load(config_path("highway.yaml"), sprites.HighwayStyle)
     assert set(style.quantisation) == set(sprites.QUANTISATIONS)
     assert len({*style.quantisation.values()} & {*limb_colours().by_limb}) == 0
-
-
-def test_titles_lose_controls_and_fold_what_the_font_lacks() -> None:
-    face = Typeface()
-    assert clean("a\x1b[31mb\nc\u202e") == "a[31mb c"
-    assert face.drawable("Café ～日本") == "Cafe ~??"
-    long = face.fit("word " * 500, 20, 200)
-    assert long.endswith("…") and face.width(long, 20) <= 200
 
 
 def test_subtitles_follow_the_runs() -> None:
