@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.bar import bar_of, grips_of, hold_share, holding
 from dancetutor_cli.motion.body import BodyPath, body_path, stepping
 from dancetutor_cli.motion.feet import FootPath, foot_path
 from dancetutor_cli.motion.ik import Targets, solve
@@ -56,6 +57,7 @@ def bake(
     section: tuple[float, float] | None = None,
     settings: MotionSettings | None = None,
     rate: float = 1.0,
+    bar: bool = False,
 ) -> Motion:
     """Make the dancer play a chart.
 
@@ -67,6 +69,7 @@ def bake(
     settings : numbers of the motion, None for those of `configs/motion.yaml`
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
+    bar : whether she holds the bar behind the pad
 
     Returns
     -------
@@ -77,7 +80,9 @@ def bake(
     DancetutorError if the play has no steps or the section is empty.
     """
     settings = settings or default_settings()
-    plan = plan_of(chart, play, pad, settings, rate)
+    if bar:
+        settings = holding(settings)
+    plan = plan_of(chart, play, pad, settings, rate, bar)
     start, end = section or (min(0.0, plan.first - LEAD_IN), plan.last + LEAD_OUT)
     if not start < end:
         raise DancetutorError(
@@ -86,10 +91,17 @@ def bake(
     return bake_plan(plan, fps, start, end, settings)
 
 
-def plan_of(chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None, rate: float = 1.0) -> Plan:
+def plan_of(
+    chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None, rate: float = 1.0, bar: bool = False
+) -> Plan:
     """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
     settings = settings or default_settings()
-    return Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
+    plan = Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
+    if not bar:
+        return plan
+    rail = bar_of(pad, settings.bar)
+    grips = grips_of(plan, rail, (plan.first - LEAD_IN, plan.last + LEAD_OUT), settings)
+    return replace(plan, bar=rail, grips=grips)
 
 
 def mines_of(play: Play, pad: Pad) -> Array:
@@ -118,10 +130,12 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     look(skeleton, rotations, root, body, at, settings)
     ends = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
+    free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
     add_layers(skeleton, at, rotations, stepping(ends, settings), free, settings.layers)
     add_hair(skeleton, at, rotations, root, settings.hair)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
-    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts)
+    grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
+    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts, plan.bar, grips)
 
 
 def _settled(

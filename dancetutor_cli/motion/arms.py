@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.bar import hold
 from dancetutor_cli.motion.body import BodyPath
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import foot_path
@@ -22,6 +23,7 @@ Array = NDArray[np.float64]
 LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
 FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
 SLAP = 0.8  # metres per second with which a palm meets the floor at least
+BACKWARD = np.array([[0.39, 0.0, -0.921], [-0.39, 0.0, -0.921]])  # where the fingers of a hand on the bar point
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
@@ -47,6 +49,10 @@ def arm_targets(
     elbows = quat.rotate(upright[:, None], out)
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
     pinned = np.zeros((len(at), 2))
+    if plan.bar is not None:
+        backward = [palm_down(skeleton, side, fingers) for side, fingers in enumerate(BACKWARD)]
+        palms = [point.offset for point in palm_points(skeleton)]
+        hold(plan, at, (palms[0], palms[1]), (backward[0], backward[1]), wrists, turn, pinned, elbows, shoulders, settings)
     for press in plan.presses:
         _press(press, at, wrists, turn, pinned, elbows, shoulders, skeleton, settings)
     return HandTargets(wrists, turn, pinned, elbows)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.balance import balanced_path
+from dancetutor_cli.motion.bar import kept_back, leaning_share
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.height import HeightPath, height_path
@@ -69,6 +70,9 @@ def body_path(
         mass_ground = before.mass
     else:
         mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
+    held = leaning_share(plan.grips, times)
+    if plan.bar is not None and not (keep and before is not None):
+        mass_ground = kept_back(mass_ground, held, plan.bar, settings.bar)
     ground = mass_ground - above[:, [0, 2]]
     turned = _yaw_target(plan.turns, times) + _turned_for_hands(plan.presses, times, settings)
     yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
@@ -76,7 +80,7 @@ def body_path(
     mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, plan.presses, times, ground, rate, settings)
-    tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings)
+    tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
@@ -224,10 +228,11 @@ def _reaching(presses: tuple[Press, ...], times: Array, side: int, settings: Mot
 
 def _tilt(
     presses: tuple[Press, ...], times: Array, reaching: Array, chest: Array, ground: Array, rate: float,
-    settings: MotionSettings,
+    settings: MotionSettings, held: Array,
 ) -> Array:  # fmt: skip
     forward = np.column_stack((np.sin(chest), np.cos(chest)))
-    tilt = np.radians(settings.body.lean) * forward
+    lean = np.radians(settings.body.lean - held * (settings.body.lean + settings.bar.lean_back))
+    tilt = lean[:, None] * forward
     for side in (0, 1):
         for press in (p for p in presses if p.side == side):
             down = settings.hands.reach_down

@@ -29,6 +29,30 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True)
+class Bar:
+    """The bar behind a pad, which players hold on to; metres in the world.
+
+    height, behind : y and z of the rail's middle line; radius : of the rail
+    spans : (x0, x1) of each of its pieces, x0 < x1: one behind every square of nine panels
+    """
+
+    height: float
+    behind: float
+    radius: float
+    spans: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """A hand that rests on the bar from `start` to `end` seconds, its palm over `x`; side 0 left, 1 right."""
+
+    start: float
+    end: float
+    side: int
+    x: float
+
+
+@dataclass(frozen=True, slots=True)
 class Motion:
     """Joint rotations over time. f frames, j joints.
 
@@ -36,6 +60,7 @@ class Motion:
     rotations : float64 (f, j, 4), local unit quaternions (w, x, y, z)
     root : float64 (f, 3), position of joint 0 in the world, metres
     fps : nominal frames per second; contacts : sorted by start
+    bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
     """
 
     skeleton: Skeleton
@@ -44,3 +69,5 @@ class Motion:
     rotations: NDArray[np.float64]
     root: NDArray[np.float64]
     contacts: tuple[Contact, ...]
+    bar: Bar | None = None
+    grips: tuple[Grip, ...] = ()

@@ -161,6 +161,26 @@ class HairSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class BarSettings:
+    """The bar behind the dancer, and how she holds it."""
+
+    height: float
+    behind: float
+    radius: float
+    posts: float
+    apart: float
+    dip: float
+    forward: float
+    soft: float
+    lean_back: float
+    knees: float
+    let_go: float
+    slack: float
+    reach_time: float
+    shortest: float
+
+
+@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 
@@ -181,6 +201,7 @@ class MotionSettings:
     inertia: InertiaSettings
     layers: LayerSettings
     hair: HairSettings
+    bar: BarSettings
     sampling: SamplingSettings
 
 
@@ -195,6 +216,7 @@ _SECTIONS: dict[str, type[Any]] = {
     "inertia": InertiaSettings,
     "layers": LayerSettings,
     "hair": HairSettings,
+    "bar": BarSettings,
     "sampling": SamplingSettings,
 }
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.model import Bar, Contact, Grip
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,10 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact."""
+    """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact.
+
+    bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
+    """
 
     feet: tuple[FootTrack, FootTrack]
     turns: tuple[Turn, ...]
@@ -84,6 +87,8 @@ class Plan:
     centre: tuple[float, float]
     first: float
     last: float
+    bar: Bar | None = None
+    grips: tuple[Grip, ...] = ()
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
