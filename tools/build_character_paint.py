@@ -82,17 +82,17 @@ def face(p: Array, n: Array) -> Array:
     socket = np.linalg.norm((q - [0.037, 1.592]) / [1.0, 0.85], axis=1)
     base = over(base, SHADE, 0.35 * inside(socket - 0.034, 0.010) * front)
     brow = stroke(
-        q, [(0.0145, 1.6255), (0.030, 1.6330), (0.048, 1.6315), (0.0615, 1.6215)], [0.0022, 0.0031, 0.0026, 0.0006]
+        q, [(0.0150, 1.6285), (0.030, 1.6340), (0.047, 1.6320), (0.0605, 1.6225)], [0.0022, 0.0031, 0.0026, 0.0006]
     )
     base = over(base, BROW, inside(brow) * front)
     return _smile(base, p, front)
 
 
 def _smile(base: Array, p: Array, front: Array) -> Array:
-    x, y, half = p[:, 0], p[:, 1] - 1.5330, 0.0185
+    x, y, half = p[:, 0], p[:, 1] - 1.5335, 0.0212
     t = np.clip(np.abs(x) / half, 0, 1.5)
-    top = 0.0048 * t**2
-    low = -0.0098 + 0.0146 * t**2
+    top = 0.0056 * t**2
+    low = -0.0108 + 0.0164 * t**2
     depth = np.maximum(y - top, low - y) * 0.85
     mouth = np.where(t < 1.0, depth, np.maximum(depth, np.abs(x) - half))
     base = over(
@@ -199,7 +199,7 @@ def shirt(p: Array, n: Array) -> Array:
     base = over(base, INDIGO, inside(-seam, 0.001))
     base = over(base, PINK, inside(np.abs(seam) - 0.0022, 0.001))
     front = p[:, 2] > 0
-    for y, size, where in ((1.205, 0.052, front), (1.255, 0.068, ~front)):
+    for y, size, where in ((1.150, 0.056, front), (1.160, 0.066, ~front)):
         d = arrow(np.stack([x, p[:, 1] - y], axis=1) / size) * size
         fade = np.clip((p[:, 1] - y) / size * 0.5 + 0.5, 0, 1)[:, None]
         base = over(base, VIOLET + (PINK - VIOLET) * fade, inside(d, 0.001) * where)

@@ -45,6 +45,27 @@ def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lo
     return lambda: surface(shape, *box, grid, size)
 
 
+def leggings_mesh() -> Lofted:
+    """The leggings, with normals that pass over the fold between the legs."""
+    leg = ramp(
+        [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
+        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0255, 0.0262, 0.0220, 0.030],
+        lambda p: p[:, 1],
+    )
+
+    def fine_between(p: Array) -> Array:
+        fork = np.linalg.norm((p - [0, 0.795, 0]) / [0.03, 0.03, 0.06], axis=1)
+        return np.minimum(leg(p), np.interp(fork, [1.0, 1.8], [0.0140, 0.0262]))
+
+    shape = body.leggings()
+    points, _, triangles = surface(shape, (-0.20, 0.05, -0.16), (0.20, 1.05, 0.12), 0.006, fine_between)
+    normals = gradient(shape, points, 0.006)
+    x, y, z = (points - [0, 0.815, 0]).T
+    fold = np.exp(-((x / 0.055) ** 4) - (y / 0.055) ** 4) * np.clip(0.3 + z / 0.03, 0, 1)
+    level = np.stack([1 - 0.5 * fold, 1 - fold * (normals[:, 1] < 0), np.ones_like(fold)], axis=1)
+    return points, unit(normals * level), triangles
+
+
 def shirt_mesh() -> Lofted:
     """The shirt, with normals that do not turn under at its edges; finer at the neckline."""
     neck = body.neckline()
@@ -53,9 +74,9 @@ def shirt_mesh() -> Lofted:
         (-0.32, 0.96, -0.14),
         (0.32, 1.46, 0.14),
         0.005,
-        ramp([0.008, 0.03], [0.0125, 0.0220], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM))),
+        ramp([0.008, 0.03], [0.0125, 0.0230], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM))),
     )
-    normals = gradient(body.shirt_cloth(), points)
+    normals = softer(gradient(body.shirt_cloth(), points), gradient(body.shirt_cloth(), points, 0.030), 0.75)
     bowl = np.abs(neck(points)) < 0.002
     normals[bowl] = -gradient(neck, points[bowl])
     return points, normals, triangles
@@ -85,20 +106,30 @@ def _face_first(p: Array) -> Array:
 
 def round_face(points: Array, normals: Array) -> Array:
     """Normals of the face turned towards those of a ball, so that drawn light falls on it in large calm areas."""
-    ball = points - [0, 1.550, -0.030]
-    ball /= np.linalg.norm(ball, axis=1, keepdims=True)
-    share = 0.7 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.096) / 0.006, 0, 1)
-    mixed = normals + share[:, None] * (ball - normals)
-    return np.asarray(mixed / np.linalg.norm(mixed, axis=1, keepdims=True))
+    ball = unit(points - [0, 1.500, -0.030])
+    share = 0.75 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.096) / 0.006, 0, 1)
+    return softer(normals, ball, share)
+
+
+def locks_mesh() -> Lofted:
+    """The fringe and side locks, their outer sides lit as one head of hair."""
+    points, normals, triangles = joined(*head.locks())
+    ball = unit(points - [0, 1.620, 0.0])
+    return points, softer(normals, ball, 0.7 * np.clip(1.5 * (normals * ball).sum(1), 0, 1)), triangles
+
+
+def softer(normals: Array, calm: Array, share: Array | float) -> Array:
+    """Unit normals turned by a share, (n,) or one for all, towards calmer ones."""
+    return unit(normals + np.reshape(share, (-1, 1)) * (calm - normals))
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors (n, 3) at length 1."""
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
 def surfaces() -> dict[str, Callable[[], Lofted]]:
     """Makers of the parts that are modelled with distance functions: shape, box, grid, edge length."""
-    leg = ramp(
-        [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
-        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0255, 0.0255, 0.0205, 0.030],
-        lambda p: p[:, 1],
-    )
     arm = ramp(
         [0.0, 0.20, 0.24, 0.29, 0.33, 0.44, 0.50, 0.57, 0.63, 0.65],
         [0.022, 0.0195, 0.0150, 0.0150, 0.0195, 0.0160, 0.0112, 0.0079, 0.0074, 0.0062],
@@ -108,11 +139,10 @@ def surfaces() -> dict[str, Callable[[], Lofted]]:
     shoe_box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
     braid_box = ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08))
     return {
-        "leggings": of_shape(body.leggings(), ((-0.20, 0.05, -0.16), (0.20, 1.05, 0.12)), 0.006, leg),
         "arm": of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm),
-        "neck": of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0165)),
+        "neck": of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0185)),
         "hair": of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, hairline),
-        "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0110)),
+        "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0116)),
         "shoe": of_shape(body.shoe_upper(), shoe_box, 0.003, even(0.0140)),
     }
 
@@ -121,15 +151,15 @@ def parts() -> list[Part]:
     """All parts of the dancer, in the order in which they are written."""
     made = surfaces()
     return [
-        Part("leggings", made["leggings"], "heat", 470, paint.leggings, shade=0.0, ankles=True),
-        Part("shirt", shirt_mesh, "heat", 660, paint.shirt),
+        Part("leggings", leggings_mesh, "heat", 470, paint.leggings, shade=0.0, ankles=True),
+        Part("shirt", shirt_mesh, "heat", 660, paint.shirt, shade=0.10),
         Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim),
         Part("cuff", trims.cuff, "heat", 400, paint.trim, mirror=True),
         Part("arm", made["arm"], "heat", 560, paint.arm, mirror=True),
         Part("neck", made["neck"], "heat", 450, paint.skin),
         Part("head", face_mesh, "skullbase", 1750, paint.face),
         Part("hair", made["hair"], "skullbase", 700, paint.hair),
-        Part("locks", lambda: joined(*head.locks()), "skullbase", 800, paint.hair),
+        Part("locks", locks_mesh, "skullbase", 800, paint.hair),
         Part("braid", made["braid"], "braid", 700, paint.braid),
         Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
         *_limb_parts(made["shoe"]),
@@ -162,10 +192,15 @@ def mannequin_parts() -> list[Part]:
 def lid(upper: bool) -> Lofted:
     """The left upper or lower lid with its lashes."""
     points, normals, triangles = joined(*head.lid(upper))
+    if not upper:
+        normals = softer(normals, np.array([[0.1, 0.5, 0.86]]), np.clip(2 * normals[:, 2], 0, 0.8))
     return points + head.EYE, normals, triangles
 
 
 def eye(side: int) -> Lofted:
     """The left (1) or right (-1) eyeball."""
     points, normals, triangles = head.ball(head.EYE_RADIUS, 16, 11)
+    normals = softer(
+        normals, np.array([[0.0, 0.5, 0.87]]), np.clip(2 * normals[:, 2], 0, 0.8)
+    )  # white is white all over
     return points + head.EYE * [side, 1, 1], normals, triangles
