@@ -94,6 +94,7 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
     from dancetutor_cli.jobs.density import density
     from dancetutor_cli.jobs.excerpt import arrows, with_excerpts
     from dancetutor_cli.jobs.rows import json_rows
+    from dancetutor_cli.jobs.tech_counts import tech_counts
     from dancetutor_cli.lint.check import check_chart
 
     chart, play = subject.chart, subject.play
@@ -120,6 +121,7 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         breakdown=dense.breakdown,
         stream_measures=dense.stream_measures,
         arrows="" if subject.pad is None else arrows(subject.pad),
+        tech=tech_counts(subject),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
 
+_SHORTEST = 0.12  # seconds: a measure that warps or gimmicks leave less of has no speed anyone could play
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 
 
@@ -17,7 +18,7 @@ _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 class Density:
     """Rows with a step, counted as the games' "notes per second" do: a jump is one.
 
-    mean : rows per second from the first to the last step; peak : of the densest measure
+    mean : rows per second from the first to the last step; peak : of the densest measure that lasts
     breakdown : "32 (4) 16": measures of stream, breaks between them in brackets; "" without a stream
     stream_measures : measures of stream in all
     per_measure : rows with a step in every measure, up to the last step
@@ -39,7 +40,7 @@ def density(chart: Chart, stream_rows: int) -> Density:
     counts = np.bincount(np.maximum(ticks, 0) // TICKS_PER_MEASURE)
     edges = chart.timing.seconds(np.arange(len(counts) + 1, dtype=np.int64) * TICKS_PER_MEASURE)
     lengths = np.diff(edges)
-    rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > 0)
+    rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > _SHORTEST)
     first, last = chart.timing.seconds(ticks[[0, -1]])
     mean = len(ticks) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows

@@ -6,17 +6,24 @@ Imports neither numpy nor numba, so that results can be read back quickly.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from dancetutor_cli.lint.model import Finding
+
+# Names of ITGmania's TechCounts, and after their pattern those that it does not tell apart; see `jobs.tech_counts`.
+TECH_COUNTS = (
+    "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
+    "Sideswitches", "LeftSideswitches", "RightSideswitches", "Jacks", "Brackets", "Doublesteps", "ForcedDoublesteps",
+    "UnforcedDoublesteps",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class ChartResult:
     """One analysed chart. `rows` are the JSON rows of analysis-json.md, None where nobody asked for them.
 
-    counts : name of the move -> rows in which it happens
+    counts : name of the move -> rows in which it happens; tech : how often each of `TECH_COUNTS` happens
     playable : False if the steps type has no pad; then there are no rows and no cost
     nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
     arrows : a sign for each panel, to draw rows with
@@ -38,6 +45,7 @@ class ChartResult:
     breakdown: str = ""
     stream_measures: int = 0
     arrows: str = ""
+    tech: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def label(self) -> str:

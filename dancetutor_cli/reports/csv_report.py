@@ -1,4 +1,4 @@
-"""`--format csv`: one line for each chart, tech counts under the names of ITGmania."""
+"""`--format csv`: one line for each chart, tech counts under the names of ITGmania and counted as it does."""
 
 from __future__ import annotations
 
@@ -6,29 +6,16 @@ import csv
 from collections.abc import Mapping
 from typing import IO, Any
 
-from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.jobs.result import TECH_COUNTS, ChartResult, FileResult
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.structured import relative
 from dancetutor_cli.reports.tally import Tally
 
-# Name in ITGmania's TechCounts (or after its pattern) -> moves that count.
-TECH = {
-    "Crossovers": ("crossover-half", "crossover-full"),
-    "HalfCrossovers": ("crossover-half",),
-    "FullCrossovers": ("crossover-full",),
-    "Footswitches": ("footswitch-up", "footswitch-down"),
-    "UpFootswitches": ("footswitch-up",),
-    "DownFootswitches": ("footswitch-down",),
-    "Sideswitches": ("sideswitch-left", "sideswitch-right"),
-    "LeftSideswitches": ("sideswitch-left",),
-    "RightSideswitches": ("sideswitch-right",),
-    "Jacks": ("jack",),
-    "Brackets": ("bracket",),
-    "Doublesteps": ("doublestep", "forced-doublestep"),
-    "ForcedDoublesteps": ("forced-doublestep",),
-    "UnforcedDoublesteps": ("doublestep",),
+# Further columns -> moves whose rows they count; ITGmania knows none of these.
+OWN = {
     "Spins": ("spin",),
     "JumpFootswitches": ("jump-footswitch",),
+    "Holdswitches": ("holdswitch",),
     "Candles": ("candle",),
     "Gallops": ("gallop",),
     "Hands": ("hand",),
@@ -77,6 +64,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         "nps_peak": round(chart.nps_peak, 3) if chart else 0,
         "stream_measures": chart.stream_measures if chart else 0,
         "breakdown": chart.breakdown if chart else "",
-        **{name: sum(counts.get(move, 0) for move in moves) for name, moves in TECH.items()},
+        **{name: chart.tech.get(name, 0) if chart else 0 for name in TECH_COUNTS},
+        **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
         "findings": len(chart.findings) if chart else 0,
     }
