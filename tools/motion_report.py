@@ -83,7 +83,7 @@ def main() -> None:
     workers = open_workers(min(options.jobs, len(wanted)), lambda key, n: None)
     try:
         for chart in wanted:
-            workers.submit(Task(chart, measure, (chart, options.preset)))
+            workers.submit(Task(chart, measure, (chart, options.preset, options.bar)))
         for done in workers.done():
             chart = done.key
             results.append(done.result or Measured(chart.path, chart.index, chart.label, error=str(done.error)))
@@ -104,6 +104,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=6)
     parser.add_argument("--jobs", type=int, default=default_jobs())
     parser.add_argument("--preset", default="itg")
+    parser.add_argument("--bar", action="store_true", help="she holds the bar")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "motion-report")
     return parser.parse_args()
 
@@ -153,7 +154,7 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
     return out
 
 
-def measure(_: Any, wanted: Wanted, preset: str) -> Measured:
+def measure(_: Any, wanted: Wanted, preset: str, bar: bool) -> Measured:
     """Bake one chart and report on it; runs in a worker process."""
     from dancetutor_cli.bake import mines_of, report
     from dancetutor_cli.commands.animate import as_json
@@ -161,7 +162,7 @@ def measure(_: Any, wanted: Wanted, preset: str) -> Measured:
     from dancetutor_cli.jobs.selection import Selection
 
     started = time.monotonic()
-    task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset)
+    task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset, bar=bar)
     asked = ask(task)
     stepped = asked.play.rows.second[(asked.play.limb >= 0).any(axis=1)]
     found = as_json(report(bake_asked(asked, task), mines_of(asked.play, asked.pad)))

@@ -169,12 +169,13 @@ def _carry(own: Skeleton, before: Array, after: Array, moved: tuple[int, int]) -
 
 
 def _hand_weight(motion: Motion, limb: int) -> Array:
-    """1 while the hand presses a panel, easing in and out over `HAND_BLEND`; (f,)."""
+    """1 while the hand presses a panel or holds the bar, easing in and out over `HAND_BLEND`; (f,)."""
     out = np.zeros(len(motion.times))
-    for contact in motion.contacts:
-        if contact.limb == limb:
-            early = np.clip(1 - (contact.start - motion.times) / HAND_BLEND, 0, 1)
-            late = np.clip(1 - (motion.times - contact.end) / HAND_BLEND, 0, 1)
-            t = np.minimum(early, late)
-            out = np.maximum(out, t * t * (3 - 2 * t))
+    spans = [(c.start, c.end) for c in motion.contacts if c.limb == limb]
+    spans += [(g.start, g.end) for g in motion.grips if g.side == limb - _LEFT_HAND]
+    for start, end in spans:
+        early = np.clip(1 - (start - motion.times) / HAND_BLEND, 0, 1)
+        late = np.clip(1 - (motion.times - end) / HAND_BLEND, 0, 1)
+        t = np.minimum(early, late)
+        out = np.maximum(out, t * t * (3 - 2 * t))
     return out

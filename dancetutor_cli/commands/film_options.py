@@ -47,6 +47,7 @@ _OPTIONS = (
         "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."
     ),
     character_option,
+    click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -135,6 +136,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         practice=_practice(options, layout),
         play=options["play"],
         character=check_character(options["character"]),
+        bar=options["bar"],
     )
 
 

@@ -12,6 +12,7 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
                    "panel": [..]}]}
 
 `from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, gallop, evade, pivot or press.
+With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
 A reader must survive added keys.
 """
 
@@ -23,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.files import write_atomic
+from dancetutor_cli.motion.model import Bar, Grip
 from dancetutor_cli.motion.track import FootTrack, Plan
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
@@ -49,6 +51,7 @@ def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> 
         }
         for p in plan.presses
     ]
+    moves += [_grip(plan.bar, grip) for grip in plan.grips if plan.bar is not None]
     moves.sort(key=lambda m: (m["start"], m["limb"]))
     return {
         "schema": SCHEMA,
@@ -77,6 +80,17 @@ def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> 
             for c in plan.contacts
             if start <= c.start <= end
         ],
+    }
+
+
+def _grip(bar: Bar, grip: Grip) -> dict[str, Any]:
+    return {
+        "limb": ("left_hand", "right_hand")[grip.side],
+        "kind": "hold",
+        "start": _round(grip.start),
+        "end": _round(grip.end),
+        "to": _place((grip.x, bar.behind)),
+        "height": _round(bar.height),
     }
 
 

@@ -18,6 +18,9 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | contact_kind | (c,) int8 | 1 tap, 2 lift, 3 hold, 4 roll head, 5 tap of a roll |
 | contact_part | (c,) int8 | 0 whole foot, 1 heel, 2 toe |
 | contact_panel | (c, 2) | (x, z) of the panel's centre in the world |
+| bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
+| bar_spans | (k, 2) | x from and to of its pieces |
+| grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
 
 A reader must survive added arrays.
 """
@@ -33,12 +36,13 @@ import numpy as np
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
-from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.model import Bar, Contact, Grip, Motion
 from dancetutor_cli.rig.skeleton import Skeleton
 
 SCHEMA = 1
 _ARRAYS = ("schema", "names", "parents", "offsets", "fps", "times", "rotations", "root")
 _CONTACTS = ("start", "end", "limb", "column", "kind", "part", "row", "panel")
+_GRIPS = {"start": "f8", "end": "f8", "side": "i1", "x": "f8"}
 _CONTACT_TYPES = {"limb": "i1", "kind": "i1", "part": "i1", "column": "i4", "row": "i4"}
 
 
@@ -57,7 +61,29 @@ def write_npz(path: Path, motion: Motion) -> None:
     for name in _CONTACTS:
         values = np.array([getattr(c, name) for c in motion.contacts], dtype=_CONTACT_TYPES.get(name, "f8"))
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
+    if motion.bar is not None:
+        arrays |= _bar_arrays(motion.bar, motion.grips)
     write_atomic(path, _zipped(arrays))
+
+
+def _bar_arrays(bar: Bar, grips: tuple[Grip, ...]) -> dict[str, Any]:
+    out: dict[str, Any] = {
+        "bar": np.array([bar.height, bar.behind, bar.radius]),
+        "bar_spans": np.array(bar.spans, dtype=np.float64).reshape(-1, 2),
+    }
+    for name, kind in _GRIPS.items():
+        out[f"grip_{name}"] = np.array([getattr(g, name) for g in grips], dtype=kind)
+    return out
+
+
+def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
+    if "bar" not in arrays or "bar_spans" not in arrays:
+        return None, ()
+    height, behind, radius = (float(v) for v in arrays["bar"])
+    spans = tuple((float(low), float(high)) for low, high in arrays["bar_spans"])
+    columns = [arrays.get(f"grip_{name}", np.zeros(0)) for name in _GRIPS]
+    grips = tuple(Grip(float(a), float(b), int(side), float(x)) for a, b, side, x in zip(*columns, strict=True))
+    return Bar(height, behind, radius, spans), grips
 
 
 def read_npz(path: Path) -> Motion:
@@ -85,7 +111,7 @@ def read_npz(path: Path) -> Motion:
         for i in range(len(arrays["contact_start"]))
     ]
     fps, times = float(arrays["fps"]), arrays["times"]
-    return Motion(skeleton, fps, times, arrays["rotations"], arrays["root"], tuple(contacts))
+    return Motion(skeleton, fps, times, arrays["rotations"], arrays["root"], tuple(contacts), *_bar(arrays))
 
 
 def _zipped(arrays: dict[str, Any]) -> bytes:

@@ -25,6 +25,7 @@ class BakeTask:
 
     preset : of the solver; play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
+    bar : she holds the bar behind the pad
     """
 
     path: Path
@@ -34,6 +35,7 @@ class BakeTask:
     section: str | None = None
     rate: float = 1.0
     play_file: Path | None = None
+    bar: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,14 +76,16 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
     """The motion; times are seconds of the music as it is played, at the task's rate."""
     from dancetutor_cli.bake import bake
 
-    return bake(asked.chart, asked.play, asked.pad, fps=task.fps, section=asked.section, rate=task.rate)
+    return bake(
+        asked.chart, asked.play, asked.pad, fps=task.fps, section=asked.section, rate=task.rate, bar=task.bar
+    )
 
 
 def plan_asked(asked: Asked, task: BakeTask) -> Plan:
     """Only the moves."""
     from dancetutor_cli.bake import plan_of
 
-    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate)
+    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate, bar=task.bar)
 
 
 def _play(task: BakeTask, song: Song, chart: Chart) -> tuple[Play, Pad]:

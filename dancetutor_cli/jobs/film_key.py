@@ -19,7 +19,16 @@ _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")
 def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
     """Hash (hex) of the chart file, which chart, the music, what is wanted of the film, and this program."""
     out = hashlib.sha256()
-    wanted = (request.look, request.fps, request.preset, request.section, request.sync, request.mute, request.practice)
+    wanted = (
+        request.look,
+        request.fps,
+        request.preset,
+        request.section,
+        request.sync,
+        request.mute,
+        request.practice,
+        request.bar,
+    )
     parts = (
         program_hash().encode(),
         subject.song.data,

@@ -45,6 +45,7 @@ class Request:
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
+    bar : she holds the bar behind the pad
     sync : seconds by which the music plays late against the notes
     """
 
@@ -59,6 +60,7 @@ class Request:
     practice: Practice = Practice()
     play: Path | None = None
     character: str = "dancer"
+    bar: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,9 +50,9 @@ def arm_targets(
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
     pinned = np.zeros((len(at), 2))
     if plan.bar is not None:
-        backward = [palm_down(skeleton, side, fingers) for side, fingers in enumerate(BACKWARD)]
+        down = [palm_down(skeleton, side, fingers) for side, fingers in enumerate(BACKWARD)]
         palms = [point.offset for point in palm_points(skeleton)]
-        hold(plan, at, (palms[0], palms[1]), (backward[0], backward[1]), wrists, turn, pinned, elbows, shoulders, settings)
+        hold(plan, at, palms, down, wrists, turn, pinned, elbows, shoulders, settings)
     for press in plan.presses:
         _press(press, at, wrists, turn, pinned, elbows, shoulders, skeleton, settings)
     return HandTargets(wrists, turn, pinned, elbows)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -175,7 +175,7 @@ def kept_back(path: Array, share: Array, bar: Bar, settings: BarSettings) -> Arr
 
 
 def hold(
-    plan: Plan, at: Array, palms: tuple[Array, Array], down: tuple[Array, Array], wrists: Array, turn: Array,
+    plan: Plan, at: Array, palms: Sequence[Array], down: Sequence[Array], wrists: Array, turn: Array,
     pinned: Array, elbows: Array, shoulders: Array, settings: MotionSettings,
 ) -> None:  # fmt: skip
     """Lead hands to the bar: change wrists (f, 2, 3), turn (f, 2, 4), pinned (f, 2) and elbows (f, 2, 3) in place.

@@ -15,6 +15,8 @@ from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.camera import WHOLE, Region
 from dancetutor_cli.video.diagram import Foot
 from dancetutor_cli.video.follow import Follow, is_wide
+from dancetutor_cli.video.look import default_look
+from dancetutor_cli.video.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.video.scene import FootMark, FrameState, Scene, foot_marks
 from dancetutor_cli.video.stage import PANEL
 
@@ -47,7 +49,8 @@ class Dancer:
         stands: bool = False,
     ) -> None:
         self.motion, self.lights = motion, lights
-        self.scene = Scene(character or load_dancer(), pad)
+        floor = -default_look().stage.pad_height
+        self.scene = Scene(with_bar(character or load_dancer(), motion.bar, floor), pad)
         self.camera: Camera = self.scene.camera(camera, size, region)
         self._follow = None if stands else self._follower(camera, size, region)
         self.renderer = renderer.create(self.scene, size, quality, kind)
@@ -107,7 +110,10 @@ class Dancer:
         rotations = np.zeros((len(seconds), len(skeleton.names), 4))
         rotations[..., 0] = 1.0
         rotations[:, self._ours] = sampled[:, self._theirs]
-        return joint_matrices(skeleton, rotations, root)
+        out = joint_matrices(skeleton, rotations, root)
+        if self.motion.bar is not None:
+            out[:, skeleton.index(JOINT)] = bar_matrix(self.motion.bar)
+        return out
 
     def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         levels = [self.lights.at(column, second) for column in range(self.scene.panels)]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.balance import balance_figures
+from dancetutor_cli.bake.quality.bar import bar_figures
 from dancetutor_cli.bake.quality.body import Body, body_of
 from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
@@ -37,10 +38,11 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
     shape, shape_notes = shape_figures(body, motion.skeleton)
     figures = (
         *contacts,
+        *bar_figures(motion),
         *ground,
         *flight_figures(body),
         *smoothness_figures(body, motion.skeleton),
-        *balance_figures(body),
+        *balance_figures(body, motion.bar is not None),
         *shape,
     )
     return Report(figures, errors, (*notes, *shape_notes), _curves(motion, body, errors))

@@ -1,0 +1,99 @@
+"""Hands on the bar: the palms lie on the rail, a hand that a panel needs leaves it and comes back, files say so."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bake_plays import RH, L, R, chart, pad, play, stream
+
+from dancetutor_cli.bake import bake, report
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.formats.glb import write_glb
+from dancetutor_cli.formats.npz import read_npz, write_npz
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.soles import palm_points, points_in_world
+
+PLAY = [*stream(2.0, 16, 0.25), (7.0, {0: L, 3: R, 2: RH}), (8.5, {0: L}), *stream(9.0, 24, 0.2)]
+
+
+@pytest.fixture(scope="module")
+def held() -> Motion:
+    return bake(chart(), play(PLAY), pad(), bar=True)
+
+
+def palm(motion: Motion, side: int, times: np.ndarray) -> np.ndarray:
+    return points_in_world(motion.skeleton, (palm_points(motion.skeleton)[side],), *sample(motion, times))[:, 0]
+
+
+def test_palms_lie_on_the_rail(held: Motion) -> None:
+    """By the definition of a rail: all points a radius from its middle line."""
+    assert held.bar is not None and len(held.grips) >= 4
+    for grip in held.grips:
+        at = palm(held, grip.side, np.linspace(grip.start, grip.end, 50))
+        away = np.hypot(at[:, 1] - held.bar.height, at[:, 2] - held.bar.behind)
+        assert np.abs(away - held.bar.radius).max() < 5e-4
+        assert np.abs(at[:, 0] - grip.x).max() < 5e-4
+
+
+def test_hands_hold_it_most_of_the_time(held: Motion) -> None:
+    for side in (0, 1):
+        assert sum(g.end - g.start for g in held.grips if g.side == side) > 0.55 * np.ptp(held.times)
+
+
+def test_a_hand_goes_to_its_panel_and_comes_back(held: Motion) -> None:
+    press = next(c for c in held.contacts if c.limb == RH)
+    assert all(g.end < press.start or g.start > press.start for g in held.grips)
+    assert any(g.side == 1 and g.end < press.start for g in held.grips)
+    assert any(g.side == 1 and g.start > press.start for g in held.grips)
+    assert abs(palm(held, 1, np.array([press.start]))[0, 1]) < 2e-4
+
+
+def test_goals_hold_but_balance_has_none() -> None:
+    measured = report(bake(chart(), play([e for e in PLAY if len(e[1]) == 1]), pad(), bar=True))
+    assert [f for f in measured.figures if f.met is False] == []
+    assert measured["balance"].goal is None and measured["palm off the bar"].met
+
+
+def test_the_report_sees_a_palm_off_the_bar(held: Motion) -> None:
+    assert report(replace(held, root=held.root + np.array([0.0, 0.01, 0.0])))["palm off the bar"].value > 5.0
+
+
+def test_she_leans_back(held: Motion) -> None:
+    free = bake(chart(), play(PLAY), pad())
+    head = held.skeleton.index("skullbase")
+    at = np.arange(2.0, 5.0, 0.1)
+
+    def ahead(motion: Motion) -> float:
+        positions, _ = world_transforms(motion.skeleton, *sample(motion, at))
+        return float((positions[:, head, 2] - positions[:, 0, 2]).mean())
+
+    assert ahead(held) < ahead(free) - 0.05
+    assert free.bar is None and free.grips == ()
+
+
+def test_doubles_have_two_bars() -> None:
+    events = [(1.0 + 0.3 * k, {k: (L, R)[k % 2]}) for k in range(8)]
+    motion = bake(chart(), play(events, double=True), pad(double=True), bar=True)
+    assert motion.bar is not None and len(motion.bar.spans) == 2
+    (left, right) = sorted(motion.bar.spans)
+    assert left[0] + right[1] == pytest.approx(0.0) and left[1] < 0 < right[0]
+    for grip in motion.grips:
+        assert any(low < grip.x < high for low, high in motion.bar.spans)
+
+
+def test_files_hold_the_bar(held: Motion, tmp_path: Path) -> None:
+    write_npz(tmp_path / "a.npz", held)
+    back = read_npz(tmp_path / "a.npz")
+    assert back.bar == held.bar and back.grips == held.grips
+    write_glb(tmp_path / "a.glb", load_dancer(), held)
+    data = (tmp_path / "a.glb").read_bytes()
+    (length,) = struct.unpack_from("<I", data, 12)
+    extras = json.loads(data[20 : 20 + length])["animations"][0]["extras"]
+    assert extras["bar"]["height"] == held.bar.height and len(extras["bar"]["grips"]) == len(held.grips)  # type: ignore[union-attr]
