@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import json
 import struct
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -198,8 +199,12 @@ class _Writer:
         root = np.asarray(motion.root[keep], dtype="<f4")
         channel(0, "translation", root, bool(np.ptp(root, axis=0).max() > _SETTLED))
         animation: dict[str, Any] = {"name": "dance", "samplers": samplers, "channels": channels}
-        if start < 0:
-            animation["extras"] = {"start_second": start}
+        extras: dict[str, Any] = {} if start == 0 else {"start_second": start}
+        if motion.bar is not None:
+            bar, grips = asdict(motion.bar), [asdict(grip) for grip in motion.grips]
+            extras["bar"] = {**bar, "grips": grips}
+        if extras:
+            animation["extras"] = extras
         self.doc["animations"] = [animation]
 
 
