@@ -17,8 +17,9 @@ from dancetutor_cli.reports.sheet.style import LETTERS, Style
 from dancetutor_cli.reports.sheet.svg import number, tag, text, title
 from dancetutor_cli.reports.text import clock
 
+HOLD_OPACITY = 0.55
 _HEADS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
-_FEET_SPACING = 20.0  # diagrams of feet nearer than this would overlap
+_FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def _measure(sheet: Sheet, measure: int) -> str:
     for lane in range(layout.lanes + 1):
         x = left + lane * style.lane
         parts.append(_line(x, top, x, top + height, style.colours["line"], 0.5))
-    ends = (top, top + height) if measure % layout.per_column == layout.per_column - 1 else (top,)
+    ends = (top, top + height) if measure == layout.column_of(measure)[-1] else (top,)
     parts += [_line(left, y, left + width, y, style.colours["measure_line"], 1.2) for y in ends]
     second = float(sheet.subject.chart.timing.seconds(np.array([measure * TICKS_PER_MEASURE]))[0])
     parts.append(text(str(measure), left - 5, top + 4, "number", text_anchor="end"))
@@ -86,22 +87,24 @@ def _line(x1: float, y1: float, x2: float, y2: float, colour: str, width: float)
 def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
     """Bodies of holds and rolls, cut where a column of measures ends."""
     layout, style, notes = sheet.layout, sheet.style, sheet.subject.chart.notes
-    span = layout.per_column * TICKS_PER_MEASURE
     at = np.flatnonzero((notes.end > ticks.start) & (notes.tick < ticks.stop))
     for n in at.tolist():
         start, end, lane = int(notes.tick[n]), int(notes.end[n]), int(notes.column[n])
         colour = style.colours["roll" if notes.kind[n] == Kind.ROLL else "hold"]
         first = max(start, ticks.start)
         while first < min(end, ticks.stop):
-            last = min((first // span + 1) * span, end, ticks.stop)
+            last = min(layout.column_of(first // TICKS_PER_MEASURE).stop * TICKS_PER_MEASURE, end, ticks.stop)
             x, y = layout.x(first, lane) - style.arrow * 0.27, layout.y(first)
             height = (last - first) / TICKS_PER_BEAT * layout.beat
-            yield tag("rect", x=x, y=y, width=style.arrow * 0.54, height=height, rx=3, fill=colour, fill_opacity=0.55)
+            yield tag(
+                "rect", x=x, y=y, width=style.arrow * 0.54, height=height, rx=3, fill=colour, fill_opacity=HOLD_OPACITY
+            )
             first = last
 
 
 def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
-    notes = sheet.subject.chart.notes
+    """Arrows and mines, and then the letters: no arrow hides the letter of another one."""
+    notes, marks = sheet.subject.chart.notes, []
     at = np.flatnonzero((notes.tick >= ticks.start) & (notes.tick < ticks.stop))
     for n in at.tolist():
         tick, lane, kind = int(notes.tick[n]), int(notes.column[n]), int(notes.kind[n])
@@ -113,7 +116,8 @@ def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
         elif kind in _HEADS:
             yield _arrow(sheet, lane, x, y, sheet.style.note_colour(tick), lift=kind == Kind.LIFT)
             if (tick, lane) in sheet.limbs:
-                yield _mark(sheet.style, x, y, *sheet.limbs[tick, lane])
+                marks.append(mark(sheet.style, x, y, *sheet.limbs[tick, lane]))
+    yield from marks
 
 
 def _arrow(sheet: Sheet, lane: int, x: float, y: float, colour: str, opacity: float = 1.0, lift: bool = False) -> str:
@@ -134,7 +138,7 @@ def _mine(style: Style, x: float, y: float) -> str:
     return tag("circle", cx=x, cy=y, r=r, fill=style.colours["mine"]) + tag("path", d=cross, class_="cross")
 
 
-def _mark(style: Style, x: float, y: float, limb: int, part: int) -> str:
+def mark(style: Style, x: float, y: float, limb: int, part: int) -> str:
     """L in a disc, R in a square, hands in a lozenge: told apart without colours. Toes in small letters."""
     half, colour = style.mark / 2, style.limbs[limb] if limb >= 0 else style.colours["mine"]
     letter = LETTERS[limb] if limb >= 0 else "?"
@@ -149,7 +153,7 @@ def _mark(style: Style, x: float, y: float, limb: int, part: int) -> str:
         points = f"{number(x)},{number(y - half - 1)} {number(x + half + 1)},{number(y)} "
         points += f"{number(x)},{number(y + half + 1)} {number(x - half - 1)},{number(y)}"
         shape = tag("polygon", points=points, fill=colour, stroke=ink, stroke_width=0.6)
-    return shape + text(letter, x, y + 2.9, "mark", text_anchor="middle")
+    return shape + text(letter, x, y + 3.1, "mark", text_anchor="middle")
 
 
 def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -163,7 +167,7 @@ def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
         tick = int(play.rows.tick[row])
         if tick not in ticks:
             continue
-        x = sheet.layout.left(tick // TICKS_PER_MEASURE) + sheet.layout.lanes * sheet.style.lane + 13
+        x = sheet.layout.left(tick // TICKS_PER_MEASURE) + sheet.layout.lanes * sheet.style.lane + 17
         y = sheet.layout.y(tick)
         if last[0] == x and y - last[1] < _FEET_SPACING:
             continue
@@ -176,17 +180,18 @@ def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) 
     pad, style = sheet.subject.pad, sheet.style
     assert pad is not None
     middle = pad.panels[list(feet)].mean(axis=0)
-    near = [panel for panel in pad.panels if np.abs(panel - middle).max() <= 2.01]
-    scale = 5.5
+    near = [panel for panel in pad.panels if np.abs(panel - middle).max() <= 1.6]
+    near += [pad.panels[column] for column in feet if np.abs(pad.panels[column] - middle).max() > 1.6]
+    scale = 7.5
     parts = []
     for panel in near:
         px, py = x + (panel[0] - middle[0]) * scale, y - (panel[1] - middle[1]) * scale
-        parts.append(tag("rect", x=px - 2.5, y=py - 2.5, width=5, height=5, class_="panel"))
+        parts.append(tag("rect", x=px - 3.4, y=py - 3.4, width=6.8, height=6.8, rx=1, class_="panel"))
     for limb, column in enumerate(feet):
         px, py = x + (pad.panels[column][0] - middle[0]) * scale, y - (pad.panels[column][1] - middle[1]) * scale
         turn = f"rotate({number(-facing)} {number(px)} {number(py)})"
         parts.append(
-            tag("ellipse", cx=px, cy=py, rx=1.7, ry=3.4, fill=style.limbs[limb], class_="sole", transform=turn)
+            tag("ellipse", cx=px, cy=py, rx=2.4, ry=4.6, fill=style.limbs[limb], class_="sole", transform=turn)
         )
     return tag("g", title(f"crossed: facing {facing:g} degrees") + "".join(parts))
 
@@ -204,10 +209,10 @@ def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
         column = left
         for finding in sorted(found, key=lambda f: ("error", "warning", "info").index(f.severity)):
             colour = sheet.style.colours[finding.severity]
-            label = y if bottom[0] != column else max(y, bottom[1] + 8)
+            label = y if bottom[0] != column else max(y, bottom[1] + 9)
             bottom = (column, label)
             line = tag("path", d=f"M{number(left - 3)},{number(y)} H{number(right + 2)}", stroke=colour, class_="flag")
-            lead = tag("path", d=f"M{number(right + 26)},{number(y)} L{number(right + 29)},{number(label)}",
+            lead = tag("path", d=f"M{number(right + 31)},{number(y)} L{number(right + 33)},{number(label)}",
                        stroke=colour, class_="flag")  # fmt: skip
-            code = text(finding.rule, right + 30, label + 2.5, "code", style=f"fill:{colour}")
+            code = text(finding.rule, right + 34, label + 2.5, "code", style=f"fill:{colour}")
             yield tag("g", title(f"{finding.rule} {finding.message}") + line + lead + code)

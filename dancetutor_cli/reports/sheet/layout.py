@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,27 +15,30 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.reports.sheet.style import Style
 
 _COMMON_SHARE = 0.1  # a rhythm is common if at least this share of the distances between rows is as short
-_TOP = 10.0  # above the first measure of a column, for half an arrow
+_SHRUNK = 0.9  # a beat may be as much lower than the rhythm needs, so that one more measure fits the page
+_EDGE = 12.0  # beside the outermost columns
+_TOP = 18.0  # above the first measure of a column and below its last, for half an arrow
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Places in CSS pixels. A column has `per_column` measures, a system `columns` columns.
+    """Places in CSS pixels: measures in columns, columns in systems, each system a page when printed.
 
-    beat : height of a beat; column_width : with margin and gutter
+    beat : height of a beat; columns : side by side in a system
+    heights : for each system, how many measures its columns have
     """
 
     style: Style
     lanes: int
     measures: int
     beat: float
-    per_column: int
     columns: int
+    heights: tuple[int, ...]
 
     @property
     def column_width(self) -> float:
         """Width of a column with its margin and gutter."""
-        return self.style.margin + self.lanes * self.style.lane + self.style.gutter
+        return (self.style.page_width - 2 * _EDGE) / self.columns
 
     @property
     def measure_height(self) -> float:
@@ -42,26 +48,37 @@ class Layout:
     @property
     def systems(self) -> int:
         """How many systems the chart needs."""
-        return math.ceil(self.measures / (self.per_column * self.columns))
+        return len(self.heights)
 
-    @property
-    def system_height(self) -> float:
+    def system_height(self, system: int) -> float:
         """Height of a system."""
-        return self.per_column * self.measure_height + 2 * _TOP
+        return self.heights[system] * self.measure_height + 2 * _TOP
 
     def measures_of(self, system: int) -> range:
         """Measures of a system."""
-        size = self.per_column * self.columns
-        return range(system * size, min((system + 1) * size, self.measures))
+        before = sum(self.heights[:system]) * self.columns
+        return range(before, min(before + self.heights[system] * self.columns, self.measures))
+
+    def column_of(self, measure: int) -> range:
+        """Measures of the column that a measure stands in."""
+        system = self._system_of(measure)
+        here, height = self.measures_of(system), self.heights[system]
+        start = here.start + (measure - here.start) // height * height
+        return range(start, min(start + height, here.stop))
 
     def left(self, measure: int) -> float:
         """x of the first lane of a measure, inside its system."""
-        column = measure // self.per_column % self.columns
-        return column * self.column_width + self.style.margin
+        system = self._system_of(measure)
+        column = (measure - self.measures_of(system).start) // self.heights[system]
+        return _EDGE + column * self.column_width + self.style.margin
 
     def top(self, measure: int) -> float:
         """y of the start of a measure, inside its system."""
-        return _TOP + measure % self.per_column * self.measure_height
+        return _TOP + (measure - self.column_of(measure).start) * self.measure_height
+
+    def _system_of(self, measure: int) -> int:
+        starts = [0, *accumulate(height * self.columns for height in self.heights[:-1])]
+        return bisect_right(starts, measure) - 1
 
     def x(self, tick: int, lane: int) -> float:
         """Middle of a lane at a tick."""
@@ -83,7 +100,18 @@ def lay_out(ticks: NDArray[np.int64], lanes: int, style: Style, last: int = 0) -
     gap = float(np.quantile(gaps, _COMMON_SHARE)) if len(gaps) else TICKS_PER_BEAT
     low, high = style.beat
     beat = min(max(style.row_spacing * TICKS_PER_BEAT / gap, low), high)
-    per_column = max(1, int(style.columns_height // (beat * 4)))
-    width = style.margin + lanes * style.lane + style.gutter
-    columns = max(1, int(style.page_width // width))
-    return Layout(style, lanes, measures, beat, per_column, columns)
+    room = style.page_height - 2 * _TOP
+    tallest = max(1, int(room // (beat * 4 * _SHRUNK)))
+    beat = min(room / tallest / 4, high)  # whole measures fill the page
+    first = max(1, int((room - style.heading) // (beat * 4)))
+    columns = max(1, int((style.page_width - 2 * _EDGE) // (style.margin + lanes * style.lane + style.gutter)))
+    return Layout(style, lanes, measures, beat, columns, tuple(_heights(measures, columns, first, tallest)))
+
+
+def _heights(measures: int, columns: int, first: int, tallest: int) -> Iterator[int]:
+    """Measures in the columns of each system; the last one has no more than it needs to fill its columns."""
+    most = first
+    while measures > most * columns:
+        yield most
+        measures, most = measures - most * columns, tallest
+    yield max(1, math.ceil(measures / columns))

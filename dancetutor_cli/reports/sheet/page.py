@@ -8,18 +8,19 @@ from html import escape
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.safe import safe
-from dancetutor_cli.reports.sheet.draw import Sheet, definitions, system
+from dancetutor_cli.reports.sheet.draw import HOLD_OPACITY, Sheet, definitions, mark, system
 from dancetutor_cli.reports.sheet.layout import lay_out
 from dancetutor_cli.reports.sheet.style import Style, sheet_style
 from dancetutor_cli.reports.sheet.svg import tag, text, title
 from dancetutor_cli.reports.text import clock, moment
 
-_HEADING = 64.0
-_GAP = 26.0
+_LEFT = 12.0
+_FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are
+_GAP = 22.0
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -42,15 +43,12 @@ def make_sheet(subject: ChartSubject, findings: Sequence[Finding]) -> Sheet:
 def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
     """The sheet as one picture. `facts` : lines about the chart, printed under its name."""
     style, layout = sheet.style, sheet.layout
-    width = _width(sheet)
-    y = _HEADING + 14 * len(facts)
-    parts = [_heading(sheet, facts), tag("g", _density(sheet, width), transform=f"translate(0 {y:g})")]
-    y += style.density + _GAP
+    y = _heading_height(sheet, facts)
+    parts = [_heading(sheet, facts)]
     for which in range(layout.systems):
-        parts.append(tag("g", system(sheet, which), transform=f"translate(12 {y:g})"))
-        y += layout.system_height + _GAP
-    parts.append(tag("g", _legend(style), transform=f"translate(12 {y:g})"))
-    return _svg(style, "\n".join(parts), width, y + 26, outer=True)
+        parts.append(tag("g", system(sheet, which), transform=f"translate(0 {y:g})"))
+        y += layout.system_height(which) + _GAP
+    return _svg(style, "\n".join(parts), y, outer=True)
 
 
 def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
@@ -67,65 +65,75 @@ def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
 
 
 def _article(sheet: Sheet, facts: Sequence[str]) -> str:
-    style, layout, width = sheet.style, sheet.layout, _width(sheet)
-    top = _HEADING + 14 * len(facts)
-    head = _heading(sheet, facts) + tag("g", _density(sheet, width), transform=f"translate(0 {top:g})")
-    pictures = [_svg(style, head, width, top + style.density + 8)]
-    for which in range(layout.systems):
-        inside = tag("g", system(sheet, which), transform="translate(12 0)")
-        pictures.append(_svg(style, inside, width, layout.system_height))
-    pictures.append(_svg(style, tag("g", _legend(style), transform="translate(12 4)"), width, 26))
+    style, layout = sheet.style, sheet.layout
+    pictures = [_svg(style, _heading(sheet, facts), _heading_height(sheet, facts))]
+    pictures += [_svg(style, system(sheet, n), layout.system_height(n)) for n in range(layout.systems)]
     figures = "\n".join(f"<figure>{picture}</figure>" for picture in pictures)
     return f"<article>\n{figures}\n{_list(sheet.findings)}</article>"
 
 
-def _width(sheet: Sheet) -> float:
-    columns = min(sheet.layout.columns, math.ceil(sheet.layout.measures / sheet.layout.per_column))
-    return max(24 + columns * sheet.layout.column_width, 900.0)
+def _heading_height(sheet: Sheet, facts: Sequence[str]) -> float:
+    return _FACTS + _FACT * len(facts) + 24 + sheet.style.density + 10
 
 
 def _heading(sheet: Sheet, facts: Sequence[str]) -> str:
+    """Title, facts, legend and density strip."""
     song, chart = sheet.subject.song, sheet.subject.chart
     by = " · ".join(part for part in (song.artist, chart.label, chart.description) if part.strip())
-    parts = [text(song.title or song.path.name, 12, 30, "title"), text(by, 12, 50, "subtitle")]
-    parts += [text(line, 12, 67 + 14 * n, "fact") for n, line in enumerate(facts)]
+    parts = [text(song.title or song.path.name, _LEFT, 30, "title"), text(by, _LEFT, 50, "subtitle")]
+    parts += [text(line, _LEFT, _FACTS + _FACT * n, "fact") for n, line in enumerate(facts)]
+    y = _FACTS + _FACT * len(facts)
+    parts.append(tag("g", _legend(sheet), transform=f"translate({_LEFT:g} {y - 4:g})"))
+    parts.append(tag("g", _density(sheet), transform=f"translate(0 {y + 24:g})"))
     return "".join(parts)
 
 
-def _density(sheet: Sheet, width: float) -> str:
+def _density(sheet: Sheet) -> str:
     """A bar for each measure, as high as it has rows, with the findings as ticks above."""
     style, layout, play = sheet.style, sheet.layout, sheet.subject.play
+    width = style.page_width
     ticks = np.unique(sheet.subject.chart.notes.tick) if play is None else play.rows.tick
     counts = np.bincount(np.maximum(ticks, 0) // (4 * TICKS_PER_BEAT), minlength=layout.measures)
-    step = (width - 24) / layout.measures
+    step = (width - 2 * _LEFT) / layout.measures
     tallest = max(int(counts.max()), 1)
     parts = []
     for measure, count in enumerate(counts.tolist()):
         height = count / tallest * (style.density - 10)
         bar = title(f"measure {measure}: {count} rows")
-        parts.append(tag("rect", bar, x=12 + measure * step, y=style.density - height, width=max(step - 0.6, 0.5),
+        parts.append(tag("rect", bar, x=_LEFT + measure * step, y=style.density - height, width=max(step - 0.6, 0.5),
                          height=height, fill=style.colours["density"]))  # fmt: skip
     for finding in sheet.findings:
         if finding.beat is not None:
-            x = 12 + finding.beat / 4 * step
+            x = _LEFT + finding.beat / 4 * step
             parts.append(tag("rect", x=x, y=0, width=1.4, height=6, fill=style.colours[finding.severity]))
-    parts.append(tag("path", d=f"M12,{style.density:g} H{width - 12:g}", class_="axis"))
+    parts.append(tag("path", d=f"M{_LEFT:g},{style.density:g} H{width - _LEFT:g}", class_="axis"))
     return "".join(parts)
 
 
-def _legend(style: Style) -> str:
+def _legend(sheet: Sheet) -> str:
+    """Colours of the notes, of those grids the chart has, and the limbs as they stand on the arrows."""
+    style, chart = sheet.style, sheet.subject.chart
+    used = {style.note_colour(tick) for tick in np.unique(chart.notes.tick).tolist()}
     parts, x = [], 0.0
     for grid, colour in sorted(style.quantisation.items()):
-        shape = f"translate({x + 6:g} 6) scale({style.arrow:g})"
-        parts.append(tag("use", href="#arrow", transform=shape, fill=colour, stroke_width="0.045", stroke="#1b1e2b"))
-        ending = "nd" if grid % 10 == 2 and grid != 12 else "th"
-        parts.append(text(f"{grid}{ending}", x + 17, 9.5, "fact"))
-        x += 52
-    names = ("L left foot (disc)", "R right foot (square)", "< left hand", "> right hand")
-    for name, colour in zip(names, style.limbs, strict=True):
-        parts.append(tag("rect", x=x, y=1, width=10, height=10, fill=colour, stroke="#1b1e2b", stroke_width=0.6))
-        parts.append(text(name, x + 15, 9.5, "fact"))
-        x += 24 + 5.6 * len(name)
+        if colour in used:
+            shape = f"translate({x + 8:g} 8) scale(15)"
+            parts.append(tag("use", href="#arrow", transform=shape, fill=colour, class_="sample"))
+            parts.append(text(f"{grid}{'nd' if grid % 10 == 2 and grid != 12 else 'th'}", x + 19, 11.5, "fact"))
+            x += 54
+    limbs = {limb for limb, _ in sheet.limbs.values()}
+    names = ("left foot", "right foot", "left hand", "right hand", "no limb left")
+    for limb, name in zip((0, 1, 2, 3, -1), names, strict=True):
+        if limb in limbs or limb in (0, 1):
+            parts.append(mark(style, x + 16, 8, limb, 0) + text(name, x + 27, 11.5, "fact"))
+            x += 40 + 5.4 * len(name)
+    for name, kind, corner in (("hold", Kind.HOLD, 3), ("roll", Kind.ROLL, 3), ("mine", Kind.MINE, 6)):
+        if (chart.notes.kind == kind).any():
+            opacity = 1.0 if kind == Kind.MINE else HOLD_OPACITY
+            parts.append(tag("rect", x=x + 8, y=2, width=12, height=12, rx=corner, fill=style.colours[name],
+                             fill_opacity=opacity, class_="key"))  # fmt: skip
+            parts.append(text(name, x + 25, 11.5, "fact"))
+            x += 36 + 5.4 * len(name)
     return "".join(parts)
 
 
@@ -137,16 +145,18 @@ def _list(findings: Sequence[Finding]) -> str:
         f"<td>{escape(moment(finding).strip())}</td><td>line {finding.line}</td></tr>\n"
         for finding in findings
     )
-    return f"<table>\n{rows}</table>\n"
+    return f"<h2>Findings</h2>\n<table>\n{rows}</table>\n"
 
 
-def _svg(style: Style, inside: str, width: float, height: float, *, outer: bool = False) -> str:
+def _svg(style: Style, inside: str, height: float, *, outer: bool = False) -> str:
+    width = style.page_width
     colours = style.colours
     css = (
         f"text{{font-family:{_FONT};fill:{colours['ink']}}}.title{{font-size:22px;font-weight:700}}"
-        f".subtitle{{font-size:13px}}.fact{{font-size:10px;fill:{colours['faint']}}}"
-        f".number{{font-size:10px;font-weight:600}}.time{{font-size:7px;fill:{colours['faint']}}}"
-        f".mark{{font-size:8px;font-weight:700}}.code{{font-size:7.5px;font-weight:600}}"
+        f".subtitle{{font-size:13px}}.fact{{font-size:10.5px;fill:{colours['faint']}}}"
+        f".number{{font-size:10.5px;font-weight:600}}.time{{font-size:8px;fill:{colours['faint']}}}"
+        f".mark{{font-size:9px;font-weight:700}}.code{{font-size:7.5px;font-weight:600}}"
+        f".sample{{stroke:{colours['ink']};stroke-width:.06}}"
         f".cross{{stroke:{colours['paper']};stroke-width:1.4;fill:none}}"
         f".panel{{fill:{colours['shade']};stroke:{colours['faint']};stroke-width:.4}}"
         f".sole{{stroke:{colours['ink']};stroke-width:.4}}.flag{{stroke-width:1;fill:none;stroke-opacity:.75}}"
@@ -163,14 +173,17 @@ def _page_css(style: Style) -> str:
     severities = "".join(f"tr.{name} td:first-child {{ color: {colours[name]}; }}\n"
                          for name in ("error", "warning", "info"))  # fmt: skip
     return (
-        f"body {{ margin: 16px; background: {colours['paper']}; color: {colours['ink']}; font-family: {_FONT}; }}\n"
-        "figure { margin: 0 0 10px; break-inside: avoid; }\nsvg { max-width: 100%; height: auto; display: block; }\n"
+        f"body {{ margin: 16px auto; padding: 0 16px; max-width: 1500px; background: {colours['paper']}; "
+        f"color: {colours['ink']}; font-family: {_FONT}; }}\n"
+        "figure { margin: 0 0 6px; break-inside: avoid; }\nsvg { width: 100%; height: auto; display: block; }\n"
         "article + article { break-before: page; }\n"
-        "table { border-collapse: collapse; font-size: 12px; margin: 8px 12px 32px; }\n"
-        f"td {{ padding: 2px 14px 2px 0; border-bottom: 1px solid {colours['line']}; }}\n"
+        "h2 { font-size: 15px; margin: 14px 12px 4px; break-after: avoid; }\n"
+        "table { border-collapse: collapse; font-size: 12px; margin: 4px 12px 32px; }\ntr { break-inside: avoid; }\n"
+        f"td {{ padding: 2px 14px 2px 0; border-bottom: 1px solid {colours['line']}; vertical-align: top; }}\n"
         f"td:first-child {{ font-weight: 600; }}\n{severities}"
-        "@page { size: A4 landscape; margin: 10mm; }\n"
-        "@media print { body { margin: 0; -webkit-print-color-adjust: exact; print-color-adjust: exact; } }\n"
+        "@page { size: A4 landscape; margin: 8mm; }\n"
+        "@media print { body { margin: 0; padding: 0; max-width: none; -webkit-print-color-adjust: exact; "
+        "print-color-adjust: exact; } figure { margin: 0; } }\n"
     )
 
 

@@ -26,7 +26,8 @@ class Style:
     """
 
     page_width: float
-    columns_height: float
+    page_height: float
+    heading: float
     lane: float
     arrow: float
     mark: float
