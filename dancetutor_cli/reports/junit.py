@@ -45,12 +45,12 @@ class JunitReport:
         self._stream.write(f'<testsuites name="dancetutor" {sums}>\n{"".join(self._suites)}</testsuites>\n')
 
     def _case(self, path: str, name: str, found: Iterable[Entry], error: str | None = None) -> str:
-        inside = [f"  <error message={quoteattr(safe(error))}/>\n"] if error else []
+        inside = [f'  <error type="unreadable" message={quoteattr(safe(error))}/>\n'] if error else []
         failed = [entry for entry in found if entry.finding.severity != "info"] if not error else []
         if failed:
             first = f"{failed[0].finding.rule} {safe(failed[0].finding.message)}"
             lines = "\n".join(escape(_line(entry)) for entry in failed)
-            inside.append(f"  <failure message={quoteattr(first)}>{lines}</failure>\n")
+            inside.append(f'  <failure type="{failed[0].finding.rule}" message={quoteattr(first)}>{lines}</failure>\n')
         told = [_line(entry) for entry in found if entry.finding.severity == "info"]
         if told:
             text = "\n".join(escape(line) for line in told)

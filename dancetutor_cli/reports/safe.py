@@ -6,7 +6,7 @@ import os
 import re
 
 # Controls (C0, DEL, C1), line and paragraph separators, and what turns the direction of text round.
-_UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff]+")
+_UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff\ufffe\uffff]+")
 
 
 def safe(text: str) -> str:

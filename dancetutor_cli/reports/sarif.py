@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 import dancetutor_cli
 from dancetutor_cli.jobs.result import FileResult
+from dancetutor_cli.lint.configuration import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import FAMILIES, Rule
 from dancetutor_cli.reports.safe import safe
@@ -83,10 +84,13 @@ def uri(path: str) -> str:
 
 def _rule(rule: type[Rule]) -> dict[str, Any]:
     text = inspect.cleandoc(rule.__doc__ or "")
+    severity = default_rules()[rule.code]["severity"]
     return {
         "id": rule.code,
         "name": "".join(word.capitalize() for word in rule.name.split("-")),
         "shortDescription": {"text": text.splitlines()[0]},
         "fullDescription": {"text": text},
+        "help": {"text": text},
+        "defaultConfiguration": {"enabled": severity != "off", "level": _LEVELS.get(severity, "none")},
         "properties": {"tags": [FAMILIES[int(rule.code[2])]]},
     }
