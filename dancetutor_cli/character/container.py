@@ -11,17 +11,22 @@ import binascii
 import io
 import json
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import FileError
 
+if TYPE_CHECKING:
+    from PIL import Image
+
 MAX_FILE = 100_000_000  # bytes; a file of this size or more is refused unread
-MAX_JSON = 32_000_000  # bytes
+MAX_JSON = 16_000_000  # bytes
 MAX_ITEMS = 20_000  # nodes, accessors, buffer views, meshes ...
 MAX_ELEMENTS = 20_000_000  # numbers in one accessor
 MAX_PIXELS = 4096 * 4096  # of one image
@@ -29,9 +34,7 @@ MAX_ALL_PIXELS = 8 * MAX_PIXELS  # of all images of a file
 
 _DTYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-_SUPPORTED = frozenset(
-    ("KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_emissive_strength")
-)
+_SUPPORTED = ("KHR_materials_", "KHR_mesh_quantization", "KHR_texture_transform", "EXT_texture_webp", "VRM")  # starts
 
 
 @dataclass(slots=True)
@@ -89,49 +92,86 @@ class Container:
     def accessor(self, index: object) -> NDArray[Any]:
         """Values of an accessor, (n,) or (n, width); normalised integers come as float64."""
         item = self.item("accessors", index)
-        if "sparse" in item or "bufferView" not in item:
-            raise self.fail("sparse accessors are not supported; export the character without them")
         dtype = np.dtype(_DTYPES.get(self.integer(item.get("componentType"), 0, 2**16, "componentType"), "V1"))
         width = _WIDTHS.get(str(item.get("type")), 0)
         if dtype.kind == "V" or not width:
             raise self.fail(f"accessor {index} has an unknown type; the file is broken")
         count = self.integer(item.get("count"), 1, MAX_ELEMENTS // width, "accessor count")
-        data, stride = self.view(item["bufferView"])
+        if "bufferView" in item:
+            raw = self._array(item, dtype, count, width)
+        elif "sparse" in item:
+            raw = np.zeros((count, width), dtype)
+        else:
+            raise self.fail(f"accessor {index} has no data; export the character without compression")
+        if "sparse" in item:
+            raw = self._with_sparse(item["sparse"], raw)
+        normalized = item.get("normalized") is True and dtype.kind in "iu"
+        values = raw.astype(np.float64) / np.iinfo(dtype).max if normalized else raw
+        if values.dtype.kind == "f" and not np.isfinite(values).all():
+            raise self.fail(f"accessor {index} holds values that are not numbers; the file is broken")
+        if normalized and dtype.kind == "i":
+            values = np.maximum(values, -1.0)
+        return values[:, 0] if width == 1 else values
+
+    def _array(self, item: dict[str, Any], dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
+        """`count` rows of `width` numbers where the item's bufferView and byteOffset say, not copied."""
+        data, stride = self.view(item.get("bufferView"))
         size = dtype.itemsize * width
         stride = stride or size
         offset = self.integer(item.get("byteOffset", 0), 0, len(data), "byteOffset")
         if stride < size or offset + stride * (count - 1) + size > len(data):
-            raise self.fail(f"accessor {index} reaches past its buffer; the file is broken")
-        raw = np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
-        values = raw.astype(np.float64) / np.iinfo(dtype).max if item.get("normalized") and dtype.kind in "iu" else raw
-        if values.dtype.kind == "f" and not np.isfinite(values).all():
-            raise self.fail(f"accessor {index} holds values that are not numbers; the file is broken")
-        if item.get("normalized") and dtype.kind == "i":
-            values = np.maximum(values, -1.0)
-        return values[:, 0] if width == 1 else values
+            raise self.fail("an accessor reaches past its buffer; the file is broken")
+        return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
 
-    def image(self, index: object) -> NDArray[np.uint8]:
-        """Pixels of an image, (h, w, 4) sRGB."""
+    def _with_sparse(self, sparse: object, raw: NDArray[Any]) -> NDArray[Any]:
+        """The rows with those replaced that a sparse accessor names."""
+        sparse = as_dict(sparse)
+        indices, values = as_dict(sparse.get("indices")), as_dict(sparse.get("values"))
+        count = self.integer(sparse.get("count"), 1, len(raw), "count of a sparse accessor")
+        kind = _DTYPES.get(self.integer(indices.get("componentType"), 5121, 5125, "componentType"), "")
+        if not kind.startswith("<u"):
+            raise self.fail("a sparse accessor has an unknown type; the file is broken")
+        rows = self._array(indices, np.dtype(kind), count, 1)[:, 0]
+        if int(rows.max()) >= len(raw):
+            raise self.fail("a sparse accessor's indices point past its rows; the file is broken")
+        out = raw.copy()
+        out[rows] = self._array(values, raw.dtype, count, raw.shape[1])
+        return out
+
+    def image_size(self, index: object) -> tuple[int, int]:
+        """Width and height of an image, from its header."""
+        with self._open(index) as picture:
+            return picture.width, picture.height
+
+    def image(self, index: object, side: int = 4096) -> NDArray[np.uint8]:
+        """Pixels of an image, (h, w, 4) sRGB, reduced until neither side is longer than `side`."""
+        with self._open(index) as picture:
+            pixels = picture.width * picture.height
+            self._pixels += pixels
+            if pixels > MAX_PIXELS or self._pixels > MAX_ALL_PIXELS:
+                raise self.fail(f"a texture of {picture.width} x {picture.height} is too large; use 4096 x 4096")
+            whole = picture.convert("RGBA")
+            factor = -(-max(whole.size) // side)
+            return np.array(whole.reduce(factor) if factor > 1 else whole)
+
+    @contextmanager
+    def _open(self, index: object) -> Iterator[Image.Image]:
         from PIL import Image, UnidentifiedImageError
 
         item = self.item("images", index)
         data = self._uri(item["uri"]) if "uri" in item else self.view(item.get("bufferView"))[0]
         try:
             with Image.open(io.BytesIO(data), formats=("PNG", "JPEG", "WEBP")) as picture:
-                pixels = picture.width * picture.height
-                self._pixels += pixels
-                if pixels > MAX_PIXELS or self._pixels > MAX_ALL_PIXELS:
-                    raise self.fail(f"a texture of {picture.width} x {picture.height} is too large; use 4096 x 4096")
-                return np.array(picture.convert("RGBA"))
+                yield picture
         except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-            raise self.fail(f"texture {index} cannot be read: {' '.join(str(error).split())}") from error
+            raise self.fail(f"texture {index} cannot be read: {' '.join(str(error).split())[:160]}") from error
 
     def _buffer(self, index: object) -> memoryview:
         item = self.item("buffers", index)
         if "uri" in item:
             return memoryview(self._uri(item["uri"]))
         if index != 0:
-            raise self.fail(f"buffer {index} has no data; the file is broken")
+            raise self.fail(f"buffer {index} has no data; export the character without compression")
         return self.binary
 
     def _uri(self, uri: object) -> bytes:
@@ -145,6 +185,11 @@ class Container:
             return base64.b64decode(body, validate=True)
         except binascii.Error as error:
             raise self.fail("a data: URI is not base64; the file is broken") from error
+
+
+def as_dict(value: object) -> dict[str, Any]:
+    """`value` if it is an object of JSON, else an empty one."""
+    return value if isinstance(value, dict) else {}
 
 
 def read_container(path: Path) -> Container:
@@ -203,7 +248,7 @@ def _parse(path: Path, data: memoryview) -> dict[str, Any]:
 def _check_head(container: Container) -> None:
     required = container.document.get("extensionsRequired", [])
     names = [str(name) for name in required] if isinstance(required, list) else []
-    missing = [n for n in names if n not in _SUPPORTED and not n.startswith("VRM")]
+    missing = [n for n in names if not n.startswith(_SUPPORTED)]
     if missing:
         raise container.fail(f"needs {', '.join(missing)[:120]}, not supported here; export it without compression")
     for name in ("buffers", "images"):

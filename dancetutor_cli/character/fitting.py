@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, read_container
 from dancetutor_cli.character.humanoid import find_humanoid
-from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.model import Character, rest_vertices
 from dancetutor_cli.character.nodes import Nodes, read_nodes
 from dancetutor_cli.character.reader import character_with_nodes
+from dancetutor_cli.character.surfaces import drawable
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
@@ -50,7 +51,8 @@ def fit_character(path: Path) -> Character:
     names = {joint_of[node]: joint for node, joint in named.items()}
     character = _rooted(character, names)
     character = _upright(character, path)
-    return _in_rest_pose(character)
+    character = _in_rest_pose(character)
+    return drawable(character, rest_vertices(character))
 
 
 def _held(container: Container, nodes: Nodes, hands: set[int]) -> set[int]:
@@ -117,7 +119,7 @@ def _upright(character: Character, path: Path) -> Character:
         raise FileError(path, "its left and right cannot be told apart; export the character standing upright")
     left /= np.linalg.norm(left)
     turn = np.stack([left, axis, np.cross(left, axis)])
-    vertices = _rest_vertices(character) @ turn.T
+    vertices = rest_vertices(character) @ turn.T
     leg = sum(float(np.linalg.norm(at[f"l_{a}"] - at[f"l_{b}"])) for a, b in (("hip", "knee"), ("knee", "talocrural")))
     height = float(np.ptp(vertices[:, 1]))
     if leg < 1e-6 or height < 1e-6:
@@ -142,17 +144,6 @@ def _ground(character: Character, vertices: Array) -> float:
         low += [float(part[share > 0.5, 1].min())] if (share > 0.5).any() else []
         at += len(share)
     return min(low, default=float(vertices[:, 1].min()))
-
-
-def _rest_vertices(character: Character) -> Array:
-    """All vertices where the rest pose puts them, (v, 3)."""
-    matrices = character.inverse_bind.copy()
-    matrices[:, :3, 3] += character.skeleton.rest
-    out = []
-    for mesh in character.meshes:
-        skin = np.einsum("vk,vkij->vij", mesh.weights.astype(np.float64), matrices[mesh.joints])
-        out.append(np.einsum("vij,vj->vi", skin[:, :3, :3], mesh.positions) + skin[:, :3, 3])
-    return np.concatenate(out)
 
 
 def _with_rest(character: Character, rest: Array, moves: Array) -> Character:
@@ -189,7 +180,7 @@ def _in_rest_pose(character: Character) -> Character:
         moves[j, :3, :3] = quat.to_matrix(turns[j])
         moves[j, :3, 3] = placed[j] - moves[j, :3, :3] @ rest[j]
     posed = _with_rest(character, placed, moves)
-    down = np.array([0.0, _ground(posed, _rest_vertices(posed)), 0.0])
+    down = np.array([0.0, _ground(posed, rest_vertices(posed)), 0.0])
     moves[:, :3, 3] -= down
     return _with_rest(character, placed - down, moves)
 

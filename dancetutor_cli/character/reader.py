@@ -13,12 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.container import Container, read_container
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.container import Container, as_dict, read_container
+from dancetutor_cli.character.materials import Materials
+from dancetutor_cli.character.model import Character, Mesh
 from dancetutor_cli.character.nodes import Nodes, read_nodes
 from dancetutor_cli.rig.skeleton import Skeleton
 
 MAX_JOINTS = 1024
+MAX_SKINNED = 16 * MAX_JOINTS  # joints of all skins together
 MAX_VERTICES = 2_000_000
 MAX_TRIANGLES = 4_000_000
 MAX_PRIMITIVES = 4096
@@ -59,11 +61,14 @@ class _Reader:
         self.container = container
         self.nodes = nodes
         self.meshes: list[Mesh] = []
-        self.images: dict[int, NDArray[np.uint8]] = {}
+        self.materials = Materials(container)
         self.vertices = 0
         self.triangles = 0
         self.primitives = 0
-        self.skins = [self._skin(skin) for skin in container.items("skins")]
+        skins = container.items("skins")
+        if sum(len(joints) for skin in skins if isinstance(joints := skin.get("joints"), list)) > MAX_SKINNED:
+            raise container.fail(f"its skins have more than {MAX_SKINNED} joints; join its meshes")
+        self.skins = [self._skin(skin) for skin in skins]
         self.joint_of = self._joints(keep)
         self.skeleton = self._skeleton()
         self.inverse_bind = np.tile(np.eye(4), (len(self.joint_of), 1, 1))
@@ -86,6 +91,8 @@ class _Reader:
                 index = next((j for other, j in ways if np.allclose(other, matrix, atol=1e-5)), None)
                 if index is None:
                     index = len(rest) + len(extra) if ways else self.joint_of[node]
+                    if len(extra) > 4 * MAX_JOINTS:
+                        raise self.container.fail(f"its skins need more than {4 * MAX_JOINTS} joints; join its meshes")
                     bound = rest[self.joint_of[node]] @ self.nodes.world[node] @ matrix
                     if ways:
                         extra.append((self.joint_of[node], bound))
@@ -100,8 +107,6 @@ class _Reader:
 
     def _add_joints(self, extra: list[tuple[int, NDArray[np.float64]]]) -> None:
         """Joints (parent, inverse bind matrix) at their parents' places."""
-        if len(self.skeleton.names) + len(extra) > 4 * MAX_JOINTS:
-            raise self.container.fail(f"its skins need more than {4 * MAX_JOINTS} joints; join its meshes")
         old = self.skeleton
         names = (*old.names, *(f"{old.names[p]}_skin{k}" for k, (p, _) in enumerate(extra)))
         parents = np.concatenate([old.parents, np.array([p for p, _ in extra], dtype=np.int32)])
@@ -152,6 +157,8 @@ class _Reader:
         primitives = mesh.get("primitives", [])
         if not isinstance(primitives, list):
             raise self.container.fail("a mesh's primitives are not a list; the file is broken")
+        if any("KHR_draco_mesh_compression" in as_dict(as_dict(p).get("extensions")) for p in primitives):
+            raise self.container.fail("its meshes are compressed (Draco), not supported here; export it uncompressed")
         self.primitives += len(primitives)
         if self.primitives > MAX_PRIMITIVES:
             raise self.container.fail(f"has more than {MAX_PRIMITIVES} parts; join its meshes")
@@ -185,10 +192,15 @@ class _Reader:
         if normals is None:
             normals = vertex_normals(positions, triangles)
         length = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        material, uv = self._material(primitive, attributes, count)
-        self.meshes.append(
-            Mesh(name, positions, (normals / length).astype(np.float32), uv, triangles, joints, weights, material)
-        )
+        unit = (normals / length).astype(np.float32)
+
+        def optional(name: str, width: int) -> NDArray[Any] | None:
+            return self._attribute(attributes, name, width, count) if name in attributes else None
+
+        material, uv = self.materials.read(primitive, optional, count)
+        colors = optional("COLOR_0", 3)
+        colors = None if colors is None else np.clip(colors, 0, 1).astype(np.float32)
+        self.meshes.append(Mesh(name, positions, unit, uv, triangles, joints, weights, material, colors))
 
     def _attribute(self, attributes: dict[str, Any], name: str, width: int, count: int | None = None) -> NDArray[Any]:
         values = self.container.accessor(attributes[name])
@@ -237,44 +249,6 @@ class _Reader:
         turned = None if normals is None else normals @ np.linalg.pinv(matrix[:3, :3])
         return placed.astype(np.float32), turned, joint
 
-    def _material(
-        self, primitive: dict[str, Any], attributes: dict[str, Any], count: int
-    ) -> tuple[Material, NDArray[np.float32]]:
-        uv = np.zeros((count, 2), dtype=np.float32)
-        if "material" not in primitive:
-            return Material("plain", (0.8, 0.8, 0.8, 1.0)), uv
-        item = self.container.item("materials", primitive["material"])
-        pbr = item.get("pbrMetallicRoughness", {})
-        pbr = pbr if isinstance(pbr, dict) else {}
-        factor = self.container.numbers(pbr.get("baseColorFactor", [1, 1, 1, 1]), 4, "a material's colour")
-        factor[:3] = srgb_from_linear(np.clip(factor[:3], 0, 1))
-        r, g, b, a = (round(float(x), 6) for x in np.clip(factor, 0, 1))
-        texture = None
-        info = pbr.get("baseColorTexture")
-        if isinstance(info, dict):
-            name = f"TEXCOORD_{info.get('texCoord', 0)}"
-            texture = self._texture(info)
-            if texture is not None and name in attributes:
-                uv = _transformed(self._attribute(attributes, name, 2, count), info)
-        return Material(str(item.get("name", "material"))[:200], (r, g, b, a), texture), uv
-
-    def _texture(self, info: dict[str, Any]) -> NDArray[np.uint8] | None:
-        source = self.container.item("textures", info.get("index")).get("source")
-        if source is None:
-            return None
-        key = self.container.integer(source, 0, len(self.container.items("images")) - 1, "image of a texture")
-        if key not in self.images:
-            self.images[key] = self.container.image(key)
-        return self.images[key]
-
-
-def _transformed(uv: NDArray[Any], info: dict[str, Any]) -> NDArray[np.float32]:
-    """Apply KHR_texture_transform's offset and scale (its rotation is not used by character exporters)."""
-    transform = info.get("extensions", {}).get("KHR_texture_transform", {}) if "extensions" in info else {}
-    scale = np.array(transform.get("scale", [1, 1]), dtype=np.float64)
-    offset = np.array(transform.get("offset", [0, 0]), dtype=np.float64)
-    return np.asarray(uv * scale[:2] + offset[:2], dtype=np.float32)
-
 
 def vertex_normals(positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
     """Area-weighted vertex normals, (v, 3), not unit length."""
@@ -284,13 +258,3 @@ def vertex_normals(positions: NDArray[np.float32], triangles: NDArray[np.int32])
     for k in range(3):
         np.add.at(out, triangles[:, k], face)
     return out
-
-
-def srgb_from_linear(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Linear light 0..1 to sRGB 0..1 (IEC 61966-2-1)."""
-    return np.asarray(np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055))
-
-
-def linear_from_srgb(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """sRGB 0..1 to linear light 0..1 (IEC 61966-2-1)."""
-    return np.asarray(np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4))

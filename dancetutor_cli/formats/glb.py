@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.model import Character, Mesh
-from dancetutor_cli.character.reader import linear_from_srgb, read_character
+from dancetutor_cli.character.reader import read_character
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.model import Motion
 

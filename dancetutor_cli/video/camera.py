@@ -91,7 +91,9 @@ class Camera:
         return out
 
 
-def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE) -> Camera:
+def preset(
+    name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
+) -> Camera:
     """A camera by name that shows the whole dancer, jumping and with her arms up, inside a part of the picture.
 
     Parameters
@@ -99,10 +101,13 @@ def preset(name: str, extent: tuple[Array, Array], size: tuple[int, int], look: 
     name : one of `look.cameras` (back, front, side, three-quarter, top)
     extent : least and greatest corner (3,) of the pad's surface in the world, see `Scene.extent`
     size : (width, height) of the picture; region : left, top, right, bottom of the part she fills, 0..1
+    tall : height of who dances, metres, where it is more than the configured `height` of a camera that shows all of her
     """
     if name not in look.cameras:
         raise UsageError(f"no camera '{name}'; there are: {', '.join(look.cameras)}, or POSITION/TARGET as x,y,z/x,y,z")
     settings = look.cameras[name]
+    if not settings.feet_only:
+        settings = replace(settings, height=max(settings.height, tall))
     box = _box(extent, settings, look.stage.pad_height)
     target = (box.min(0) + box.max(0)) / 2
     azimuth, elevation = math.radians(settings.azimuth), math.radians(settings.elevation)
@@ -140,10 +145,12 @@ def free(
     return camera
 
 
-def parse(text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE) -> Camera:
+def parse(
+    text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
+) -> Camera:
     """A camera from the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
     if "/" not in text and "," not in text:
-        return preset(text, extent, size, look, region)
+        return preset(text, extent, size, look, region, tall)
     parts = text.split("/")
     try:
         numbers = [[float(n) for n in part.split(",")] for part in parts]

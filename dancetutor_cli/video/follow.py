@@ -47,7 +47,7 @@ class Follow:
         middle, half = (low + high) / 2, 1.5 * PANEL
         square = low.copy(), high.copy()
         square[0][0], square[1][0] = middle[0] - half, middle[0] + half
-        camera = preset(name, square, size, look, region)
+        camera = preset(name, square, size, look, region, scene.tall)
         self._start = float(seconds[0])
         count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
         regular = self._start + _STEP * np.arange(count)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.model import Character, rest_vertices
 from dancetutor_cli.colours import LimbColours, limb_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.camera import WHOLE, Camera, Region, parse
@@ -17,6 +17,7 @@ from dancetutor_cli.video.stage import PadLike, Stage, build_stage, pad_extent
 
 Array = NDArray[np.float64]
 FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
+_JUMP = 0.22  # metres above her own height that a camera shows
 SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
 _HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # how far that line reaches beyond ankle and ball, (x, z) at rest
 
@@ -49,7 +50,12 @@ class Scene:
 
     def camera(self, text: str, size: tuple[int, int], region: Region = WHOLE) -> Camera:
         """A camera by name or ``x,y,z/x,y,z`` for a picture of that size; she fills `region` (0..1) of it."""
-        return parse(text, self.extent, size, self.look, region)
+        return parse(text, self.extent, size, self.look, region, self.tall)
+
+    @property
+    def tall(self) -> float:
+        """How much room she needs above the ground, metres: her height, and a jump."""
+        return float(rest_vertices(self.character)[:, 1].max()) + _JUMP
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from glb_edit import edited
 from PIL import Image
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.character import load_character
+from dancetutor_cli.character.container import read_container
+from dancetutor_cli.character.humanoid import find_humanoid
+from dancetutor_cli.character.model import rest_vertices
+from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.jobs.film_key import film_key
 from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.pads import load_pad
 from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.scene import Scene
 
 SONG = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0:\n"
 
@@ -69,6 +77,38 @@ def test_render_draws_who_is_asked_for(shared_data: Path, song: Path, tmp_path: 
         changed = np.abs(pictures[a] - pictures[b]).max(axis=2) > 30
         assert changed.sum() > 20  # somebody else
         assert changed.mean() < 0.3  # in the same room, beside the same highway
+
+
+@pytest.mark.parametrize("version", ["VRM", "VRMC_vrm"])
+def test_a_vrm_is_drawn_as_the_same_glb(shared_data: Path, song: Path, tmp_path: Path, version: str) -> None:
+    """Bones without a speaking name, found by the humanoid map of VRM 0.x and 1.0 alone."""
+    source = shared_data / "characters" / "m2m_human_kenney.glb"
+    container = read_container(source)
+    humanoid = find_humanoid(container, read_nodes(container))
+    bones = humanoid.bones | dict(zip(("spine", "chest", "upperChest"), humanoid.trunk, strict=False))
+
+    def change(document: dict[str, Any]) -> None:
+        for number, node in enumerate(document["nodes"]):
+            node["name"] = f"node{number}"
+        human: Any = {bone: {"node": node} for bone, node in bones.items()}
+        if version == "VRM":
+            human = [{"bone": bone, **place} for bone, place in human.items()]
+        document["extensions"] = {version: {"humanoid": {"humanBones": human}}}
+
+    vrm = edited(source, tmp_path / "avatar.vrm", change)
+    got, wanted = picture(song, tmp_path / "vrm", vrm), picture(song, tmp_path / "glb", source)
+    np.testing.assert_array_equal(got, wanted)
+
+
+def test_the_camera_shows_all_of_a_tall_character(shared_data: Path) -> None:
+    """A character with short legs is made taller until they reach the panels: the camera steps back for it."""
+    rogue = Scene(load_character(str(shared_data / "characters" / "kaykit_rogue.glb")), load_pad("dance-single"))
+    head = np.array([[0.0, rest_vertices(rogue.character)[:, 1].max(), 0.0]])
+    assert head[0, 1] > 2.05
+    for name in ("back", "front", "side", "three-quarter"):
+        assert rogue.camera(name, (1280, 720)).project(head, (1280, 720))[0, 1] > 0
+    dancer = Scene(load_character("dancer"), load_pad("dance-single"))
+    assert dancer.tall < min(c.height for c in dancer.look.cameras.values() if not c.feet_only)
 
 
 def test_a_bad_character_is_one_line_before_the_work(

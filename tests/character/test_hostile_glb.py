@@ -32,6 +32,7 @@ def put(*path: Any) -> Callable[[dict[str, Any]], None]:
     return change
 
 
+_TEXTURE = ("materials", 0, "pbrMetallicRoughness", "baseColorTexture")
 CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "external buffer": put("buffers", 0, "uri", "other.bin"),
     "absolute path": put("buffers", 0, "uri", "/etc/passwd"),
@@ -61,11 +62,23 @@ CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "many nodes": put("nodes", [{}] * 30_000),
     "unknown component": put("accessors", 1, "componentType", 1),
     "unknown type": put("accessors", 1, "type", "VEC9"),
-    "sparse": put("accessors", 1, "sparse", {"count": 1}),
+    "sparse without rows": put("accessors", 1, "sparse", {"count": 1}),
+    "sparse no object": put("accessors", 1, "sparse", [1]),
+    "endless sparse": put("accessors", 1, "sparse", {"count": 2**40, "indices": {}, "values": {}}),
+    "accessor without data": lambda d: d["accessors"][1].pop("bufferView"),
     "nan in a matrix": put("nodes", 0, "matrix", [float("nan")] * 16),
     "endless scale": put("nodes", 0, "scale", [1e300, 1, 1]),
     "zero rotation": put("nodes", 0, "rotation", [0, 0, 0, 0]),
     "draco": put("extensionsRequired", ["KHR_draco_mesh_compression"]),
+    "draco in a mesh": put("meshes", 0, "primitives", 0, "extensions", {"KHR_draco_mesh_compression": {}}),
+    "meshopt": put("extensionsRequired", ["EXT_meshopt_compression"]),
+    "buffer to be unpacked": lambda d: (d["buffers"].append({"byteLength": 9}), d["bufferViews"][1].update(buffer=1)),
+    "ktx2": put("textures", 0, {"extensions": {"KHR_texture_basisu": {"source": 0}}}),
+    "texture moved by nothing": put(*_TEXTURE, "extensions", {"KHR_texture_transform": {"scale": "x"}}),
+    "texture turned by nan": put(*_TEXTURE, "extensions", {"KHR_texture_transform": {"rotation": float("nan")}}),
+    "cut at nothing": put("materials", 0, {"alphaMode": "MASK", "alphaCutoff": []}),
+    "short colours": put("meshes", 0, "primitives", 0, "attributes", "COLOR_0", 0),
+    "many skins": lambda d: d.update(skins=d["skins"] * 1000),
     "no skins": lambda d: d.pop("skins"),
     "no meshes": lambda d: d.pop("meshes"),
     "endless primitives": lambda d: d["meshes"][0].update(primitives=d["meshes"][0]["primitives"] * 5000),
@@ -131,6 +144,13 @@ def test_a_file_of_100_megabytes_is_refused_unread(tmp_path: Path, monkeypatch: 
         file.truncate(100_000_000)  # a hole: takes no disk
     monkeypatch.setattr(Path, "read_bytes", lambda self: pytest.fail("was read"))
     with pytest.raises(FileError, match="100 MB"):
+        load_character(str(path))
+
+
+def test_json_of_endless_objects(tmp_path: Path) -> None:
+    path = tmp_path / "x.glb"
+    path.write_bytes(joined(b"[" + b"{}," * 8_000_000 + b"{}]", b""))
+    with pytest.raises(FileError, match="JSON of 24 MB is too large"):
         load_character(str(path))
 
 
