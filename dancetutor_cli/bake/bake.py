@@ -23,6 +23,7 @@ from dancetutor_cli.motion.plan import Planner
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 from dancetutor_cli.motion.targets import ik_targets, moved
 from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.motion.walk import ground_of, with_walks
 from dancetutor_cli.physics.hair import add_hair
 from dancetutor_cli.play.model import Play
 from dancetutor_cli.rig import quaternion as quat
@@ -39,6 +40,7 @@ Array = NDArray[np.float64]
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
 SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
+STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
@@ -58,6 +60,7 @@ def bake(
     settings: MotionSettings | None = None,
     rate: float = 1.0,
     bar: bool = False,
+    gait: str = "flat",
 ) -> Motion:
     """Make the dancer play a chart.
 
@@ -69,7 +72,7 @@ def bake(
     settings : numbers of the motion, None for those of `configs/motion.yaml`
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
-    bar : whether she holds the bar behind the pad
+    bar : whether she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
 
     Returns
     -------
@@ -82,8 +85,9 @@ def bake(
     settings = settings or default_settings()
     if bar:
         settings = holding(settings)
-    plan = plan_of(chart, play, pad, settings, rate, bar)
-    start, end = section or (min(0.0, plan.first - LEAD_IN), plan.last + LEAD_OUT)
+    plan = plan_of(chart, play, pad, settings, rate, bar, gait)
+    left = max((walk.end for walk in plan.walks), default=-np.inf) + STANDS
+    start, end = section or (min(0.0, plan.first - LEAD_IN), max(plan.last + LEAD_OUT, left))
     if not start < end:
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
@@ -92,15 +96,20 @@ def bake(
 
 
 def plan_of(
-    chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None, rate: float = 1.0, bar: bool = False
-) -> Plan:
+    chart: Chart, play: Play, pad: Pad, settings: MotionSettings | None = None, rate: float = 1.0, bar: bool = False,
+    gait: str = "flat",
+) -> Plan:  # fmt: skip
     """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
     settings = settings or default_settings()
     plan = Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
+    first, last = plan.first, plan.last
+    plan = with_walks(plan, ground_of(pad, settings), gait, settings)
     if not bar:
         return plan
     rail = bar_of(pad, settings.bar)
-    grips = grips_of(plan, rail, (plan.first - LEAD_IN, plan.last + LEAD_OUT), settings)
+    arrived = max((w.end for w in plan.walks if w.end < first), default=first - LEAD_IN)
+    leaves = min((w.start for w in plan.walks if w.start > last), default=last + LEAD_OUT)
+    grips = grips_of(plan, rail, (arrived, leaves), settings)
     return replace(plan, bar=rail, grips=grips)
 
 
@@ -135,7 +144,7 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     add_hair(skeleton, at, rotations, root, settings.hair)
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
-    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts, plan.bar, grips)
+    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts, plan.bar, grips, plan.ground)
 
 
 def _settled(

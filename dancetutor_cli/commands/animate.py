@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, character_option, preset_option, selection_options
+from dancetutor_cli.commands.selection import Selection, character_option, gait_option, preset_option, selection_options
 from dancetutor_cli.errors import FileError, UsageError
 
 if TYPE_CHECKING:
@@ -43,11 +43,13 @@ _FILE = click.Path(path_type=Path)
 )
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
+@gait_option
 @character_option
 @selection_options
 @preset_option
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
+    gait: str,
     report_to: str | None, plot: Path | None, character: str, preset: str, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
@@ -66,7 +68,7 @@ def command(
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
-    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar)
+    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))
     _check_target(target, SUFFIXES)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, character_option
+from dancetutor_cli.commands.selection import Selection, character_option, gait_option
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Practice, Request
@@ -48,6 +48,7 @@ _OPTIONS = (
     ),
     character_option,
     click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
+    gait_option,
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -137,6 +138,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         play=options["play"],
         character=check_character(options["character"]),
         bar=options["bar"],
+        gait=options["gait"],
     )
 
 

@@ -50,3 +50,15 @@ def character_option(command: _Command) -> _Command:
         help="Who dances: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
     )
     return option(command)
+
+
+def gait_option(command: _Command) -> _Command:
+    """Add --gait; the function gets keyword argument `gait`."""
+    option = click.option(
+        "--gait",
+        type=click.Choice(("flat", "heels")),
+        default="flat",
+        show_default=True,
+        help="How she walks on and off: in flat shoes, or as in high heels.",
+    )
+    return option(command)

@@ -25,7 +25,7 @@ class BakeTask:
 
     preset : of the solver; play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
-    bar : she holds the bar behind the pad
+    bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
     """
 
     path: Path
@@ -36,6 +36,7 @@ class BakeTask:
     rate: float = 1.0
     play_file: Path | None = None
     bar: bool = False
+    gait: str = "flat"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,14 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
     from dancetutor_cli.bake import bake
 
     return bake(
-        asked.chart, asked.play, asked.pad, fps=task.fps, section=asked.section, rate=task.rate, bar=task.bar
+        asked.chart,
+        asked.play,
+        asked.pad,
+        fps=task.fps,
+        section=asked.section,
+        rate=task.rate,
+        bar=task.bar,
+        gait=task.gait,
     )
 
 
@@ -85,7 +93,7 @@ def plan_asked(asked: Asked, task: BakeTask) -> Plan:
     """Only the moves."""
     from dancetutor_cli.bake import plan_of
 
-    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate, bar=task.bar)
+    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate, bar=task.bar, gait=task.gait)
 
 
 def _play(task: BakeTask, song: Song, chart: Chart) -> tuple[Play, Pad]:

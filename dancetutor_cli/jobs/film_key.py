@@ -28,6 +28,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         request.mute,
         request.practice,
         request.bar,
+        request.gait,
     )
     parts = (
         program_hash().encode(),

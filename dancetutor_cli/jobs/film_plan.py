@@ -242,7 +242,7 @@ def _motion(request: Request, chart: Chart, play: Play, pad: Pad, span: tuple[fl
         return None
     from dancetutor_cli.bake import bake
 
-    return bake(chart, play, pad, fps=request.fps, section=span, bar=request.bar)
+    return bake(chart, play, pad, fps=request.fps, section=span, bar=request.bar, gait=request.gait)
 
 
 def _fitted(name: str, motion: Motion | None) -> tuple[Character | None, Motion | None]:

@@ -45,7 +45,7 @@ class Request:
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
-    bar : she holds the bar behind the pad
+    bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
     sync : seconds by which the music plays late against the notes
     """
 
@@ -61,6 +61,7 @@ class Request:
     play: Path | None = None
     character: str = "dancer"
     bar: bool = False
+    gait: str = "flat"
 
 
 @dataclass(frozen=True, slots=True)

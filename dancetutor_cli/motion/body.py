@@ -11,6 +11,7 @@ from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.bar import kept_back, leaning_share
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
+from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.height import HeightPath, height_path
 from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.paths import smooth_path
@@ -76,8 +77,10 @@ def body_path(
     ground = mass_ground - above[:, [0, 2]]
     turned = _yaw_target(plan.turns, times) + _turned_for_hands(plan.presses, times, settings)
     yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
+    gait = walking(plan.walks, times, settings)
+    sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
-    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, above[:, 1], skeleton, settings)
+    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, sink, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
     chest, head = _looking(yaw, plan.presses, times, ground, rate, settings)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
@@ -142,9 +145,9 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 def _height(
     feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
-    above: Array, skeleton: Skeleton, settings: MotionSettings,
+    sink: Array, above: Array, skeleton: Skeleton, settings: MotionSettings,
 ) -> HeightPath:  # fmt: skip
-    """Height of the centre of mass; `above` (n,): how far it is over the root."""
+    """Height of the centre of mass; `above` (n,): how far it is over the root; `sink`: how far a plant lets it sink."""
     body = settings.body
     wanted = np.full(len(yaw), np.inf)
     highest = np.full(len(yaw), np.inf)
@@ -154,7 +157,8 @@ def _height(
         highest = np.minimum(highest, most)
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
-    wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002)
+    wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002) - sink
+    highest = highest - sink
     share, depth = bent[:, 0], bent[:, 1]
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
     return height_path(times, wanted + above, highest + above, flights, body)

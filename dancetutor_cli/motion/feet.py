@@ -13,7 +13,9 @@ from dancetutor_cli.motion.track import FootTrack
 Array = NDArray[np.float64]
 GRAVITY = 9.81
 TURNING = 0.5  # part of a jump's ground path that turns about the middle between the feet; the rest is straight
+EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
 OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
+HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 
@@ -45,15 +47,37 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     if not swings:
         still = np.zeros_like(times)
         ball = np.column_stack((np.full_like(times, place[0, 0]), still, np.full_like(times, place[0, 1])))
+        ball[:, 1] = track.start_level
         return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
     ground = np.where(swinging[:, None], _ground(track, place, i, s), place[done])
-    ball = np.column_stack((ground[:, 0], np.where(swinging, _height(track, i, s), 0.0), ground[:, 1]))
+    level = np.array([track.start_level, *(w.level for w in swings)])
+    up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
+    ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
     turned = yaw[i] + smooth(s / 0.95) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
     pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
-    return FootPath(ball, np.where(swinging, turned, yaw[done]), pitch, ~swinging | pivoting, s)
+    turned = np.where(swinging, turned, yaw[done])
+    return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
+
+
+def _climb(before: Array, after: Array, s: Array) -> Array:
+    """Height of the ground under a swing: up at once, down late, for between levels there is an edge."""
+    return np.asarray(
+        before + np.where(after > before, smooth(s / EDGE), smooth((s - 1.0 + DOWN) / DOWN)) * (after - before)
+    )
+
+
+def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
+    """The ball (f, 3) of a foot whose toes are up (pitch below 0): the heel's edge is where it would be if flat."""
+    up = -np.minimum(pitch, 0.0)
+    back = HEEL_BACK * (1.0 - np.cos(up)) + BALL_UP * np.sin(up)
+    out = ball.copy()
+    out[:, 0] -= back * np.sin(yaw)
+    out[:, 2] -= back * np.cos(yaw)
+    out[:, 1] += HEEL_BACK * np.sin(up) - BALL_UP * (1.0 - np.cos(up))
+    return out
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:

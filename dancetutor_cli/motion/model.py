@@ -53,6 +53,25 @@ class Grip:
 
 
 @dataclass(frozen=True, slots=True)
+class Ground:
+    """The pad, a rectangle from `low` to `high` (x, z) at height 0, and the floor around it, `drop` metres lower."""
+
+    low: tuple[float, float]
+    high: tuple[float, float]
+    drop: float
+
+    def level(self, x: float, z: float) -> float:
+        """Height of the ground at a place, metres."""
+        return 0.0 if self.low[0] <= x <= self.high[0] and self.low[1] <= z <= self.high[1] else -self.drop
+
+    def levels(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Height of the ground (...) under points (..., 3)."""
+        over = places[..., [0, 2]]
+        on = ((over >= np.array(self.low) - 1e-6) & (over <= np.array(self.high) + 1e-6)).all(axis=-1)
+        return np.where(on, 0.0, -self.drop)
+
+
+@dataclass(frozen=True, slots=True)
 class Motion:
     """Joint rotations over time. f frames, j joints.
 
@@ -61,6 +80,7 @@ class Motion:
     root : float64 (f, 3), position of joint 0 in the world, metres
     fps : nominal frames per second; contacts : sorted by start
     bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
+    ground : pad and floor, None where she stays on the pad and the ground has the height 0 everywhere
     """
 
     skeleton: Skeleton
@@ -71,3 +91,4 @@ class Motion:
     contacts: tuple[Contact, ...]
     bar: Bar | None = None
     grips: tuple[Grip, ...] = ()
+    ground: Ground | None = None

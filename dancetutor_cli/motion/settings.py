@@ -181,6 +181,40 @@ class BarSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class WalkSettings:
+    """When she walks, and from where to where."""
+
+    least: float
+    settle: float
+    pause: float
+    beside: float
+    floor: float
+    width: float
+    turn: float
+    sideways: float
+    far: float
+    wait: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """A way to walk: a cycle of two steps, from one landing of the left foot to the next."""
+
+    period: float
+    stride: float
+    height: float
+    push_pitch: float
+    heel_pitch: float
+    hip_drop: float
+    pelvis_yaw: float
+    chest_yaw: float
+    hips: float
+    arch: float
+    arms: float
+    plant: float
+
+
+@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 
@@ -202,6 +236,11 @@ class MotionSettings:
     layers: LayerSettings
     hair: HairSettings
     bar: BarSettings
+    walk: WalkSettings
+    stroll: Gait
+    brisk: Gait
+    heels_stroll: Gait
+    heels_brisk: Gait
     sampling: SamplingSettings
 
 
@@ -217,6 +256,11 @@ _SECTIONS: dict[str, type[Any]] = {
     "layers": LayerSettings,
     "hair": HairSettings,
     "bar": BarSettings,
+    "walk": WalkSettings,
+    "stroll": Gait,
+    "brisk": Gait,
+    "heels_stroll": Gait,
+    "heels_brisk": Gait,
     "sampling": SamplingSettings,
 }
 

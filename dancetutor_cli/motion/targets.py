@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.arms import arm_targets
 from dancetutor_cli.motion.body import BodyPath, ankle_of
 from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.gait import turned, walking
 from dancetutor_cli.motion.ik import Targets
 from dancetutor_cli.motion.paths import UP, leaning, sample_path
 from dancetutor_cli.motion.settings import MotionSettings
@@ -31,6 +32,9 @@ def ik_targets(
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     pelvis_turn = leaning(PELVIS_SHARE * tilt, yaw)
     chest_turn = leaning(tilt, chest_yaw)
+    gait = walking(plan.walks, at, settings)
+    if gait is not None:
+        pelvis_turn, chest_turn = turned(gait, pelvis_turn, chest_turn)
     rest = skeleton.rest
     shoulders = np.stack(
         [
@@ -40,8 +44,13 @@ def ik_targets(
     )  # fmt: skip
     hands = arm_targets(plan, body, at, shoulders, chest_turn, skeleton, settings)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
-    toes = [quat.from_axis_angle(UP, f.yaw) for f in feet]
-    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(toes, feet, strict=True)]
+    straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
+    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
+    # toes stay level while the heel is up, and go up with the foot
+    toes = [
+        quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
+        for t, f in zip(straight, feet, strict=True)
+    ]
     return Targets(
         pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Bar, Contact, Grip
+from dancetutor_cli.motion.model import Bar, Contact, Grip, Ground
 
 Array = NDArray[np.float64]
 
@@ -20,8 +20,8 @@ class Swing:
     height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
     pitches : heel up, radians, at lift, at most, at landing, then standing
     bulge : (x, z) added at the middle of the path, to go around the other foot
-    kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one)
-        or "pivot" (turning on the ball, which stays down)
+    kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one),
+        "pivot" (turning on the ball, which stays down) or "walk"; level : height of the ground where it lands
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
     """
 
@@ -37,15 +37,17 @@ class Swing:
     turn: float = 0.0
     middle0: tuple[float, float] = (0.0, 0.0)
     middle1: tuple[float, float] = (0.0, 0.0)
+    level: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class FootTrack:
-    """All swings of a foot in order of time, never overlapping, and where it stood before the first."""
+    """All swings of a foot in order of time, never overlapping, and where it stood before the first: on what level."""
 
     start: tuple[float, float]
     start_yaw: float
     swings: tuple[Swing, ...]
+    start_level: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +76,26 @@ class Press:
 
 
 @dataclass(frozen=True, slots=True)
+class Walk:
+    """A walk from `start` to `end`, seconds, with the landings in between, the first one of foot `first`.
+
+    gait : "flat" or "heels"; share : 0 to 1, how much of its quick form is in it
+    """
+
+    start: float
+    end: float
+    landings: tuple[float, ...]
+    first: int
+    share: float
+    gait: str
+
+
+@dataclass(frozen=True, slots=True)
 class Plan:
     """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact.
 
     bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
+    walks : in order of time; ground : pad and floor, where she walks on both
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -89,6 +107,8 @@ class Plan:
     last: float
     bar: Bar | None = None
     grips: tuple[Grip, ...] = ()
+    walks: tuple[Walk, ...] = ()
+    ground: Ground | None = None
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:

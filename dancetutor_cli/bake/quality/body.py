@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.model import Ground, Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
@@ -23,8 +23,8 @@ PIECE = 4000  # frames worked on at once, so that a long song needs little memor
 class Body:
     """f frames at `rate` per second.
 
-    joints : (f, j, 3) positions; soles : (f, 2, 6, 3) sole points of both feet; mass : (f, 3) centre of mass
-    rotations : (f, j, 4) local; head : (f, 3) middle of the head
+    joints : (f, j, 3) positions; soles : (f, 2, 6, 3) sole points of both feet, y over the ground below
+    mass : (f, 3) centre of mass; rotations : (f, j, 4) local; head : (f, 3) middle of the head
     """
 
     rate: float
@@ -51,11 +51,20 @@ def body_of(motion: Motion) -> Body:
         rotations, root = sample(motion, times[start : start + PIECE])
         positions, world = world_transforms(motion.skeleton, rotations, root)
         joints.append(positions)
-        soles.append(np.stack([place(f, positions, world) for f in feet], axis=1))
+        soles.append(np.stack([over_ground(place(f, positions, world), motion.ground) for f in feet], axis=1))
         mass.append(centre_of_mass(motion.skeleton, positions, world))
         turns.append(rotations)
         heads.append(positions[:, skull])
     return Body(rate, times, *(np.concatenate(x) for x in (joints, soles, mass, turns, heads)))
+
+
+def over_ground(points: Array, ground: Ground | None) -> Array:
+    """Points (..., 3) with their heights over what is below them: the pad, or the floor beside it."""
+    if ground is None:
+        return points
+    out = points.copy()
+    out[..., 1] -= ground.levels(points)
+    return out
 
 
 def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import GROUND, Body, intervals
+from dancetutor_cli.bake.quality.body import GROUND, Body, intervals, over_ground
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
@@ -57,7 +57,9 @@ def deepest(motion: Motion) -> float:
     low = 0.0
     for start in range(0, len(times), 4000):
         positions, world = world_transforms(motion.skeleton, *sample(motion, times[start : start + 4000]))
-        low = min(low, *(float(place(p, positions, world)[..., 1].min()) for p in sole_points(motion.skeleton)))
+        for points in sole_points(motion.skeleton):
+            over = over_ground(place(points, positions, world), motion.ground)
+            low = min(low, float(over[..., 1].min()))
     return -low
 
 

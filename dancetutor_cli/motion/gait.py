@@ -1,0 +1,113 @@
+"""Gaits: how pelvis, chest and hands go with the steps of a walk, and how two gaits are blended.
+
+A gait's curves are over normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the left foot
+again. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes  (T2 - T1) a + T1
+seconds (the blog of the project's sources), so feet that land at one normalised time in both land there in the blend.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.settings import Gait, MotionSettings
+from dancetutor_cli.motion.track import Walk
+from dancetutor_cli.rig import quaternion as quat
+
+Array = NDArray[np.float64]
+SINKING = 0.55  # part of a step in which the body sinks at a plant and comes up again
+HALF_HIPS = 0.088  # metres from the middle of the pelvis to a hip
+FADE = 0.45  # seconds over which standing becomes walking and walking standing
+
+
+@dataclass(frozen=True, slots=True)
+class GaitPose:
+    """What a gait adds at f times; angles in radians.
+
+    roll : left hip up; pelvis_yaw, chest_yaw : to the left; hips : the pelvis leans forward; arch : the chest back
+    hands : (f, 2) metres that the left and right hand are swung forward; own : (f,) 0 to 1, how much of the hands' way
+    is the gait's; sink : metres that the body is lower
+    """
+
+    roll: Array
+    pelvis_yaw: Array
+    chest_yaw: Array
+    hips: Array
+    arch: Array
+    hands: Array
+    own: Array
+    sink: Array
+
+
+def gait_pose(gait: Gait, phase: Array) -> GaitPose:
+    """The pose of a gait at normalised times (f,)."""
+    turn = 2 * np.pi * phase
+    ones = np.ones_like(phase)
+    # the left foot lands at 0 and bears the body until 0.6: its hip is highest half-way through that
+    roll = np.radians(gait.hip_drop) * np.sin(turn - 0.1 * np.pi)
+    forward = np.cos(turn)  # 1 as the left foot lands, far ahead
+    step = (2 * phase) % 1.0
+    low = HALF_HIPS * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
+    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / SINKING, 1.0)) ** 2
+    return GaitPose(
+        roll,
+        -np.radians(gait.pelvis_yaw) * forward,
+        np.radians(gait.chest_yaw) * forward,
+        np.radians(gait.hips) * ones,
+        np.radians(gait.arch) * ones,
+        gait.arms * np.column_stack((-forward, forward)),
+        ones,
+        sink,
+    )
+
+
+def blended_pose(slow: Gait, quick: Gait, share: float, phase: Array) -> GaitPose:
+    """Both gaits' poses at the same normalised times (f,), `share` (0 to 1) of the quick one."""
+    a, b = gait_pose(slow, phase), gait_pose(quick, phase)
+    mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
+    return GaitPose(*mixed)
+
+
+def blended(slow: Gait, quick: Gait, share: float) -> Gait:
+    """The numbers of the blend; its period is (T2 - T1) share + T1."""
+    values = {f.name: getattr(slow, f.name) for f in fields(Gait)}
+    return Gait(**{name: (getattr(quick, name) - value) * share + value for name, value in values.items()})
+
+
+def gaits_of(name: str, settings: MotionSettings) -> tuple[Gait, Gait]:
+    """The slow and the quick gait of a way to walk, "flat" or "heels"."""
+    if name == "heels":
+        return settings.heels_stroll, settings.heels_brisk
+    return settings.stroll, settings.brisk
+
+
+def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> GaitPose | None:
+    """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
+    total: GaitPose | None = None
+    for walk in walks:
+        fade = smooth((times - walk.start) / FADE) * smooth((walk.end - times) / FADE)
+        if not fade.any():
+            continue
+        landings = np.array([walk.start, *walk.landings])
+        first = 0.5 if walk.first == 1 else 1.0
+        phase = np.interp(times, landings, first - 0.5 + 0.5 * np.arange(len(landings)))
+        pose = blended_pose(*gaits_of(walk.gait, settings), walk.share, phase)
+        faded = [getattr(pose, f.name) for f in fields(GaitPose)]
+        faded = [v * (fade if v.ndim == 1 else fade[:, None]) for v in faded]
+        if total is not None:
+            faded = [getattr(total, f.name) + v for f, v in zip(fields(GaitPose), faded, strict=True)]
+        total = GaitPose(*faded)
+    return total
+
+
+def turned(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:
+    """Rotations of pelvis and chest (f, 4) with the gait on top, in local space, main rotation first."""
+    across, up, front = np.eye(3)
+    low = quat.multiply(quat.from_axis_angle(up, pose.pelvis_yaw), quat.from_axis_angle(front, pose.roll))
+    low = quat.multiply(low, quat.from_axis_angle(across, pose.hips))
+    high = quat.multiply(quat.from_axis_angle(up, pose.chest_yaw), quat.from_axis_angle(front, -0.5 * pose.roll))
+    high = quat.multiply(high, quat.from_axis_angle(across, -pose.arch))
+    return quat.multiply(pelvis, low), quat.multiply(chest, high)
