@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.container import Container, as_dict
 from dancetutor_cli.character.model import Material
 
+MAX_SIDE = 2048  # texels; at 1080p a dancer is half as high
 ALL_TEXELS = 16 * 1024 * 1024  # of a character's textures; larger ones are halved until they fit
 PLAIN = Material("plain", (0.8, 0.8, 0.8, 1.0))
 Attribute = Callable[[str, int], NDArray[Any] | None]  # name, width -> values (v, width), None where there are none
@@ -85,7 +86,7 @@ class Materials:
         """To what side textures are reduced, so that all base colours together stay below `ALL_TEXELS`."""
         worn = {self._image_of(self._base(item)[1]) for item in self.container.items("materials")}
         sizes = [self.container.image_size(index) for index in sorted(worn - {None}, key=str)]
-        side = 4096
+        side = MAX_SIDE
         while side > 64 and sum(min(w, side) * min(h, side) for w, h in sizes) > ALL_TEXELS:
             side //= 2
         return side
