@@ -1,0 +1,118 @@
+"""Both feet as the planner walks through a song: where they stand, until when they must, which way the body faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import FootTrack, Swing
+
+Array = NDArray[np.float64]
+SHORTEST = 0.02  # seconds; no swing is shorter
+FREE_WINDOW = 0.001
+HOME_OUT = 0.098  # metres; a waiting foot stands so far beside the middle of the pad
+
+
+@dataclass
+class Foot:
+    """Where a foot is while the plan is made. side 0 is left; ball : (2,), x and z on the ground."""
+
+    side: int
+    ball: Array
+    yaw: float  # without toe-out
+    free: float = -np.inf  # the foot may not leave before
+    landed: float = -np.inf  # when it came down
+    swings: list[Swing] = field(default_factory=list)
+    evading: tuple[float, tuple[Array, float]] | None = None  # time of a mine, and where the foot stood before it
+
+    @property
+    def outward(self) -> float:
+        """1 for the left foot, -1 for the right one: which way its toes turn out."""
+        return 1.0 if self.side == 0 else -1.0
+
+    def move(self, swing: Swing, target: Array, yaw: float) -> None:
+        """Add a swing; afterwards the foot stands at its target."""
+        self.swings.append(swing)
+        self.ball, self.yaw, self.free = target, yaw, swing.land + FREE_WINDOW
+        self.landed = swing.land
+
+    def latest(self, time: float, let_go: float) -> float:
+        """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
+        early = max(time - let_go, self.landed + FREE_WINDOW)
+        return min(early, time - SHORTEST) if self.free > early else time - SHORTEST
+
+
+class Stance:
+    """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it."""
+
+    def __init__(self, settings: MotionSettings) -> None:
+        self.settings = settings
+        self.normal = 0.0
+        self.toe_out = float(np.radians(settings.step.toe_out))
+        self.feet = tuple(
+            Foot(side, stage.ball_of(np.array([x * HOME_OUT, 0.0]), x * self.toe_out), 0.0)
+            for side, x in ((0, 1.0), (1, -1.0))
+        )
+        self._start = tuple((pair(f.ball), f.outward * self.toe_out) for f in self.feet)
+
+    def tracks(self) -> tuple[FootTrack, FootTrack]:
+        """Everything that both feet have done, from the start."""
+        both = [FootTrack(place, yaw, tuple(f.swings)) for (place, yaw), f in zip(self._start, self.feet, strict=True)]
+        return both[0], both[1]
+
+    def toes(self, foot: Foot, yaw: float | None = None) -> float:
+        """Where the toes of a foot point, at its own yaw or at another one; radians."""
+        return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
+
+    def middle(self, foot: Foot) -> Array:
+        """The middle of the sole, as `landing` sees the other foot: without toe-out."""
+        return stage.middle_of(foot.ball, foot.yaw)
+
+    def body_yaw(self) -> float:
+        """The yaw that the body aims at for the current feet normal, radians: crossed feet turn it less."""
+        whole = 360.0 * round(self.normal / 360.0)
+        rest = abs(self.normal - whole)
+        k = self.settings.step.crossover_turn
+        if rest > 135.0:
+            at_135 = 90.0 + 45.0 * k
+            rest = at_135 + (rest - 135.0) / 45.0 * (180.0 - at_135)
+        elif rest > 90.0:
+            rest = 90.0 + (rest - 90.0) * k
+        return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
+
+    def turned_to(self) -> float:
+        """The yaw that the body turns to for the feet as they are now, radians."""
+        mean = (self.feet[0].yaw + self.feet[1].yaw) / 2
+        return float(mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean))
+
+    def limited(self, yaw: float, body: float) -> float:
+        """A foot's yaw, not farther from the body's than hips allow."""
+        limit = np.radians(self.settings.step.foot_turn)
+        return float(np.clip(yaw, body - limit, body + limit))
+
+    def pivot(self, foot: Foot, start: float, time: float) -> None:
+        """The standing foot turns on its ball when the body turns too far from it."""
+        step = self.settings.step
+        body, limit = self.turned_to(), np.radians(step.pivot_from)
+        if abs(foot.yaw - body) <= limit:
+            return
+        yaw = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        begin = max(start, foot.swings[-1].land + FREE_WINDOW if foot.swings else start)
+        if begin > time - 0.04:
+            return
+        up = float(np.radians(step.pivot_pitch))
+        rest = foot.swings[-1].pitches[3] if foot.swings else 0.0
+        pitches = (rest, max(up, rest), rest, rest)
+        free = foot.free
+        swing = Swing(begin, time, pair(foot.ball), self.toes(foot, yaw), 0.0, pitches, kind="pivot")
+        foot.move(swing, foot.ball, yaw)
+        foot.free = max(free, foot.free)
+
+
+def pair(v: Array) -> tuple[float, float]:
+    """An array of two as a tuple of floats."""
+    return float(v[0]), float(v[1])

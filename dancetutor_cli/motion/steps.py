@@ -1,0 +1,117 @@
+"""Steps, jumps and gallops: when a foot leaves for its note, how high it goes and where it lands (thesis 5.5, 5.6)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.ease import reduction
+from dancetutor_cli.motion.evade import land_early, resumed
+from dancetutor_cli.motion.feet import GRAVITY
+from dancetutor_cli.motion.landing import around, heel_up, landing
+from dancetutor_cli.motion.stance import Foot, Stance, pair
+from dancetutor_cli.motion.track import Swing
+from dancetutor_cli.play.model import Play
+
+Array = NDArray[np.float64]
+LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
+
+
+class Steps:
+    """Moves of the feet, note by note. panels : (c, 2) on the ground."""
+
+    def __init__(self, play: Play, panels: Array, stance: Stance) -> None:
+        self.play, self.panels, self.stance, self.settings = play, panels, stance, stance.settings
+        self.take_off: dict[int, tuple[int, float]] = {}  # in a gallop: foot -> its row, and when it leaves the ground
+
+    def step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> None:
+        """One foot steps at row i, at `time`; `duration` seconds after the last move."""
+        step, stance = self.settings.step, self.stance
+        foot, other = stance.feet[side], stance.feet[1 - side]
+        self._gallop(i, time, duration, side)
+        cut = float(reduction(duration, step.fast, step.longest))
+        up = resumed(foot, time, step.longest)
+        body = stance.body_yaw()
+        yaw = stance.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
+        beside = (stance.middle(other), other.yaw)
+        target, yaw = landing(stance, self.panels, self.play.part[i], columns, foot, yaw, beside, cut)
+        galloping = self.take_off.get(side, (-1, 0.0))[0] == i
+        lift = self.take_off[side][1] if galloping else min(
+            time - duration * (1.0 - step.double_support), time - LEAST_SWING
+        )  # fmt: skip
+        lift = min(max(lift, foot.free), foot.latest(time, step.let_go)) if up is None else up
+        kind, tuck, middles = "step", 0.0, ((0.0, 0.0), (0.0, 0.0))
+        height = step.height_slow + cut * (step.height_fast - step.height_slow)
+        if np.linalg.norm(target - foot.ball) < 0.05:
+            height = max(height * step.jack_height, step.height_fast)
+        if up is not None:
+            kind, height = "evade", max(height, self.settings.mines.height)
+        if galloping:
+            kind, height = "gallop", max(height, self.settings.mines.height)
+            if other.side in self.take_off and self.take_off[other.side][0] > i:  # the first of the two
+                kind, height, tuck = "jump", GRAVITY * (time - lift) ** 2 / 8, self.settings.jump.tuck
+                middles = (pair(foot.ball), pair(target))
+        pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
+        bulge = around(stance, foot, target, yaw, other)
+        toes = stance.toes(foot, yaw)
+        swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
+        foot.move(swing, target, yaw)
+        if kind == "step":
+            stance.pivot(other, lift, time)
+
+    def _gallop(self, i: int, time: float, duration: float, side: int) -> None:
+        """A step after a wait, and soon after it one of the other foot: one jump whose second foot lands later."""
+        jump, rows = self.settings.jump, self.play.rows
+        if i + 1 >= len(rows) or duration < jump.gallop_wait:
+            return
+        gap = float(rows.second[i + 1]) - time
+        following = self.play.limb[i + 1]
+        steps = np.flatnonzero(following >= 0)
+        if not (0.0 < gap <= jump.gallop and len(steps) == 1 and following[steps[0]] == 1 - side):
+            return
+        flight = min(float(np.sqrt(8 * jump.apex_near / GRAVITY)), jump.flight_share * duration)
+        take_off = max(time - flight, *(f.free for f in self.stance.feet))
+        self.take_off = {side: (i, take_off), 1 - side: (i + 1, take_off)}
+
+    def jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
+        """Both feet land at row i; `turned` : degrees that the feet normal turns."""
+        jump, step, stance = self.settings.jump, self.settings.step, self.stance
+        for foot in stance.feet:
+            land_early(foot, time)
+        cut = float(reduction(duration, step.fast, step.longest))
+        goals = self._jump_goals(i, pressed, cut)
+        old = [f.ball for f in stance.feet]
+        far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
+        apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
+        if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
+            apex = jump.apex_hands
+        take_off = self._take_off(time, min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration))
+        height = GRAVITY * (time - take_off) ** 2 / 8
+        tuck = jump.tuck * (1.0 + 1.5 * min(far / jump.far, 1.5) ** 2)  # legs that reach far must not lock
+        middles = pair((old[0] + old[1]) / 2), pair((goals[0][0] + goals[1][0]) / 2)
+        for foot, (target, yaw) in zip(stance.feet, goals, strict=True):
+            pitches = heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, pressed[foot.side])
+            toes = stance.toes(foot, yaw)
+            swing = Swing(
+                take_off, time, pair(target), toes, height, pitches, (0.0, 0.0), "jump", tuck,
+                float(np.radians(turned)), *middles,
+            )  # fmt: skip
+            foot.move(swing, target, yaw)
+
+    def _jump_goals(self, i: int, pressed: dict[int, list[int]], cut: float) -> list[tuple[Array, float]]:
+        """Where both balls land, and the feet's yaws."""
+        stance = self.stance
+        body = stance.body_yaw()
+        ends = [self.panels[pressed[s]].mean(axis=0) for s in (0, 1)]
+        goals = []
+        for foot in stance.feet:
+            yaw = stance.limited(foot.yaw + self.settings.jump.yaw_to_normal * (body - foot.yaw), body)
+            other = (ends[1 - foot.side], yaw)
+            columns = pressed[foot.side]
+            goals.append(landing(stance, self.panels, self.play.part[i], columns, foot, yaw, other, cut))
+        return goals
+
+    def _take_off(self, time: float, flight: float) -> float:
+        feet: tuple[Foot, ...] = self.stance.feet
+        latest = (f.latest(time, self.settings.step.let_go) for f in feet)
+        return min(max(time - flight, *(f.free for f in feet)), *latest)
