@@ -1,4 +1,7 @@
-"""Films: seconds of video per second, the wait for the first frame, memory, and how busy a pack keeps the cores."""
+"""Films: seconds of video per second, the wait for the first frame, memory, and how busy a pack keeps the cores.
+
+usage: tools/bench_film.py [ROW ...]      rows: good draft gl pack
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
 Row = tuple[str, float, str, str, str]
 WARM_UP = 3.0  # seconds of work that do not count for the steady state
-GOALS = {"good": "2.0", "draft": "3.5"}
+SECTIONS = {"good": "0:30", "draft": "0:30", "gl": "0:12", "warm": "20:21"}
+GOALS = {"good": "2.0", "draft": "3.5", "gl": "1.0"}
 PEER = "pyrender as it comes 0.14 (stock, same scene)"
 
 
@@ -35,8 +40,8 @@ class Watch:
         self.seen.append((time.time(), self.count))
 
 
-def child(output: str, quality: str) -> None:
-    """Render the demo song in this process and print what was seen, as JSON."""
+def child(output: str, kind: str) -> None:
+    """Render a part of the demo song with workers of this process and print what was seen, as JSON."""
     from dancetutor_cli.jobs.film_plan import prepare
     from dancetutor_cli.jobs.film_request import Request, look_up
     from dancetutor_cli.jobs.pool import default_jobs
@@ -46,8 +51,10 @@ def child(output: str, quality: str) -> None:
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
 
-    look = FilmLook(load_layout("side-by-side"), (1280, 720), quality, "cpu")  # type: ignore[arg-type]
-    request = Request(DEMO, Selection(steps_type="dance-single", difficulty="hard"), look)
+    renderer = "gl" if kind == "gl" else "cpu"
+    look = FilmLook(load_layout("side-by-side"), (1280, 720), "draft" if kind == "draft" else "good", renderer)
+    selection = Selection(steps_type="dance-single", difficulty="hard")
+    request = Request(DEMO, selection, look, preset="itg", section=SECTIONS[kind])
     watch = Watch()
     encoding = Encoding("mp4", look.size, request.fps, look.quality)
     make_film(lambda: prepare(request, look_up(request)), encoding, Path(output), default_jobs(), watch)
@@ -64,62 +71,97 @@ def _memory() -> float:
     return float(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss) / scale
 
 
-def _render(quality: str) -> dict[str, Any]:
+def _used() -> float:
+    """Seconds of processor time of all processes that this one has started and that have ended."""
+    now = os.times()
+    return now.children_user + now.children_system
+
+
+def _render(kind: str) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, __file__, "child", str(Path(folder) / "film.mp4"), quality]
-        began = time.time()
+        command = [sys.executable, __file__, "child", str(Path(folder) / "film.mp4"), kind]
+        began, before = time.time(), _used()
         said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
-        return {"began": began, **json.loads(said.splitlines()[-1])}
+        return {"began": began, "used": _used() - before, **json.loads(said.splitlines()[-1])}
 
 
-def _pack() -> tuple[float, int]:
-    """Share of the cores' time that a pack of 20 small films keeps busy, and the films made."""
-    before, began = os.times(), time.monotonic()
+def film(kind: str) -> list[Row]:
+    """Rows of one film, 1280x720 at 30 frames per second, music and encoding included."""
+    run = _render(kind)
+    seen = run["seen"]
+    first, length = seen[0][0], seen[-1][1] / run["fps"]
+    start = next(s for s in seen if s[0] >= first + WARM_UP)
+    steady = (seen[-1][1] - start[1]) / run["fps"] / (seen[-1][0] - start[0])
+    share = run["used"] / length
+    rows = [
+        (f"{kind}, steady", steady, "s of video/s", GOALS[kind], PEER if kind != "draft" else ""),
+        (f"{kind}, {length:.0f} s, whole run", length / (run["end"] - run["began"]), "s of video/s", "", ""),
+        (f"{kind}, processor time, all processes", share, "s/s of video", f"{2 / float(GOALS[kind]):.2g}", ""),
+    ]
+    if kind == "good":
+        rows.append(("first frames after", first - run["began"], "s", "3", ""))
+        rows.append(("memory of a worker", run["memory"], "MiB", "700", ""))
+    return rows
+
+
+def gl() -> list[Row]:
+    """Rows of the OpenGL renderer, none where there is no OpenGL."""
+    from dancetutor_cli.errors import UnavailableError
+    from dancetutor_cli.video.gl.probe import require_gl
+
+    try:
+        require_gl()
+    except UnavailableError:
+        return [("gl: no OpenGL here", 0.0, "s of video/s", GOALS["gl"], "")]
+    return film("gl")
+
+
+def pack() -> list[Row]:
+    """Share of the cores' time that a pack of 20 small films keeps busy."""
     with tempfile.TemporaryDirectory() as folder:
-        pack = Path(folder) / "pack"
         for number in range(4):
-            song = pack / f"song{number}"
+            song = Path(folder) / "pack" / f"song{number}"
             song.mkdir(parents=True)
             for file in DEMO.parent.iterdir():
                 (song / file.name).write_bytes(file.read_bytes())
+        videos = Path(folder) / "videos"
         command = [
             sys.executable,
             "-m",
             "dancetutor_cli",
             "render",
-            str(pack),
+            str(Path(folder) / "pack"),
             "-o",
-            str(Path(folder) / "videos"),
+            str(videos),
             "-q",
         ]
-        wanted = ["--steps-type", "dance-single", "--section", "4:12", "--size", "640x360", "--renderer", "cpu"]
+        wanted = ["--steps-type", "dance-single", "--section", "4:9", "--size", "640x360", "--renderer", "cpu"]
+        before, began = _used(), time.monotonic()
         subprocess.run([*command, *wanted], check=True, cwd=ROOT)
-        films = len(list((Path(folder) / "videos").glob("*.mp4")))
-    after = os.times()
-    used = after.children_user + after.children_system - before.children_user - before.children_system
-    return used / (time.monotonic() - began) / (os.cpu_count() or 1), films
+        wall, films = time.monotonic() - began, len(list(videos.glob("*.mp4")))
+    busy = (_used() - before) / wall / (os.cpu_count() or 1)
+    return [(f"cores busy, {films} films of 5 s", 100 * busy, "%", "90", "")]
 
 
-def measure() -> list[Row]:
-    """Rows of the table; the demo song, 1280x720 at 30 frames per second, music and encoding included."""
-    _render("draft")  # fills numba's cache and the disk's
-    rows: list[Row] = []
-    for quality in ("good", "draft"):
-        run = _render(quality)
-        seen = run["seen"]
-        first = seen[0][0]
-        start = next(s for s in seen if s[0] >= first + WARM_UP)
-        steady = (seen[-1][1] - start[1]) / run["fps"] / (seen[-1][0] - start[0])
-        whole = seen[-1][1] / run["fps"] / (run["end"] - run["began"])
-        rows.append((f"{quality}, steady", steady, "s of video/s", GOALS[quality], PEER if quality == "good" else ""))
-        rows.append((f"{quality}, whole run", whole, "s of video/s", "", ""))
-        if quality == "good":
-            rows.append(("first frames after", first - run["began"], "s", "3", ""))
-            rows.append(("memory of a worker", run["memory"], "MiB", "700", ""))
-    busy, films = _pack()
-    rows.append((f"cores busy, {films} films of 8 s", 100 * busy, "%", "90", ""))
-    return rows
+ROWS: dict[str, Callable[[], list[Row]]] = {
+    "good": lambda: film("good"),
+    "draft": lambda: film("draft"),
+    "gl": gl,
+    "pack": pack,
+}
+
+
+def measure(names: tuple[str, ...] = tuple(ROWS)) -> list[Row]:
+    """Rows of the table; other programs that run at the same time make all but the processor time worse."""
+    _render("warm")  # fills numba's cache and the disk's
+    return [row for name in names for row in ROWS[name]()]
 
 
 if __name__ == "__main__":
-    child(*sys.argv[2:])
+    if sys.argv[1:2] == ["child"]:
+        child(*sys.argv[2:])
+    elif unknown := [name for name in sys.argv[1:] if name not in ROWS]:
+        sys.exit(f"no row named {', '.join(unknown)}; there are: {', '.join(ROWS)}")
+    else:
+        for name, value, unit, goal, _ in measure(tuple(sys.argv[1:]) or tuple(ROWS)):
+            print(f"{name:40} {value:8.3g} {unit:14} {goal and 'goal ' + goal}")

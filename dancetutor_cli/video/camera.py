@@ -49,8 +49,12 @@ class Camera:
             raise UsageError("the camera's position and target are the same point; move one of them")
         forward = forward / length
         flat = math.hypot(forward[0], forward[2])
-        # Straight down (or up) there is no upright; the screen side is up then, as on a plan of the pad.
-        right = np.array([-1.0, 0, 0]) if flat < 1e-3 else np.array([-forward[2], 0.0, forward[0]]) / flat
+        if flat < 1e-3:
+            # Straight down (or up) there is no upright; the screen side is up then, as on a plan of the pad.
+            forward = np.array([0.0, math.copysign(1.0, forward[1]), 0.0])
+            right = np.array([-1.0, 0.0, 0.0])
+        else:
+            right = np.array([-forward[2], 0.0, forward[0]]) / flat
         up = np.array(
             [
                 right[1] * forward[2] - right[2] * forward[1],

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.video import ffmpeg, probe
 from dancetutor_cli.video.film_look import Quality
@@ -20,12 +22,9 @@ Encoder = Literal["x264", "nvenc", "vaapi"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}
 _PRESET = {"draft": "ultrafast", "good": "veryfast", "best": "medium"}
-# Tagged as bt709 and converted as bt709: players guess by size otherwise, and reds come out wrong.
+# MP4s get frames as `yuv.yuv420` makes them, and are tagged so: players guess by size otherwise, and reds are wrong.
 _BT709 = ("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv")
-_TO_BT709 = (
-    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p,"
-    "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"
-)
+_TAGGED = "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +53,12 @@ def _h264(encoder: Encoder, quality: Quality, group: int) -> Sequence[str]:
     """Filters and options of an H.264 encoder; `group` is the greatest distance of key frames."""
     if encoder == "nvenc":
         rate = ("-rc", "vbr", "-cq", _CRF[quality], "-b:v", "0", "-bf", "2", "-g", str(group))
-        return ("-vf", _TO_BT709, "-c:v", "h264_nvenc", "-preset", "p4", *rate)
+        return ("-vf", _TAGGED, "-c:v", "h264_nvenc", "-preset", "p4", *rate)
     if encoder == "vaapi":
-        upload = _TO_BT709.replace("format=yuv420p", "format=nv12") + ",hwupload"
+        upload = f"{_TAGGED},format=nv12,hwupload"
         return ("-vf", upload, "-c:v", "h264_vaapi", "-qp", _CRF[quality], "-bf", "0", "-g", str(group))
     level = ("-preset", _PRESET[quality], "-crf", _CRF[quality], "-bf", "2", "-g", str(group))
-    return ("-vf", _TO_BT709, "-c:v", "libx264", *level, "-x264-params", "open-gop=0")
+    return ("-vf", _TAGGED, "-c:v", "libx264", *level, "-x264-params", "open-gop=0")
 
 
 def target_of(path: Path) -> Target:
@@ -80,6 +79,8 @@ def even_size(size: tuple[int, int]) -> tuple[int, int]:
 def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, first: int = 0) -> None:
     """Write frames, uint8 (h, w, 3), to one segment; for "png" into the folder `path`, numbered from `first`.
 
+    Only here numba is needed, which an encoding that is only described must not bring.
+
     Raises EncoderError with ffmpeg's own words if it dies, FileError if a picture cannot be written.
     """
     if encoding.target == "png":
@@ -87,13 +88,18 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
         for number, frame in enumerate(frames, first):
             save_picture(frame, path / f"frame_{number:06d}.png")
         return
+    from dancetutor_cli.video.yuv import yuv420
+
     width, height = encoding.size
-    raw = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(encoding.fps), "-i", "pipe:0")
+    planes = encoding.target == "mp4"
+    pixels = "yuv420p" if planes else "rgb24"
+    raw = ("-f", "rawvideo", "-pix_fmt", pixels, "-s", f"{width}x{height}", "-r", str(encoding.fps), "-i", "pipe:0")
     device = probe.DEVICE.get("h264_vaapi", ()) if encoding.encoder == "vaapi" else ()
     arguments = ("-y", *device, *ffmpeg.INPUT_GUARD, *raw, "-an", *encoding._codec(), "-threads", "1")
     with ffmpeg.Process((*arguments, ffmpeg.local(path)), "encoding video", write=True) as process:
+        spare = np.empty(width * height * 3 // 2, dtype=np.uint8)
         for frame in frames:
-            process.write(frame.data)
+            process.write((yuv420(frame, spare) if planes else np.ascontiguousarray(frame)).data)
         process.finish()
 
 

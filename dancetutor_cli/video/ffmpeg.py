@@ -16,6 +16,7 @@ from dancetutor_cli.errors import UnavailableError
 
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
+PIPE = 1 << 20  # bytes that a pipe to ffmpeg shall hold
 _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
 
 
@@ -43,6 +44,14 @@ def _options() -> dict[str, object]:
     if os.name == "nt":
         return {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | 0x08000000}  # no window
     return {"start_new_session": True}
+
+
+def _widen(pipe: IO[bytes]) -> None:
+    """Let a pipe hold more, where the system allows it: both ends wait less often for each other."""
+    with contextlib.suppress(ImportError, AttributeError, OSError):
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE)  # type: ignore[attr-defined,unused-ignore]
 
 
 def _last_words(log: IO[bytes]) -> str:
@@ -73,6 +82,8 @@ class Process:
         except OSError as error:
             self.log.close()
             raise EncoderError(f"ffmpeg cannot be started ({error.strerror}): {command[0]}") from error
+        if write:
+            _widen(self.process.stdin)
 
     def write(self, data: object) -> None:
         """Give ffmpeg bytes; EncoderError with its own message if it has died."""

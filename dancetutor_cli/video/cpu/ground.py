@@ -8,32 +8,33 @@ import numpy as np
 from numba import njit
 
 from dancetutor_cli.video.cpu.background import quantise
+from dancetutor_cli.video.cpu.kernel import kernel
 from dancetutor_cli.video.cpu.surfaces import smooth
 
 
 @njit(cache=True)
 def blur(mask: Any, radius: int, spare: Any) -> None:  # pragma: no cover
-    """Box blur of a square picture in place, both ways; `spare` has its shape. Borders count as 0."""
-    size = mask.shape[0]
+    """Box blur of a picture in place, both ways; `spare` has its shape. Beyond its borders it counts as 0."""
+    height, width = mask.shape
     share = 1.0 / (2 * radius + 1)
-    for row in range(size):
+    for row in range(height):
         total = 0.0
-        for c in range(min(radius, size)):
+        for c in range(min(radius, width)):
             total += mask[row, c]
-        for c in range(size):
-            if c + radius < size:
+        for c in range(width):
+            if c + radius < width:
                 total += mask[row, c + radius]
             if c - radius - 1 >= 0:
                 total -= mask[row, c - radius - 1]
             spare[row, c] = total * share
-    column = np.zeros(size)
-    for row in range(min(radius, size)):
-        for c in range(size):
+    column = np.zeros(width)
+    for row in range(min(radius, height)):
+        for c in range(width):
             column[c] += spare[row, c]
-    for row in range(size):
+    for row in range(height):
         ahead, behind = row + radius, row - radius - 1
-        for c in range(size):
-            if ahead < size:
+        for c in range(width):
+            if ahead < height:
                 column[c] += spare[ahead, c]
             if behind >= 0:
                 column[c] -= spare[behind, c]
@@ -41,11 +42,20 @@ def blur(mask: Any, radius: int, spare: Any) -> None:  # pragma: no cover
 
 
 @njit(cache=True)
-def occupied(depth: Any, mask: Any) -> None:  # pragma: no cover
-    """1 where a shadow map has something, else 0."""
+def occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
+    """1 where a shadow map has something, else 0; returns x0, y0, x1, y1 around it."""
+    left, top, right, bottom = depth.shape[1], depth.shape[0], 0, 0
     for row in range(depth.shape[0]):
+        some = False
         for c in range(depth.shape[1]):
-            mask[row, c] = 1.0 if depth[row, c] > 0.0 else 0.0
+            full = depth[row, c] > 0.0
+            mask[row, c] = 1.0 if full else 0.0
+            if full:
+                some = True
+                left, right = min(left, c), max(right, c + 1)
+        if some:
+            top, bottom = min(top, row), row + 1
+    return left, top, right, bottom
 
 
 @njit(cache=True, inline="always")
@@ -73,7 +83,7 @@ def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no co
     return float(np.sqrt(ax * ax + az * az))
 
 
-@njit(cache=True)
+@kernel
 def draw_ground(
     out: Any, box: Any, shift: int, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any, foot: Any,
     shadow: Any, axes: Any, origin: Any, scale: float, dark: float, lit: Any, lit_colour: Any, feet: Any, numbers: Any,

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from dancetutor_cli.video.cpu.kernel import kernel
+
 SNAP = 16.0
 DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m
 FRONT, BACK = 1, -1
@@ -53,6 +55,17 @@ def skin(
         for r in range(3, 6):
             world[v, r] *= n
             world[v, r + 3] *= h
+
+
+@njit(cache=True)
+def extent(world: Any) -> Any:  # pragma: no cover
+    """Least and greatest place of the vertices, (3,) each."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for v in range(world.shape[0]):
+        for k in range(3):
+            low[k] = min(low[k], world[v, k])
+            high[k] = max(high[k], world[v, k])
+    return low, high
 
 
 @njit(cache=True)
@@ -126,7 +139,7 @@ def _within(edge: float, step: float, low: float, high: float) -> Any:  # pragma
     return low, high if edge >= 0.0 else -1.0
 
 
-@njit(cache=True)
+@kernel
 def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, spans: Any) -> None:  # pragma: no cover
     """Draw triangles into `nearest`, int64: the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and
     the number + `offset` + 1 of that triangle in its lower half; 0 where there is nothing.
@@ -187,7 +200,7 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, span
             zrow += zy
 
 
-@njit(cache=True)
+@kernel
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
     """As `fill`, what is turned to the light and only its depth: for the shadow map."""
     height, width = depth.shape

@@ -14,6 +14,7 @@ from dancetutor_cli.video.cpu.raster import (
     BACK,
     FRONT,
     clear,
+    extent,
     fill,
     fill_depth,
     project,
@@ -63,6 +64,7 @@ class CpuRenderer:
         self._nearest = np.zeros(shape, np.int64)
         self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
+        self._samples_seen = np.empty(self._samples**2, np.int64), np.empty(self._samples**2)
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
         self._out = np.empty((height, width, 3), np.uint8)
         self._background: tuple[Camera, Background] | None = None
@@ -104,14 +106,16 @@ class CpuRenderer:
         self._shadow[:] = 0.0
         project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
         fill_depth(self._light_points, triangles, self._shadow)
-        occupied(self._shadow, self._mask)
+        left, top, right, bottom = occupied(self._shadow, self._mask)
         radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
-        blur(self._mask, radius, self._spare)
-        blur(self._mask, radius, self._spare)
+        reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
+        part = slice(max(0, top - reach), bottom + reach), slice(max(0, left - reach), right + reach)
+        for _ in range(2):
+            blur(self._mask[part], radius, self._spare[part])
 
     def _draw_ground(self, state: FrameState, background: Background, shift: int, cast: Cast) -> None:
         look = self._scene.look
-        bounds = self._world[:, :3].min(0), self._world[:, :3].max(0)
+        bounds = extent(self._world)
         box = ground_box(self._scene, state.camera, self._size, bounds, cast)
         lit, lit_colour = panel_lights(self._scene, state)
         numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.glow, SOLE_RADIUS])
@@ -141,5 +145,5 @@ class CpuRenderer:
         self._toon[PER_METRE] = per_metre
         resolve(
             self._out, samples, self._nearest, self._spans, count, triangles, mesh.patch, mesh.density,
-            self._vertex, *self._skins, self._shadow, self._toon,
+            self._vertex, *self._skins, self._shadow, self._toon, *self._samples_seen,
         )  # fmt: skip

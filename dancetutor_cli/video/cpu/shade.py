@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.video.cpu.kernel import kernel
 from dancetutor_cli.video.look import ToonLook
 from dancetutor_cli.video.textures import LEVELS
 
@@ -158,20 +159,19 @@ def _colour(
     return min(red + (1.0 - red) * rim, 1.0), min(green + (1.0 - green) * rim, 1.0), min(blue + (1.0 - blue) * rim, 1.0)
 
 
-@njit(cache=True)
+@kernel
 def resolve(
     out: Any, samples: int, nearest: Any, spans: Any, count: int, triangles: Any, patch: Any,
-    density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any,
+    density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any, seen: Any, depths: Any,
 ) -> None:  # fmt: skip  # pragma: no cover
     """Put the samples on the picture.
 
     nearest, spans : what `raster.fill` has drawn; triangles from `count` on are outline.
+    seen, depths : room for one number a sample: its triangle, -1 once it is coloured, int64, and its depth, float64
     One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
     total = samples * samples
     share = 1.0 / total
-    seen = np.empty(total, np.int64)  # the triangle of each sample, -1 once it is coloured
-    depths = np.empty(total)
     for row in range(out.shape[0]):
         first, last = spans[row * samples, 0], spans[row * samples, 1]
         for j in range(1, samples):
