@@ -121,9 +121,11 @@ class Feet:
             moved, late = moved[soon], late[soon]
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
-    def mines_under_held(self) -> Iterator[tuple[int, int, int]]:
-        """Row, column and foot of every mine under a foot that cannot step aside: held by its other panel, or by
-        the other foot's hold.
+    def mines_under_held(self, max_seconds: float) -> Iterator[tuple[int, int, int]]:
+        """Row, column and foot of every mine under a foot that can hardly step aside.
+
+        It is held by its other panel; or the other foot holds one, and the step was at most `max_seconds` before or no
+        other panel is free.
         """
         rows, play = self._play.rows, self._play
         mines = np.argwhere(rows.mines).tolist()
@@ -132,8 +134,27 @@ class Feet:
             for foot in (0, 1):
                 own, other = (self._holding(heads[limb], row) for limb in (foot, 1 - foot))
                 bracket = own is not None and rows.steps[own, column] and play.limb[own, column] == foot
-                if bracket or (other is not None and row and play.feet[row - 1, foot] == column):
+                stands = other is not None and row > 0 and play.feet[row - 1, foot] == column
+                if bracket or (
+                    stands and (self._just_stepped(foot, row, max_seconds) or self._all_mined(row, 1 - foot))
+                ):
                     yield row, column, foot
+
+    def _just_stepped(self, foot: int, row: int, max_seconds: float) -> bool:
+        """Whether the last step of a foot before a row was at most so long ago."""
+        steps, seconds = self._steps_of_feet[foot], self._play.rows.second
+        at = int(np.searchsorted(steps, row)) - 1
+        return at >= 0 and bool(seconds[row] - seconds[steps[at]] <= max_seconds + _EPSILON)
+
+    @cached_property
+    def _steps_of_feet(self) -> list[NDArray[np.int64]]:
+        return [self.presses.of(foot).row for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+
+    def _all_mined(self, row: int, other: int) -> bool:
+        """Whether every panel that the other foot does not hold has a mine."""
+        mined = self._play.rows.mines[row].copy()
+        mined[self._play.feet[row, other]] = True
+        return bool(mined.all())
 
     def _heads_of(self, foot: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Rows in which a foot presses a hold, and the ticks at which it may let go."""

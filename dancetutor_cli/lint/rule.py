@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -60,13 +61,19 @@ class ReaderRule(Rule):
 
 
 class MoveRule(ChartRule):
-    """A chart rule that reports every row in which a named move happens."""
+    """A chart rule that reports every row in which a named move happens.
+
+    With an option `max_seconds` only those rows count that come at most so long after the step before.
+    """
 
     move: ClassVar[str]
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with the move."""
+        longest = self.options.get("max_seconds", math.inf)
         for row in subject.rows_with(self.move):
+            if subject.pause(row) > longest + 1e-6:
+                continue
             yield self.finding(self.message(subject, row), subject.at_row(row))
 
     @abstractmethod

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
@@ -94,6 +95,18 @@ class ChartSubject:
     def step_rows(self) -> list[int]:
         """Rows of the play with at least one step."""
         return [] if self.play is None else np.flatnonzero(self.play.rows.steps.any(axis=1)).tolist()
+
+    @cached_property
+    def _pauses(self) -> NDArray[np.float64]:
+        rows = np.array(self.step_rows(), dtype=np.int64)
+        found = np.full(self.row_count, np.inf)
+        if self.play is not None:
+            found[rows[1:]] = np.diff(self.play.rows.second[rows])
+        return found
+
+    def pause(self, row: int) -> float:
+        """Seconds since the row with a step before this one; endless for the first."""
+        return float(self._pauses[row])
 
     def is_jump(self, row: int) -> bool:
         """Whether both feet press in this row."""

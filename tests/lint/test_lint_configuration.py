@@ -41,7 +41,8 @@ def test_codes_and_names_are_unique_and_well_formed() -> None:
 
 def test_the_defaults_depend_on_the_difficulty(tmp_path: Path) -> None:
     plain = load_configuration(None)
-    assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Easy") == "warning"
+    assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Easy", meter=4) == "warning"
+    assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Easy", meter=9) == "off"
     assert severity(plain, "DT204", tmp_path / "x.sm", difficulty="Hard") == "off"
 
 

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
 class AmbiguousStart(ChartRule):
     """A step can be played as well with the other foot: players will begin the chart, or a passage, on different feet.
 
-    The message tells apart what follows: the same steps whichever foot comes, so that nothing is lost, or all other
-    feet. A tie is a play with the other foot that costs the same. Jumps have both feet, and the steps after a jump that
-    can be turned round are not reported for it.
+    A tie is a play with the other foot that costs the same. Inside a chart only those steps are reported on which the
+    feet of what follows depend, and not those after a jump that can be turned round.
 
     Bad:
 
@@ -38,9 +37,10 @@ class AmbiguousStart(ChartRule):
     name = "ambiguous-start"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each run of rows that are ties, at its first; none where that is a jump."""
-        for number, (row, resolved) in enumerate(subject.ties()):
-            if not subject.is_jump(row):
-                where = "begin" if number == 0 and row == subject.step_rows()[0] else "come"
+        """One finding for each run of rows that are ties, at its first."""
+        for row, resolved in subject.ties():
+            begins = row == subject.step_rows()[0]
+            if (begins or not resolved) and not subject.is_jump(row):
                 after = "the rows after it are stepped the same way" if resolved else "what follows depends on it"
-                yield self.finding(f"either foot can {where} here at the same cost; {after}", subject.at_row(row))
+                verb = "begin" if begins else "come"
+                yield self.finding(f"either foot can {verb} here at the same cost; {after}", subject.at_row(row))

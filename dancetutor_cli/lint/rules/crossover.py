@@ -16,7 +16,8 @@ class Crossover(ChartRule):
     """The feet cross in a chart whose players do not know crossovers yet.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties, and a contest or your own
-    dancetutor.yaml may do so for others.
+    dancetutor.yaml may do so for others. `max_seconds`: only steps at most this long after the step before count; after
+    a longer rest a beginner does not cross, but begins anew.
 
     Bad:
 
@@ -39,4 +40,5 @@ class Crossover(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step after which the feet are newly crossed."""
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
-            yield self.finding("the feet cross here", subject.at_row(first))
+            if subject.pause(first) <= self.options["max_seconds"] + 1e-6:
+                yield self.finding("the feet cross here", subject.at_row(first))

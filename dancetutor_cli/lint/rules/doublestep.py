@@ -14,7 +14,8 @@ class Doublestep(MoveRule):
     """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
 
     Players expect left and right in turn; a doublestep makes them stumble, and is mostly an accident of the pattern
-    before it. Doublesteps that a hold forces are not reported.
+    before it. Doublesteps that a hold forces are not reported. `max_seconds`: only steps at most this long after the
+    step before count; after a longer rest players put down whichever foot they like.
 
     Bad:
 

@@ -11,16 +11,18 @@ if TYPE_CHECKING:
 
 
 class JumpFootswitch(MoveRule):
-    """In this jump a foot that already stands on one of its panels has to change to another one.
+    """In this jump a foot that already stands on one of its panels has to change to another one, and quickly.
 
-    Bad:
+    `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
+
+    Bad (max_seconds = 0.6):
 
         1000  L
         0010  R
         0001  R
         1001  RL
 
-    Better:
+    Better (max_seconds = 0.6):
 
         1000  L
         0010  R

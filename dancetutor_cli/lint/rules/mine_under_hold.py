@@ -13,18 +13,19 @@ if TYPE_CHECKING:
 
 
 class MineUnderHold(ChartRule):
-    """A mine comes under a foot that cannot step aside, because the other foot or its own other half is held down.
+    """A mine comes under a foot that can hardly step aside: the weight is on a panel that is held down.
 
-    The dancer has to stand on one leg, on a held panel, until the mine is past.
+    The foot holds the panel beside it; or the other foot holds one, and the step was just now or every other panel has
+    a mine, so that the dancer has to stand on one leg. `max_seconds`: just now means at most this long before the mine.
 
-    Bad:
+    Bad (max_seconds = 1.5):
 
         0001  R
         2000  L
         000M
         3000
 
-    Better:
+    Better (max_seconds = 1.5):
 
         0001  R
         2000  L
@@ -37,6 +38,7 @@ class MineUnderHold(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine."""
-        for row, column, foot in subject.feet.mines_under_held() if subject.feet else ():
+        limit = self.options["max_seconds"]
+        for row, column, foot in subject.feet.mines_under_held(limit) if subject.feet else ():
             message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
             yield self.finding(message, subject.at_row(row, column))
