@@ -158,7 +158,7 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
     encoder = choose(options["encoder"]) if kind == "mp4" else "x264"
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality, encoder)
     with FilmProgress(target.name, quiet) as progress:
-        film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress)
+        film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
     _warn(film.warnings)
     if options["poses"]:
         extras.write_pose_index(target, subject, film.plan)

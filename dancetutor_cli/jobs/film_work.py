@@ -12,6 +12,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
     from dancetutor_cli.video.blit import Frame
     from dancetutor_cli.video.film import Film, FilmPlan
+    from dancetutor_cli.video.film_look import Quality, RendererKind
 
 SEGMENT_SECONDS = 4.0  # of film; the same whatever the number of workers, so that the files are the same too
 STATE = ".dancetutor"  # folder beside the films of a batch: what is done, and what is in work
@@ -185,10 +188,24 @@ def forget() -> None:
     _film.cache_clear()
 
 
-def warm_up(report: Report) -> None:
-    """Import in a fresh worker what drawing needs, while the film is still being prepared."""
-    import dancetutor_cli.video.dancer
-    import dancetutor_cli.video.film  # noqa: F401
+def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
+    """Do in a fresh worker what comes before any first frame, while the film is still being prepared.
+
+    That is to import what drawing needs and, for the "cpu" renderer, to fetch its kernels from numba's cache by drawing
+    a tiny room. A GL renderer is made when it is needed: it holds a context.
+    """
+    from dancetutor_cli.character import load_dancer
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.video import dancer, film, renderer, yuv  # noqa: F401
+    from dancetutor_cli.video.scene import FrameState, Scene
+
+    pad = load_pad("dance-single")
+    if pad is None or renderer.chosen(kind) != "cpu":
+        return
+    scene, size = Scene(load_dancer(), pad), (64, 36)
+    nobody = np.zeros(scene.panels)
+    state = FrameState(None, scene.camera("back", size), nobody, nobody.astype(np.int64))
+    renderer.create(scene, size, quality, "cpu").frame(state)
 
 
 def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encoding) -> int:

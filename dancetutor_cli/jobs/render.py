@@ -16,6 +16,7 @@ from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.pool import Task, Workers, open_workers
 from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.ffmpeg import EncoderError
+from dancetutor_cli.video.film_look import RendererKind
 
 
 class Progress(Protocol):
@@ -69,13 +70,18 @@ def _workers(jobs: int, progress: Progress) -> Iterator[Workers]:
 
 
 def make_film(
-    prepare: Callable[[], Prepared], encoding: Encoding, output: Path, jobs: int, progress: Progress
+    prepare: Callable[[], Prepared],
+    encoding: Encoding,
+    output: Path,
+    jobs: int,
+    progress: Progress,
+    renderer: RendererKind = "cpu",
 ) -> Prepared:
     """Make a film and put it at `output` (for "png": a folder of pictures).
 
     Parameters
     ----------
-    prepare : makes the plan; runs here while the workers start
+    prepare : makes the plan; runs here while the workers start and get ready for `renderer`
     jobs : number of processes that draw; 1 draws in this one. The result is the same for any number.
 
     Raises
@@ -85,7 +91,7 @@ def make_film(
     with _workers(jobs, progress) as workers, work_folder(output) as folder:
         if jobs > 1:
             for number in range(jobs):
-                workers.submit(Task(("warm-up", number), work.warm_up))
+                workers.submit(Task(("warm-up", number), work.warm_up, (encoding.quality, renderer)))
         prepared = prepare()
         plan = prepared.plan
         plan_file = folder / "plan.pickle"

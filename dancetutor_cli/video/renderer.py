@@ -59,13 +59,18 @@ def create(
         raise UsageError(f"no renderer '{kind}'; there are: {', '.join(KINDS)}")
     if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
         raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
-    if kind == "auto":
-        kind = "gl" if _gpu() else "cpu"
-    if kind == "gl":
+    if chosen(kind) == "gl":
         return _create_gl(scene, size, quality)
     from dancetutor_cli.video.cpu.renderer import CpuRenderer
 
     return CpuRenderer(scene, size, quality)
+
+
+def chosen(kind: RendererKind) -> RendererKind:
+    """The renderer that "auto" stands for here, or the one that is named."""
+    if kind == "auto":
+        return "gl" if _gpu() else "cpu"
+    return kind
 
 
 def _gpu() -> bool:
