@@ -103,7 +103,7 @@ def plan_of(
     settings = settings or default_settings()
     plan = Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
     first, last = plan.first, plan.last
-    plan = with_walks(plan, ground_of(pad, settings), gait, settings)
+    plan = with_walks(plan, ground_of(pad, settings), mines_of(play, pad)[:, 0], gait, settings)
     if not bar:
         return plan
     rail = bar_of(pad, settings.bar)

@@ -100,12 +100,14 @@ def _body(plan: Plan, bar: Bar, times: Array, settings: MotionSettings) -> tuple
 
 
 def _busy(plan: Plan, times: Array, settings: MotionSettings) -> NDArray[np.bool_]:
-    """Whether a hand is at a panel or on its way to or from it; then both are off the bar."""
+    """Whether a hand is at a panel or on its way to or from it, or she walks; then both are off the bar."""
     out = np.zeros(len(times), dtype=bool)
     down, reach = settings.hands.reach_down, settings.bar.reach_time
     for press in plan.presses:
         first, last = press.start - down - reach, press.end + down + reach
         out[np.searchsorted(times, first) : np.searchsorted(times, last)] = True
+    for walk in plan.walks:
+        out[np.searchsorted(times, walk.start - reach) : np.searchsorted(times, walk.end + reach)] = True
     return out
 
 

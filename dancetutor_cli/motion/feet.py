@@ -16,6 +16,7 @@ TURNING = 0.5  # part of a jump's ground path that turns about the middle betwee
 EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
 OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
 HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
+WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 
@@ -133,6 +134,7 @@ def _stand_pitch(
     leave = np.concatenate((pitches[:, 0], [0.0]))[done]
     stood = leaves - landed
     drop = np.minimum(heel_drop, 0.6 * stood)
-    rise = np.minimum(HEEL_RISE, 0.4 * stood)
+    early = np.array([WALKING_RISE if w.kind == "walk" else HEEL_RISE for w in track.swings] + [HEEL_RISE])[done]
+    rise = np.minimum(early, 0.4 * stood)
     falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
     return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

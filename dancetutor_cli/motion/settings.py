@@ -187,6 +187,7 @@ class WalkSettings:
     least: float
     settle: float
     pause: float
+    leave: float
     beside: float
     floor: float
     width: float

@@ -6,47 +6,25 @@ the gait adds to pelvis, chest and hands (`motion.gait`) comes on top.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour, shoes_apart
-from dancetutor_cli.motion.ease import smooth
-from dancetutor_cli.motion.gait import blended, gaits_of
-from dancetutor_cli.motion.model import Ground
-from dancetutor_cli.motion.settings import Gait, MotionSettings
-from dancetutor_cli.motion.track import FootTrack, Plan, Swing, Turn, Walk
+from dancetutor_cli.motion.footsteps import Stand, Steps, footsteps, stand_at, standing
+from dancetutor_cli.motion.model import Contact, Ground
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.track import FootTrack, Plan, Swing, Turn
+from dancetutor_cli.play.model import StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
-STANCE = 0.6  # part of a cycle that a foot stands
-SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
-ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
-OVER_EDGE = 0.02  # metres that a foot rises more to get over the edge of the pad
 BEGIN = -0.3  # seconds at which the first step begins: as the song does, she is on her way
-
-
-@dataclass(frozen=True, slots=True)
-class Stand:
-    """Both feet on the ground: places of their balls (2, 2) and their yaws with toe-out (2,), left and right.
-
-    heading : yaw of the body, radians
-    """
-
-    balls: Array
-    yaws: Array
-    heading: float
-
-    @property
-    def middle(self) -> Array:
-        """Between the feet, (2,)."""
-        left, right = (stage.middle_of(b, float(y)) for b, y in zip(self.balls, self.yaws, strict=True))
-        return np.asarray((left + right) / 2)
+REST = 0.15  # seconds that she stands between a walk and a step at least
 
 
 def ground_of(pad: Pad, settings: MotionSettings) -> Ground:
@@ -56,10 +34,26 @@ def ground_of(pad: Pad, settings: MotionSettings) -> Ground:
     return Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
 
 
-def with_walks(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -> Plan:
-    """The plan with walks wherever there is time for one; gait is "flat" or "heels"."""
-    out = _walk_off(_walk_on(plan, ground, gait, settings), ground, gait, settings)
-    return replace(out, ground=ground) if out.walks else plan
+def with_walks(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
+    """The plan with walks wherever there is time for one.
+
+    mines : (m,) seconds at which mines pass; gait : "flat" or "heels"
+    """
+    out = walk_over(plan, ground, mines, gait, settings)
+    out = _walk_off(_walk_on(out, ground, gait, settings), ground, gait, settings)
+    return replace(out, ground=ground, contacts=_released(out)) if out.walks else plan
+
+
+def _released(plan: Plan) -> tuple[Contact, ...]:
+    """Contacts end when their foot leaves the panel, also when it leaves for a walk."""
+    lifts = [np.array([s.lift for s in t.swings if s.kind == "walk"]) for t in plan.feet]
+    out = []
+    for contact in plan.contacts:
+        if contact.limb < len(lifts):
+            after = lifts[contact.limb][lifts[contact.limb] > contact.start]
+            contact = replace(contact, end=min(contact.end, float(after.min(initial=np.inf))))
+        out.append(contact)
+    return tuple(out)
 
 
 def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -> Plan:
@@ -67,11 +61,11 @@ def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) ->
     walk = settings.walk
     if plan.first < walk.least:
         return plan
-    goal = _standing(plan.feet, -np.inf)
+    goal = standing(plan.feet, -np.inf)
     away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
-    begin = _stand(away, -np.pi / 2, settings)
+    begin = stand_at(away, -np.pi / 2, settings)
     ready = plan.first - walk.settle
-    steps = _steps(begin, goal, -np.pi / 2, ground, gait, BEGIN, ready, settings)
+    steps = footsteps(begin, goal, -np.pi / 2, ground, gait, BEGIN, ready, settings)
     if steps is None:
         return plan
     level = ground.level(*begin.middle)
@@ -88,13 +82,17 @@ def _walk_off(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -
     """After the last note she leaves to her right side, or to the left if her feet would be in each other's way."""
     walk = settings.walk
     start = max(plan.last, *(s.land for track in plan.feet for s in track.swings[-1:])) + walk.pause
-    begin = _standing(plan.feet, np.inf, plan.turns)
+    begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
     for place, heading in ((ground.low[0] - walk.beside, -np.pi / 2), (ground.high[0] + walk.beside, np.pi / 2)):
-        goal = _stand(np.array([place, 0.0]), whole + heading, settings)
-        steps = _steps(begin, goal, whole + heading, ground, gait, start, start + 10.0, settings)
-        found += [] if steps is None else [steps]
+        goal = stand_at(np.array([place, 0.0]), whole + heading, settings)
+        for late in (0.0, 0.5, 1.0, np.inf):
+            ready = plan.last + walk.leave + late
+            steps = footsteps(begin, goal, whole + heading, ground, gait, start, ready, settings)
+            if steps is not None:
+                found.append(steps)
+                break
     if not found:
         return plan
     free = [steps for steps in found if steps.room >= settings.step.apart]
@@ -103,167 +101,81 @@ def _walk_off(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -
     return replace(plan, feet=(feet[0], feet[1]), turns=(*plan.turns, *steps.turns), walks=(*plan.walks, steps.walk))
 
 
-def _standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, ...] = ()) -> Stand:
-    """How she stands at a time: after all that landed before it."""
-    balls, yaws = [], []
-    for track in feet:
-        done = [s for s in track.swings if s.land <= time]
-        balls.append(done[-1].target if done else track.start)
-        yaws.append(done[-1].yaw if done else track.start_yaw)
-    before = [t.yaw for t in turns if t.end <= time]
-    return Stand(np.array(balls), np.array(yaws), before[-1] if before else 0.0)
+def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
+    """Where a long wait ends with steps of both feet on the other pad she walks there, rather than stretch.
 
-
-def _stand(middle: Array, heading: float, settings: MotionSettings) -> Stand:
-    """Feet side by side around a place."""
-    out = np.radians(settings.step.toe_out)
-    left = np.array([np.cos(heading), -np.sin(heading)])
-    yaws = np.array([heading + out, heading - out])
-    sides = (settings.walk.width, -settings.walk.width)
-    balls = np.array([stage.ball_of(middle + w * left, y) for w, y in zip(sides, yaws, strict=True)])
-    return Stand(balls, yaws, heading)
-
-
-@dataclass(frozen=True, slots=True)
-class Steps:
-    """A walk, ready to be put into a plan. room : least distance between the middle lines of her shoes, metres."""
-
-    walk: Walk
-    swings: tuple[tuple[Swing, ...], tuple[Swing, ...]]
-    turns: tuple[Turn, ...]
-    room: float
-
-
-def _steps(
-    begin: Stand, goal: Stand, heading: float, ground: Ground, gait: str, start: float, ready: float,
-    settings: MotionSettings,
-) -> Steps | None:  # fmt: skip
-    """Footsteps from one stand to another, at the slowest pace that arrives until `ready`; None if none does."""
-    slow, quick = gaits_of(gait, settings)
-    distance = float(np.linalg.norm(goal.middle - begin.middle))
-    turning = max(_turns(begin.heading, heading, settings), _turns(heading, goal.heading, settings))
-    for share in SPEEDS:
-        pace = blended(slow, quick, float(share))
-        count = max(int(np.ceil(2 * distance / pace.stride - 1e-6)), turning + 1, 2) + 1
-        last = start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
-        if last <= ready:
-            how = Pace(gait, float(share), start)
-            falls = [_footfalls(begin, goal, heading, count, side, ground, settings) for side in (0, 1)]
-            both = [_as_swings(begin, f, side, pace, how, ground, settings) for side, f in enumerate(falls)]
-            return max(both, key=lambda s: s.room)
-    return None
-
-
-def _turns(a: float, b: float, settings: MotionSettings) -> int:
-    return int(np.ceil(abs(b - a) / np.radians(settings.walk.turn) - 1e-6))
-
-
-@dataclass(frozen=True, slots=True)
-class Pace:
-    """How quickly she walks: a gait's name, the share of its quick form, and when she begins."""
-
-    gait: str
-    share: float
-    start: float
-
-
-@dataclass(frozen=True, slots=True)
-class Footfall:
-    """Where a foot comes down: its ball, its yaw with toe-out, and which way the body then points."""
-
-    ball: Array
-    yaw: float
-    heading: float
-
-
-def _footfalls(
-    begin: Stand, goal: Stand, heading: float, count: int, first: int, ground: Ground, settings: MotionSettings
-) -> list[Footfall]:
-    """`count` footfalls, the first of foot `first`; the last two are the goal's."""
-    most, out = np.radians(settings.walk.turn), np.radians(settings.step.toe_out)
-    steps = []
-    for k in range(1, count + 1):
-        side = (first + k - 1) % 2
-        if k >= count - 1:
-            steps.append(Footfall(goal.balls[side], float(goal.yaws[side]), goal.heading))
+    mines : (m,) seconds; while they pass she stays, for who walks might tread on one
+    """
+    walk, places = settings.walk, _centres(ground)
+    if len(places) == 1:
+        return plan
+    for start, ready in _waits(plan, mines, walk.wait):
+        begin = standing(plan.feet, start, plan.turns)
+        following = [_next_step(track, ready) for track in plan.feet]
+        if any(s is None or s.kind == "evade" for s in following):
             continue
-        way = float(np.clip(heading, begin.heading - k * most, begin.heading + k * most))
-        left = count - 1 - k
-        way = float(np.clip(way, goal.heading - left * most, goal.heading + left * most))
-        aside = (settings.walk.width if side == 0 else -settings.walk.width) * np.array([np.cos(way), -np.sin(way)])
-        middle = begin.middle + (goal.middle - begin.middle) * k / (count - 1) + aside
-        yaw = way + (out if side == 0 else -out)
-        steps.append(Footfall(stage.ball_of(_on_one_level(middle, yaw, ground), yaw), yaw, way))
-    return steps
+        targets = np.array([s.target for s in following if s is not None])
+        if np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
+            continue
+        nearest = places[np.argmin(np.abs(places - targets[:, 0].mean()))]
+        whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
+        goal = stand_at(np.array([nearest, 0.0]), whole, settings)
+        way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
+        steps = footsteps(begin, goal, way, ground, gait, start + walk.pause, ready - REST, settings)
+        if steps is not None and steps.room >= settings.step.apart - 0.01:
+            plan = _inserted(plan, steps, goal, ready)
+    return plan
 
 
-def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
-    """A place for a foot at which all of it is on the pad, or all of it beside it."""
-    need = ALONG * np.abs([np.sin(yaw), np.cos(yaw)]) + ACROSS * np.abs([np.cos(yaw), np.sin(yaw)])
-    out = middle.copy()
-    inside = np.array(ground.low) - need < out
-    if not (inside & (out < np.array(ground.high) + need)).all():
-        return out
-    for axis in (0, 1):
-        for edge, outward in ((ground.low[axis], -1.0), (ground.high[axis], 1.0)):
-            beyond = outward * (out[axis] - edge)
-            if abs(beyond) < need[axis]:
-                out[axis] = edge + outward * (need[axis] if beyond > 0 else -need[axis])
+def _next_step(track: FootTrack, time: float) -> Swing | None:
+    return next((s for s in track.swings if s.lift >= time - 1e-9 and s.kind != "pivot"), None)
+
+
+def _centres(ground: Ground) -> Array:
+    """Places (k,) along x where she may wait: the middle of each square of panels, and between two of them."""
+    width = ground.high[0] - ground.low[0]
+    squares = max(1, round(width / (3 * stage.PANEL)))
+    return np.float64(ground.low[0]) + width / squares * (0.5 + 0.5 * np.arange(2 * squares - 1))
+
+
+def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
+    """Stretches from when both feet are free to when one lifts, at least so long, without mines and hands."""
+    lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.swings if s.kind != "pivot")
+    held = [(c.start, c.end) for c in plan.contacts if c.kind == StepKind.HOLD]
+    busy = [(p.start - p.lead, p.end + 1.0) for p in plan.presses]
+    out, free = [], np.inf
+    for lift, land in lifts:
+        if lift - free >= least:
+            start = max([free, *(end for begin, end in held if begin < lift and end < np.inf)])
+            clear = not ((mines > start - 0.2) & (mines < lift + 0.2)).any()
+            if lift - start >= least and clear and not any(a < lift and b > start for a, b in busy):
+                out.append((start, lift))
+        free = land if free == np.inf else max(free, land)
     return out
 
 
-def _room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float], other: tuple[Array, float]) -> float:
-    """Least distance between a swinging shoe and the standing one, metres."""
-    least = np.inf
-    standing = stage.middle_of(*other)
-    for s in np.linspace(0.1, 1.0, 10):
-        share = smooth(s)
-        ball = start[0] + share * (step.ball - start[0]) + np.sin(np.pi * share) ** 2 * np.array(bulge)
-        yaw = start[1] + float(share) * (step.yaw - start[1])
-        least = min(least, shoes_apart(stage.middle_of(ball, yaw), yaw, standing, other[1]))
-    return float(least)
+def _inserted(plan: Plan, steps: Steps, goal: Stand, ready: float) -> Plan:
+    """The plan with a walk in a wait that ends at `ready`; what follows starts from where she has walked to."""
+    tracks = []
+    for side, track in enumerate(plan.feet):
+        after = [s for s in track.swings if s.land > steps.walk.start]
+        before = track.swings[: len(track.swings) - len(after)]
+        here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
+        moved: list[Swing] = []
+        for swing in after:
+            if swing.kind != "pivot":
+                moved += [_from_there(swing, goal), *after[len(moved) + 1 :]]
+                break
+            moved.append(replace(swing, target=here))
+        tracks.append(replace(track, swings=(*before, *steps.swings[side], *moved)))
+    turns = sorted([*plan.turns, *steps.turns], key=lambda t: t.start)
+    walks = sorted([*plan.walks, steps.walk], key=lambda w: w.start)
+    return replace(plan, feet=(tracks[0], tracks[1]), turns=tuple(turns), walks=tuple(walks))
 
 
-def _as_swings(
-    begin: Stand, steps: list[Footfall], first: int, pace: Gait, how: Pace, ground: Ground, settings: MotionSettings
-) -> Steps:
-    push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
-    places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
-    swings: tuple[list[Swing], list[Swing]] = ([], [])
-    turns, landings, before, room = [], [], begin.heading, np.inf
-    for k, step in enumerate(steps):
-        side = (first + k) % 2
-        land = how.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
-        lift = land - (1.0 - STANCE) * pace.period
-        far = float(np.linalg.norm(step.ball - places[side][0]))
-        share = min(far / (0.6 * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
-        pitches = (0.8 * share * push, max(share, 0.3) * push, -share * heel, 0.0)
-        (ball, yaw), (other, standing) = places[side], places[1 - side]
-        bulge = detour(
-            stage.middle_of(ball, yaw), yaw, stage.middle_of(step.ball, step.yaw), step.yaw,
-            stage.middle_of(other, standing), standing, settings.step.apart,
-        )  # fmt: skip
-        room = min(room, _room(places[side], step, bulge, places[1 - side]))
-        level = ground.level(*stage.middle_of(step.ball, step.yaw))
-        edge = abs(level - ground.level(*stage.middle_of(ball, yaw))) > 0.0
-        target = (float(step.ball[0]), float(step.ball[1]))
-        swings[side].append(
-            Swing(
-                lift, land, target, step.yaw, pace.height + OVER_EDGE * edge, pitches, bulge, kind="walk", level=level
-            )
-        )
-        places[side] = (step.ball, step.yaw)
-        turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
-        before = step.heading
-        landings.append(land)
-    walk = Walk(how.start, landings[-1], tuple(landings), first, how.share, how.gait)
-    return Steps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), room)
-
-
-def _joined(turns: list[Turn]) -> list[Turn]:
-    """Turns that follow each other without overlapping."""
-    out = []
-    for k, turn in enumerate(turns):
-        end = turns[k + 1].start if k + 1 < len(turns) else turn.end
-        out.append(replace(turn, end=max(min(turn.end, end), turn.start + 0.05)))
-    return out
+def _from_there(swing: Swing, goal: Stand) -> Swing:
+    """The first step after a walk: its way was planned from elsewhere."""
+    if swing.kind != "jump":
+        return replace(swing, bulge=(0.0, 0.0))
+    middle = goal.balls.mean(axis=0)
+    return replace(swing, turn=0.0, middle0=(float(middle[0]), float(middle[1])))

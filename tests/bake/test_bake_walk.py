@@ -1,0 +1,139 @@
+"""Walking on, off and between the pads: feet stand where they stand, she is there in time, and goals are met."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bake_plays import L, R, chart, pad, play, stream
+
+from dancetutor_cli.bake import bake, plan_of, report
+from dancetutor_cli.motion.gait import blended, blended_pose, gait_pose
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.soles import points_in_world, sole_points
+
+EVENTS = stream(3.0, 12, 0.4)
+OVER = [
+    *[(3.0 + 0.4 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(6)],
+    *[(9.0 + 0.4 * k, {(4, 7)[k % 2]: (L, R)[k % 2]}) for k in range(6)],
+]
+
+
+@pytest.fixture(scope="module")
+def walked() -> Motion:
+    return bake(chart(), play(EVENTS), pad())
+
+
+def soles(motion: Motion, times: np.ndarray) -> np.ndarray:
+    """(2, t, 6, 3)"""
+    return np.stack([points_in_world(motion.skeleton, p, *sample(motion, times)) for p in sole_points(motion.skeleton)])
+
+
+def test_she_comes_from_beside_the_pad_and_goes(walked: Motion) -> None:
+    assert walked.ground is not None
+    assert walked.root[0, 0] > walked.ground.high[0] + 0.1  # on her way at the song's first moment
+    assert abs(walked.root[-1, 0]) > walked.ground.high[0] + 0.3
+    at_note = sample(walked, np.array([2.6]))[1][0]
+    assert abs(at_note[0]) < 0.08 and abs(at_note[2]) < 0.2
+    on_floor = soles(walked, walked.times[-1:])[:, 0, :, 1]
+    assert np.abs(on_floor + walked.ground.drop).max() < 5e-4
+
+
+def test_feet_on_the_ground_do_not_slide(walked: Motion) -> None:
+    """A sole point that is down in two samples was not moved between them: floor and pad, heel strike and all."""
+    assert walked.ground is not None
+    times = np.arange(0.0, walked.times[-1], 1 / 240)
+    points = soles(walked, times)
+    inside = (np.abs(points[..., [0, 2]]) <= 0.42).all(axis=-1)
+    height = points[..., 1] + np.where(inside, 0.0, walked.ground.drop)
+    assert height.min() > -0.001
+    down = (height[:, 1:] < 0.0005) & (height[:, :-1] < 0.0005)
+    moved = np.linalg.norm(np.diff(points[..., [0, 2]], axis=1), axis=-1)
+    for side in (0, 1):
+        still = down[side] & ~_turning(points[side])[:, None]
+        assert still.mean() > 0.2 and moved[side][still].max() < 2e-4
+
+
+def _turning(points: np.ndarray) -> np.ndarray:
+    """Whether a foot turns between two samples, as one that pivots on its ball does."""
+    across = points[:, 2] - points[:, 3]
+    return np.abs(np.diff(np.unwrap(np.arctan2(across[:, 0], across[:, 2])))) > np.radians(0.02)
+
+
+@pytest.mark.parametrize("gait", ["flat", "heels"])
+def test_every_goal_is_met(gait: str) -> None:
+    measured = report(bake(chart(), play(EVENTS), pad(), gait=gait))
+    assert [f for f in measured.figures if f.met is False] == [], measured.notes
+
+
+def test_without_time_she_stands_there() -> None:
+    plan = plan_of(chart(), play(stream(1.5, 8, 0.4)), pad())
+    assert all(walk.start > plan.last for walk in plan.walks)
+    assert np.abs(plan.feet[0].start).max() < 0.2
+
+
+def test_both_gaits_are_blended_at_one_normalised_time() -> None:
+    settings = default_settings()
+    slow, quick = settings.stroll, settings.brisk
+    phase = np.linspace(0.0, 2.0, 41)
+    for share in (0.0, 0.3, 1.0):
+        assert blended(slow, quick, share).period == pytest.approx((quick.period - slow.period) * share + slow.period)
+        mixed = blended_pose(slow, quick, share, phase)
+        first, last = gait_pose(slow, phase), gait_pose(quick, phase)
+        np.testing.assert_allclose(mixed.roll, (1 - share) * first.roll + share * last.roll, atol=1e-12)
+        np.testing.assert_allclose(mixed.hands, (1 - share) * first.hands + share * last.hands, atol=1e-12)
+
+
+def test_steps_last_half_a_blended_cycle() -> None:
+    plan = plan_of(chart(), play(EVENTS), pad())
+    settings = default_settings()
+    for walk in plan.walks:
+        period = blended(settings.stroll, settings.brisk, walk.share).period
+        np.testing.assert_allclose(np.diff(walk.landings), period / 2)
+
+
+def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
+    flat, heels = (bake(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels"))
+    plans = [plan_of(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels")]
+    steps = [[s.target for s in plan.feet[0].swings if s.kind == "walk"] for plan in plans]
+    np.testing.assert_allclose(steps[0], steps[1])
+    at = np.arange(0.6, 1.9, 0.02)
+
+    def measures(motion: Motion) -> tuple[float, float, float]:
+        positions, world = world_transforms(motion.skeleton, *sample(motion, at))
+        index = motion.skeleton.index
+        list_ = np.ptp(positions[:, index("l_hip"), 1] - positions[:, index("r_hip"), 1])
+        hand = positions[:, index("l_radiocarpal")] - positions[:, index("l_shoulder")]
+        pelvis, chest = (quat.rotate(world[:, index(n)], np.array([0.0, 1.0, 0.0])) for n in ("HumanoidRoot", "vt4"))
+        curved = np.degrees(np.arccos(np.sum(pelvis * chest, axis=1))).mean()
+        return float(list_), float(np.ptp(hand[:, 0])), float(curved)
+
+    for more, less in zip(measures(heels), measures(flat), strict=True):
+        assert more > 1.2 * less
+
+
+def test_she_walks_over_to_the_other_pad() -> None:
+    motion = bake(chart(), play(OVER, double=True), pad(double=True))
+    plan = plan_of(chart(), play(OVER, double=True), pad(double=True))
+    between = [w for w in plan.walks if w.start > 5.0 and w.end < 9.0]
+    assert len(between) == 1
+    measured = report(motion)
+    assert [f for f in measured.figures if f.met is False] == [], measured.notes
+    before, after = sample(motion, np.array([between[0].start - 0.1, between[0].end + 0.1]))[1]
+    assert before[0] - after[0] > 0.7
+    for track in plan.feet:  # no step stretches from one pad to the other
+        places = np.array([track.start, *(s.target for s in track.swings)])
+        assert np.linalg.norm(np.diff(places, axis=0), axis=1).max() < 0.75
+
+
+def test_she_stays_while_a_foot_holds_or_a_mine_passes() -> None:
+    def between(**more) -> int:  # type: ignore[no-untyped-def]
+        plan = plan_of(chart(), play(sorted([*OVER, (6.5, {})]), double=True, **more), pad(double=True))
+        return sum(w.start > 5.0 and w.end < 9.0 for w in plan.walks)
+
+    assert between() == 1
+    assert between(mines={6: [2]}) == 0
+    assert between(holds={(5, 3): 8.0}) == 0
