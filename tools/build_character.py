@@ -15,7 +15,7 @@ import build_character_head as head
 import numpy as np
 from build_character_bake import Atlas
 from build_character_loft import Lofted
-from build_character_mesh import Triangles, even, surface
+from build_character_mesh import Triangles, even, gradient, surface
 from build_character_parts import Part, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
@@ -41,6 +41,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     points, normals, _ = made
     out = np.zeros((len(points), len(ORDER)))
     if part.skin == "heat":
+        normals = gradient(part.on, points) if part.on else normals
         out = skin.at(points, normals)
         return _with_ankles(out, points) if part.ankles else out
     if part.skin == "foot":

@@ -94,11 +94,12 @@ def section(shape: Shape, centre: ArrayLike, u: ArrayLike, v: ArrayLike, count: 
 def rope(
     points: ArrayLike, radii: ArrayLike, sides: int = 6, steps: int = 3, up: ArrayLike = (0, 0, 1), flat: float = 1.0
 ) -> Lofted:
-    """A tube with rounded ends along a spline; flat < 1 makes it thinner along `up`."""
-    line, radii = spline(points, steps), spline(radii, steps)
+    """A tube with rounded ends along a spline; flat < 1 makes it thinner along `up`, one way or one for each point."""
+    up = np.broadcast_to(np.asarray(up, float), np.shape(points))
+    line, radii, up = spline(points, steps), spline(radii, steps), spline(up, steps)
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
-    out = np.asarray(up, float) - (along @ np.asarray(up, float))[:, None] * along
+    out = up - (along * up).sum(1, keepdims=True) * along
     out /= np.linalg.norm(out, axis=1, keepdims=True)
     across = np.cross(along, out)
     a = np.linspace(0, 2 * np.pi, sides, endpoint=False)

@@ -26,6 +26,7 @@ class Part:
     make : its surface; skin : how it is held; density : texels a metre; paint : its colours
     mirror : modelled on the left, copied to the right; tint : the limb whose colour it wears instead of paint
     shade : how dark hollows are painted; ankles : it reaches into the shoes; mesh : what it is drawn with
+    on : the cloth it lies on; what lies on one cloth bends as one
     """
 
     name: str
@@ -38,6 +39,7 @@ class Part:
     shade: float = 0.22
     ankles: bool = False
     mesh: str = "body"
+    on: Shape | None = None
 
 
 def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lofted]:
@@ -107,7 +109,7 @@ def _face_first(p: Array) -> Array:
 def round_face(points: Array, normals: Array) -> Array:
     """Normals of the face turned towards those of a ball, so that drawn light falls on it in large calm areas."""
     ball = unit(points - [0, 1.500, -0.030])
-    share = 0.75 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.096) / 0.006, 0, 1)
+    share = 0.75 * np.clip((points[:, 2] - 0.0) / 0.05, 0, 1) * np.clip(1 - (points[:, 2] - 0.096) / 0.006, 0.6, 1)
     return softer(normals, ball, share)
 
 
@@ -149,12 +151,12 @@ def surfaces() -> dict[str, Callable[[], Lofted]]:
 
 def parts() -> list[Part]:
     """All parts of the dancer, in the order in which they are written."""
-    made = surfaces()
+    made, cloth = surfaces(), body.shirt_cloth()
     return [
         Part("leggings", leggings_mesh, "heat", 470, paint.leggings, shade=0.0, ankles=True),
-        Part("shirt", shirt_mesh, "heat", 660, paint.shirt, shade=0.10),
-        Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim),
-        Part("cuff", trims.cuff, "heat", 400, paint.trim, mirror=True),
+        Part("shirt", shirt_mesh, "heat", 660, paint.shirt, shade=0.10, on=cloth),
+        Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim, on=cloth),
+        Part("cuff", trims.cuff, "heat", 400, paint.trim, mirror=True, on=cloth),
         Part("arm", made["arm"], "heat", 560, paint.arm, mirror=True),
         Part("neck", made["neck"], "heat", 450, paint.skin),
         Part("head", face_mesh, "skullbase", 1750, paint.face),
