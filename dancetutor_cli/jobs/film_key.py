@@ -40,6 +40,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         b"" if request.play is None else file_hash(request.play).encode(),
         _feet(subject.song.path.parent / "data.sme"),
         _character(request.character),
+        b"" if request.look.font is None else file_hash(request.look.font).encode(),
     )
     for part in parts:
         out.update(len(part).to_bytes(8, "little"))

@@ -19,7 +19,7 @@ from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.video.overlay import SongShape, Words
-from dancetutor_cli.video.scroll import ScrollSegments, parse_segments
+from dancetutor_cli.video.scroll import ScrollSegments, parse_segments, parse_speeds
 from dancetutor_cli.video.sound import Click, SoundPlan
 from dancetutor_cli.video.sprites import highway_style, quantisation
 from dancetutor_cli.video.text import Typeface, clean
@@ -79,6 +79,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         presses=presses,
         lines=beat_lines(chart, scrolls, end),
         beats=scrolls.shown(chart.timing.beats(seconds)),
+        speeds=parse_speeds(timing_tag(song, chart, "SPEEDS"), chart.timing.seconds_of_beats).at(seconds),
         fastest_bpm=fastest_bpm(chart),
         directions=directions_of(pad),
         motion=motion,
@@ -149,10 +150,7 @@ def _seconds(timing: Timing, ticks: NDArray[np.int64]) -> NDArray[np.float64]:
 
 def timing_tag(song: Song, chart: Chart, name: str) -> str:
     """A timing tag as it holds for the chart: its own if it has split timing, else the song's."""
-    own = any(
-        tag in chart.tags for tag in ("BPMS", "STOPS", "DELAYS", "WARPS", "SCROLLS", "SPEEDS", "OFFSET", "LABELS")
-    )
-    return (chart.tags if own else song.tags).get(name, "")
+    return (song.tags if chart.timing is song.timing else chart.tags).get(name, "")
 
 
 def directions_of(pad: Pad) -> tuple[float | None, ...]:

@@ -96,7 +96,7 @@ def look_up(request: Request) -> Subject:
         check_section(request.section)
     song = charts.load(request.path)
     chart = request.selection.one(song)
-    music, warnings = (None, ()) if request.mute else find_music(song)
+    music, warnings = (None, ()) if request.mute else find_music(song, chart)
     start, end = _section(request, song, chart)
     clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
     return Subject(song, chart, clock, music, request.section is not None, warnings)
@@ -166,11 +166,14 @@ def _section(request: Request, song: Song, chart: Chart) -> tuple[float, float]:
     return parse_section(request.section, chart.timing, whole[1])
 
 
-def find_music(song: Song) -> tuple[Path | None, tuple[str, ...]]:
-    """The song's music; None and a warning if it is missing. FileError if its name leads out of the song's folder."""
+def find_music(song: Song, chart: Chart) -> tuple[Path | None, tuple[str, ...]]:
+    """The chart's own or the song's music; None and a warning if it is missing.
+
+    FileError if its name leads out of the song's folder.
+    """
     from dancetutor_cli.library.music import music_file
 
     try:
-        return music_file(song), ()
+        return music_file(song, chart), ()
     except MissingFileError as error:
         return None, (f"{error}; the film has claps on the steps instead",)

@@ -43,6 +43,7 @@ class FilmPlan:
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
     character : who dances, the motion is for its skeleton; None for the project's own dancer
+    speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
     motion : the dancer's, or None where the layout has none; rows : the play's, for the next rows' pads
     """
 
@@ -60,6 +61,7 @@ class FilmPlan:
     pad: PadLike | None
     rows: StepRows | None = None
     callouts: tuple[Callout, ...] = ()
+    speeds: NDArray[np.float64] | None = None
     character: Character | None = None
 
 
@@ -190,7 +192,7 @@ class Film:
             left, top, right, bottom = self._box("dancer")
             picture[top:bottom, left:right] = self._room(number, second, beat)
         if self.highway and not self.layout.screen:
-            self.highway.draw(picture, second, beat)
+            self.highway.draw(picture, second, beat, self._speed(number))
         large, small = self._diagrams
         if large:
             large.draw(picture, second, self._dancer.feet(self._joints(number)))
@@ -204,6 +206,9 @@ class Film:
                 moving.draw(picture, second)
         self._runs.draw(picture, second, run)
         return picture
+
+    def _speed(self, number: int) -> float:
+        return 1.0 if self.plan.speeds is None else float(self.plan.speeds[number])
 
     def _joints(self, number: int) -> NDArray[np.float64]:
         """The dancer's joints in one frame. They are made in blocks, which is quick; always the same blocks, so that
@@ -224,7 +229,7 @@ class Film:
         frame = self._dancer.frame(second, self._joints(number))
         if screen is not None and self.highway is not None:
             shown = self.screen_base.copy()
-            self.highway.draw(shown, second, beat)
+            self.highway.draw(shown, second, beat, self._speed(number))
             screen.draw(frame, shown)
         return frame
 

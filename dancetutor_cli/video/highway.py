@@ -53,6 +53,15 @@ class HighwayGeometry:
         return self.box[0] + 0.3 * spare
 
 
+@dataclass(frozen=True, slots=True)
+class _Now:
+    """A moment. second : of the music; beat : as drawn; spacing : pixels per beat, or per second with C mods."""
+
+    second: float
+    beat: float
+    spacing: float
+
+
 class Highway:
     """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
 
@@ -124,27 +133,29 @@ class Highway:
         for i in range(1, len(self.geometry.directions)):
             rectangle(frame, x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom, self.style.lane_line, 0.08)
 
-    def draw(self, frame: Frame, second: float, beat: float) -> None:
-        """Draw everything that moves at `second` of the music; `beat` as drawn (scroll segments applied)."""
-        self._draw_lines(frame, second, beat)
-        self._draw_receptors(frame, second, beat)
-        self._draw_notes(frame, second, beat)
-        self._draw_callouts(frame, second, beat)
+    def draw(self, frame: Frame, second: float, beat: float, speed: float = 1.0) -> None:
+        """Draw everything that moves at `second` of the music.
 
-    def _y(
-        self, seconds: NDArray[np.float64], beats: NDArray[np.float64], second: float, beat: float
-    ) -> NDArray[np.float64]:
+        beat : as drawn (scroll segments applied); speed : of the chart's speed segments, which C mods leave out
+        """
+        now = _Now(second, beat, self.spacing * (1.0 if self.by_time else speed))
+        self._draw_lines(frame, now)
+        self._draw_receptors(frame, second, beat)
+        self._draw_notes(frame, now)
+        self._draw_callouts(frame, now)
+
+    def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], now: _Now) -> NDArray[np.float64]:
         """Middle of things at `seconds`/`beats` on the screen, pixels."""
-        away = seconds - second if self.by_time else beats - beat
-        result: NDArray[np.float64] = self.geometry.receptor + away * self.spacing
+        away = seconds - now.second if self.by_time else beats - now.beat
+        result: NDArray[np.float64] = self.geometry.receptor + away * now.spacing
         return result
 
     def _visible(self, y: NDArray[np.float64], margin: float) -> NDArray[np.bool_]:
         _, top, _, bottom = self.geometry.box
         return (y > top - margin) & (y < bottom + margin)
 
-    def _draw_lines(self, frame: Frame, second: float, beat: float) -> None:
-        y = self._y(self.lines.second, self.lines.beat, second, beat)
+    def _draw_lines(self, frame: Frame, now: _Now) -> None:
+        y = self._y(self.lines.second, self.lines.beat, now)
         lane = self.geometry.lane
         shown = np.flatnonzero(self._visible(y, 2))
         if len(shown) > 400:  # so dense that lines would be a wall
@@ -169,11 +180,11 @@ class Highway:
     def _draw_number(self, measure: int) -> Sprite:
         return self.face.sprite(str(measure), 0.21 * self.geometry.lane, (190, 196, 220))
 
-    def _draw_callouts(self, frame: Frame, second: float, beat: float) -> None:
+    def _draw_callouts(self, frame: Frame, now: _Now) -> None:
         """Words beside the rows they are about, on the right of the lanes."""
-        y = self._y(self._callout_seconds, self._callout_beats, second, beat)
+        y = self._y(self._callout_seconds, self._callout_beats, now)
         x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
-        for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > second)):
+        for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):
             flag = self._flag(self.callouts[i].text, self.callouts[i].severity)
             blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
 
@@ -205,10 +216,10 @@ class Highway:
     def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
         return self.geometry.left + (column + 0.5) * self.geometry.lane - size / 2, y - size / 2
 
-    def _draw_notes(self, frame: Frame, second: float, beat: float) -> None:
-        notes = self.notes
-        y = self._y(notes.second, notes.beat, second, beat)
-        tail = self._y(notes.end_second, notes.end_beat, second, beat)
+    def _draw_notes(self, frame: Frame, now: _Now) -> None:
+        notes, second = self.notes, now.second
+        y = self._y(notes.second, notes.beat, now)
+        tail = self._y(notes.end_second, notes.end_beat, now)
         gone = (notes.end_second <= second + 1e-6) & notes.judged & (notes.kind != Kind.MINE)
         low, high = np.minimum(y, tail), np.maximum(y, tail)
         _, top, _, bottom = self.geometry.box

@@ -1,9 +1,10 @@
-"""How fast notes scroll: the games' C, X and M modifiers, and the scroll segments of a chart."""
+"""How fast notes scroll: the games' C, X and M modifiers, and the scroll and speed segments of a chart."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,3 +76,52 @@ def parse_segments(text: str) -> ScrollSegments:
         return ScrollSegments(np.zeros(0), np.zeros(0))
     beats = sorted(found)
     return ScrollSegments(np.array(beats), np.array([found[b] for b in beats]))
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedSegments:
+    """#SPEEDS of a chart: how far apart all notes are drawn, as a factor that changes while the song runs; s segments.
+
+    start, end : float64 (s,), seconds of the music, ascending: from start to end the factor goes evenly from that of
+    the segment before (1 before the first) to ratio : float64 (s,), and stays there. With C mods the games leave it out.
+    """
+
+    start: Seconds
+    end: Seconds
+    ratio: NDArray[np.float64]
+
+    def at(self, seconds: Seconds) -> NDArray[np.float64]:
+        """The factor at each second."""
+        if len(self.start) == 0:
+            return np.ones(len(seconds))
+        index = np.searchsorted(self.start, seconds, side="right") - 1
+        before = np.concatenate([[1.0], self.ratio])[np.maximum(index, 0)]
+        here = np.maximum(index, 0)
+        length = self.end[here] - self.start[here]
+        passed = np.divide(seconds - self.start[here], length, out=np.ones(len(seconds)), where=length > 0)
+        factor = before + (self.ratio[here] - before) * np.minimum(passed, 1.0)
+        # Before the first segment a sudden one holds already, and one that takes time has not begun.
+        early = 1.0 if self.end[0] > self.start[0] else float(self.ratio[0])
+        return np.asarray(np.where(index < 0, early, factor))
+
+
+def parse_speeds(text: str, seconds_of: Callable[[Beats], Seconds]) -> SpeedSegments:
+    """Read a #SPEEDS value, "beat=ratio=length=unit,..." with a length in beats (unit 0) or seconds (unit 1).
+
+    seconds_of : second of the music of each beat. Entries that make no sense are left out, as the games do.
+    """
+    found: dict[float, tuple[float, float, bool]] = {}
+    for entry in text.split(","):
+        try:
+            beat, ratio, length, *unit = (float(part) for part in entry.split("="))
+        except ValueError:
+            continue
+        if all(map(math.isfinite, (beat, ratio, length))) and length >= 0:
+            found[beat] = ratio, length, bool(unit and unit[0] == 1)
+    if not found or {ratio for ratio, _, _ in found.values()} == {1.0}:
+        return SpeedSegments(np.zeros(0), np.zeros(0), np.zeros(0))
+    beats = np.array(sorted(found))
+    rows = np.array([found[b] for b in beats.tolist()], dtype=np.float64)
+    lengths, start = rows[:, 1], seconds_of(beats)
+    end = np.where(rows[:, 2] > 0, start + lengths, seconds_of(beats + lengths))
+    return SpeedSegments(start, end, rows[:, 0])

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from film_plans import film_plan
 
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.video.scroll import Scroll, parse_scroll, parse_segments
+from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.scroll import Scroll, parse_scroll, parse_segments, parse_speeds
 
 
 @pytest.mark.parametrize(
@@ -38,3 +42,23 @@ def test_scroll_segments_integrate_their_ratios() -> None:
 def test_no_segments_leave_the_beats_alone() -> None:
     beats = np.array([0.0, 3.5])
     assert parse_segments("0=1").shown(beats) is beats
+
+
+def test_speeds_go_evenly_from_one_to_the_next() -> None:
+    halves = parse_speeds("4=2=2=0,12=0.5=3=1,x=1=1,20=3", lambda beats: beats / 2)  # 120 BPM
+    seconds = np.array([0.0, 1.99, 2.5, 3.0, 5.0, 6.0, 7.5, 9.0, 60.0])
+    assert halves.at(seconds) == pytest.approx([1, 1, 1.5, 2, 2, 2, 1.25, 0.5, 0.5])
+
+
+def test_a_sudden_first_speed_holds_from_the_start() -> None:
+    assert parse_speeds("0=0.5=0=0", lambda beats: beats).at(np.array([-3.0, 5.0])) == pytest.approx([0.5, 0.5])
+    assert parse_speeds("0=1=0=0", lambda beats: beats).at(np.array([-3.0, 5.0])) == pytest.approx([1, 1])
+
+
+def test_speeds_move_notes_of_x_and_m_mods_only() -> None:
+    plan = film_plan(np.array([1.0]), size=(160, 120))
+    doubled = replace(plan, speeds=np.full(plan.clock.frames, 2.0))
+    for scroll, moved in (("X1", True), ("C120", False)):
+        look = replace(plan.look, scroll=parse_scroll(scroll))
+        one, two = (Film(replace(p, look=look)).frame(24) for p in (plan, doubled))
+        assert (one != two).any() == moved
