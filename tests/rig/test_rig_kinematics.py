@@ -7,6 +7,7 @@ import pytest
 
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import joint_matrices, local_rotations, world_transforms
+from dancetutor_cli.rig.limits import LIMITS, excess
 from dancetutor_cli.rig.mass import centre_of_mass, mass_points
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
@@ -67,3 +68,57 @@ def test_centre_of_mass_of_the_rest_pose_is_that_of_a_woman() -> None:
     com = centre_of_mass(SKELETON, *world_transforms(SKELETON, *rest_pose()))[0]
     assert com[0] == pytest.approx(0, abs=1e-9)
     assert 0.53 * 1.70 < com[1] < 0.59 * 1.70  # textbook: 54 to 57 % of the stature standing
+
+
+def test_masses_are_those_of_the_published_table() -> None:
+    """de Leva 1996, table 4, females: fractions of the body's mass, in percent."""
+    table = {"skullbase": 6.68, "l_shoulder": 2.55, "l_elbow": 1.38, "l_radiocarpal": 0.56}
+    table |= {"r_hip": 14.78, "r_knee": 4.81, "r_talocrural": 1.29}
+    joints, masses, _ = mass_points(SKELETON)
+    share = {SKELETON.names[j]: 100 * m for j, m in zip(joints, masses, strict=True)}
+    for joint, percent in table.items():
+        assert share[joint] == pytest.approx(percent, abs=0.08), joint
+    trunk = sum(share[j] for j in ("HumanoidRoot", "vl5", "vt10", "vt4"))
+    assert trunk == pytest.approx(42.57, abs=0.25)
+
+
+def test_bones_have_human_lengths() -> None:
+    """Shares of the stature after Drillis and Contini 1966."""
+    rest = SKELETON.rest
+    for a, b, share in (
+        ("hip", "knee", 0.245),
+        ("knee", "talocrural", 0.246),
+        ("shoulder", "elbow", 0.186),
+        ("elbow", "radiocarpal", 0.146),
+    ):
+        length = np.linalg.norm(rest[SKELETON.index(f"l_{a}")] - rest[SKELETON.index(f"l_{b}")])
+        assert length / 1.70 == pytest.approx(share, abs=0.035), a
+
+
+@pytest.mark.parametrize(
+    ("joint", "axis", "degrees", "past"),
+    [
+        ("l_knee", (1, 0, 0), 120, 0),
+        ("l_knee", (1, 0, 0), -30, 22),
+        ("r_knee", (1, 0, 0), 165, 10),
+        ("l_hip", (0, 0, 1), 60, 0),
+        ("l_hip", (0, 0, 1), 75, 10),
+        ("r_hip", (0, 0, 1), -75, 10),
+        ("r_hip", (0, 0, 1), 75, 30),
+        ("l_talocrural", (0, 1, 0), 50, 5),
+        ("r_talocrural", (0, 1, 0), -50, 5),
+        ("l_shoulder", (0, 0, 1), 120, 0),
+        ("l_eyeball_joint", (1, 0, 0), -45, 5),
+    ],
+)
+def test_limits_say_by_how_much_a_joint_is_past_them(joint: str, axis: tuple, degrees: float, past: float) -> None:
+    rotations = np.tile(quat.IDENTITY, (1, J, 1))
+    rotations[0, SKELETON.index(joint)] = quat.from_axis_angle(axis, np.radians(degrees))
+    found = excess(SKELETON, rotations)
+    assert found[joint][0] == pytest.approx(past, abs=1e-6)
+    assert sum(float(v[0]) for v in found.values()) == pytest.approx(past, abs=1e-6)
+
+
+def test_every_limit_is_of_a_joint_and_the_rest_pose_is_within() -> None:
+    assert set(LIMITS) <= set(SKELETON.names)
+    assert all(float(v[0]) == 0 for v in excess(SKELETON, np.tile(quat.IDENTITY, (1, J, 1))).values())

@@ -34,6 +34,38 @@ def test_matrices_are_proper_rotations(q: np.ndarray) -> None:
     np.testing.assert_allclose(np.linalg.det(m), 1.0, atol=1e-9)
 
 
+@given(rotations(), rotations(), vectors, st.floats(0, 1))
+def test_every_result_has_unit_length(a: np.ndarray, b: np.ndarray, v: np.ndarray, t: float) -> None:
+    axis = np.where(np.linalg.norm(v, axis=1, keepdims=True) < 1e-2, [[1.0, 0, 0]], v)
+    made = (
+        quat.multiply(a, b),
+        quat.conjugate(a),
+        quat.slerp(a, b, np.full(5, t)),
+        quat.from_axis_angle(axis, v[:, 0]),
+    )
+    for q in (*made, quat.between(axis, axis[::-1]), *quat.swing_twist(a, (0.0, 0.6, 0.8)), quat.normalize(3 * a)):
+        np.testing.assert_allclose(np.linalg.norm(q, axis=-1), 1, atol=1e-9)
+
+
+@given(rotations(), rotations(), vectors, st.floats(0, 1))
+def test_q_and_its_negative_are_one_rotation(a: np.ndarray, b: np.ndarray, v: np.ndarray, t: float) -> None:
+    np.testing.assert_allclose(quat.rotate(-a, v), quat.rotate(a, v), atol=1e-12)
+    np.testing.assert_allclose(quat.to_matrix(-a), quat.to_matrix(a), atol=1e-12)
+    np.testing.assert_allclose(quat.angle_between(a, -a), 0, atol=1e-6)
+    np.testing.assert_allclose(quat.angle_between(-a, b), quat.angle_between(a, b), atol=1e-9)
+    opposite = np.abs(np.sum(a * b, axis=1)) < 1e-3  # half around: both arcs are equally short
+    ways = quat.slerp(a, b, np.full(5, t)), quat.slerp(a, -b, np.full(5, t))
+    np.testing.assert_allclose(quat.angle_between(*ways)[~opposite], 0, atol=1e-6)
+
+
+@given(rotations(), rotations(), vectors)
+def test_the_inverse_takes_back(a: np.ndarray, b: np.ndarray, v: np.ndarray) -> None:
+    np.testing.assert_allclose(quat.rotate(quat.conjugate(a), quat.rotate(a, v)), v, atol=1e-9)
+    np.testing.assert_allclose(quat.multiply(a, quat.conjugate(a)), np.tile(quat.IDENTITY, (5, 1)), atol=1e-9)
+    swapped = quat.multiply(quat.conjugate(b), quat.conjugate(a))
+    np.testing.assert_allclose(quat.conjugate(quat.multiply(a, b)), swapped, atol=1e-12)
+
+
 @given(rotations(), rotations(), st.floats(0, 1))
 def test_slerp_keeps_speed_and_takes_the_short_arc(a: np.ndarray, b: np.ndarray, t: float) -> None:
     whole = quat.angle_between(a, b)
