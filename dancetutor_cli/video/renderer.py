@@ -14,6 +14,7 @@ Quality = Literal["draft", "good", "best"]
 RendererKind = Literal["auto", "cpu", "gl"]
 QUALITIES: tuple[Quality, ...] = ("draft", "good", "best")
 KINDS: tuple[RendererKind, ...] = ("auto", "cpu", "gl")
+MOST_JOINTS = 256  # what the uniform block of gl's shaders holds
 
 
 class Renderer(Protocol):
@@ -46,7 +47,8 @@ def create(
     ----------
     scene : what to draw; size : (width, height) in pixels
     quality : ``draft`` one sample a pixel and no cast shadow, ``good`` 2x2 samples, ``best`` 4x4 samples
-    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` where it is a real GPU
+    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` where it is a real GPU,
+        unless the character has too many joints for it
 
     Raises
     ------
@@ -59,7 +61,8 @@ def create(
         raise UsageError(f"no renderer '{kind}'; there are: {', '.join(KINDS)}")
     if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
         raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
-    if chosen(kind) == "gl":
+    many = kind == "auto" and len(scene.character.skeleton.names) > MOST_JOINTS
+    if not many and chosen(kind) == "gl":
         return _create_gl(scene, size, quality)
     from dancetutor_cli.video.cpu.renderer import CpuRenderer
 

@@ -22,9 +22,11 @@ from dancetutor_cli.jobs.film_key import film_key
 from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.pads import load_pad
+from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.renderer import MOST_JOINTS, create
 from dancetutor_cli.video.scene import Scene
 
 SONG = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0:\n"
@@ -109,6 +111,21 @@ def test_the_camera_shows_all_of_a_tall_character(shared_data: Path) -> None:
         assert rogue.camera(name, (1280, 720)).project(head, (1280, 720))[0, 1] > 0
     dancer = Scene(load_character("dancer"), load_pad("dance-single"))
     assert dancer.tall < min(c.height for c in dancer.look.cameras.values() if not c.feet_only)
+
+
+def test_a_character_with_many_joints_is_drawn_without_gl(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An avatar's hair may have hundreds of bones, more than the shaders hold: auto does not fail for it."""
+    monkeypatch.setattr("dancetutor_cli.video.renderer._gpu", lambda: True)
+    mannequin = load_character("mannequin")
+    old, more = mannequin.skeleton, MOST_JOINTS
+    skeleton = Skeleton(
+        (*old.names, *(f"hair{k}" for k in range(more))),
+        np.concatenate([old.parents, np.full(more, old.index("skullbase"), np.int32)]),
+        np.concatenate([old.offsets, np.zeros((more, 3))]),
+    )
+    inverse_bind = np.concatenate([mannequin.inverse_bind, np.tile(np.eye(4), (more, 1, 1))])
+    avatar = replace(mannequin, skeleton=skeleton, inverse_bind=inverse_bind)
+    assert create(Scene(avatar, load_pad("dance-single")), (64, 36)).name == "cpu"
 
 
 def test_a_bad_character_is_one_line_before_the_work(

@@ -38,11 +38,10 @@ from dancetutor_cli.video.prepare import (
     shown,
     skin_matrices,
 )
-from dancetutor_cli.video.renderer import Quality
+from dancetutor_cli.video.renderer import MOST_JOINTS, Quality
 from dancetutor_cli.video.scene import SOLE_RADIUS, FrameState, Scene, check_state
 
 Array = NDArray[np.float64]
-_MOST_JOINTS = 256  # what the shader's uniform block holds
 _OFF_SURFACE = (0.012, 0.006)
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 
@@ -53,8 +52,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
     name = "gl"
 
     def __init__(self, scene: Scene, size: tuple[int, int], quality: Quality) -> None:
-        if len(scene.character.skeleton.names) > _MOST_JOINTS:
-            raise UsageError(f"the gl renderer draws at most {_MOST_JOINTS} joints; use --renderer cpu")
+        if len(scene.character.skeleton.names) > MOST_JOINTS:
+            raise UsageError(f"the gl renderer draws at most {MOST_JOINTS} joints; use --renderer cpu")
         self._scene, self._size, self._quality = scene, size, quality
         self._platform = _start(size)
         super().__init__(*size)
@@ -84,7 +83,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._joints = int(GL.glGenBuffers(1))
         self._bytes = np.empty((self._size[1], self._size[0], 3), np.uint8)
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
-        GL.glBufferData(GL.GL_UNIFORM_BUFFER, _MOST_JOINTS * 48, None, GL.GL_DYNAMIC_DRAW)
+        GL.glBufferData(GL.GL_UNIFORM_BUFFER, MOST_JOINTS * 48, None, GL.GL_DYNAMIC_DRAW)
 
     def frame(self, state: FrameState) -> NDArray[np.uint8]:
         """See `video.renderer.Renderer.frame`."""
@@ -96,7 +95,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         joints, part = joints_of(self._scene, state), shown(state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
         bounds = bounds_of(joints, self._reach)
-        matrices = np.zeros((_MOST_JOINTS, 3, 4), np.float32)
+        matrices = np.zeros((MOST_JOINTS, 3, 4), np.float32)
         matrices[: len(joints)] = skin_matrices(self._scene, joints)
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
         GL.glBufferSubData(GL.GL_UNIFORM_BUFFER, 0, matrices.nbytes, matrices)
