@@ -3,12 +3,14 @@
 
 usage: tools/fit_weights.py LABELS_DIR [--preset NAME|FILE] [--only WEIGHT ...] [--rounds N] [--leave-one-out]
                             [--out FILE]
+e.g.   tools/fit_weights.py ../shared/data/feet --preset tools/peer_weights.yaml --leave-one-out
 
 LABELS_DIR holds labels.json and the charts, in the form that tools/score_feet.py of the shared data reads. One weight
 at a time is made smaller and larger; what lowers the loss stays. The loss of a row is 1 where a labelled foot is
 wrong; where all are right it is up to 0.1 if the row's margin is small, so that weights settle where nothing is close.
-A pull towards the preset's own weights keeps those that no label speaks about. With --leave-one-out each chart in turn
-is left out of the fit and then scored with what the others gave. The result is a preset that extends the first one.
+A pull towards the preset's own weights keeps those that no label speaks about. The result is a preset that extends the
+first one. With --leave-one-out each chart in turn is left out of the fit and then scored with what the others gave;
+start that from weights which have not seen the labels, such as tools/peer_weights.yaml.
 """
 
 from __future__ import annotations
@@ -27,8 +29,10 @@ from dancetutor_cli import play
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play import Preset, Rows
+from dancetutor_cli.play.preset import MAX_WEIGHT
 
-STEPS = (0.5, 0.8, 1.25, 2.0)
+STEPS = (0.1, 0.3, 0.6, 0.8, 1.25, 1.6, 3.0)  # what a weight is multiplied by
+MORE = (25, 100)  # and what is added, so that a weight can come up from nothing
 SURE = 100  # a margin from here on is as good as any other
 CLOSE = 0.1  # loss of a right row without any margin
 PULL = 0.02  # loss of a weight that is twice or half of what it was
@@ -80,27 +84,49 @@ def right_rows(label: Labelled, preset: Preset) -> tuple[np.ndarray, np.ndarray]
     return ~wrong[rows], found.margin[rows]
 
 
-def loss(labels: list[Labelled], preset: Preset, home: Preset) -> float:
-    """Loss of all rows, and the pull towards the weights of `home`."""
-    total = 0.0
-    for label in labels:
-        right, margin = right_rows(label, preset)
-        close = np.where(margin < 0, 0.0, 1.0 - np.minimum(margin, SURE) / SURE)
-        total += float(np.where(right, CLOSE * close, 1.0).sum())
-    pairs = zip(preset.weights, home.weights, strict=True)
-    return total + PULL * sum(abs(math.log2((new + 1) / (old + 1))) for (_, new), (_, old) in pairs)
+class Losses:
+    """The loss of every label by weights, each solved once: fits that leave one label out ask for much the same."""
+
+    def __init__(self, labels: list[Labelled], home: Preset) -> None:
+        self.labels, self.home = labels, home
+        self._known: dict[tuple[int, tuple[tuple[str, int], ...]], float] = {}
+
+    def of(self, label: int, preset: Preset) -> float:
+        """Loss of all rows of one label."""
+        key = label, preset.weights
+        if key not in self._known:
+            right, margin = right_rows(self.labels[label], preset)
+            close = np.where(margin < 0, 0.0, 1.0 - np.minimum(margin, SURE) / SURE)
+            self._known[key] = float(np.where(right, CLOSE * close, 1.0).sum())
+        return self._known[key]
+
+    def pull(self, preset: Preset) -> float:
+        """What it costs that weights are not those of `home`."""
+        pairs = zip(preset.weights, self.home.weights, strict=True)
+        return PULL * sum(abs(math.log2((new + 1) / (old + 1))) for (_, new), (_, old) in pairs)
+
+    def total(self, labels: list[int], preset: Preset, enough: float = math.inf) -> float:
+        """Loss of labels and pull; given up, but still larger than `enough`, as soon as it is."""
+        total = self.pull(preset)
+        for label in labels:
+            if total >= enough:
+                break
+            total += self.of(label, preset)
+        return total
 
 
-def fit(labels: list[Labelled], home: Preset, names: list[str], rounds: int) -> Preset:
-    """The best preset that coordinate search finds."""
-    best, least = home, loss(labels, home, home)
+def fit(losses: Losses, labels: list[int], names: list[str], rounds: int) -> Preset:
+    """The best preset for some labels that coordinate search finds."""
+    best = losses.home
+    least = losses.total(labels, best)
     for _ in range(rounds):
         before = least
         for name in names:
             value = best.weight(name)
-            for factor in STEPS:
-                changed = best.with_values(weights={name: max(1, round(value * factor))})
-                found = loss(labels, changed, home)
+            tried = [max(1, round(value * step)) for step in STEPS] + [value + more for more in MORE]
+            for new in tried:
+                changed = best.with_values(weights={name: min(new, MAX_WEIGHT)})
+                found = losses.total(labels, changed, least)
                 if found < least - 1e-9:
                     best, least = changed, found
         if least == before:
@@ -123,12 +149,12 @@ def show(title: str, scores: dict[str, tuple[int, int]]) -> None:
     print(title, ", ".join(f"{kind} {a}/{b} = {100 * a / max(b, 1):.2f} %" for kind, (a, b) in sorted(scores.items())))
 
 
-def leave_one_out(labels: list[Labelled], home: Preset, names: list[str], rounds: int) -> None:
+def leave_one_out(losses: Losses, names: list[str], rounds: int) -> None:
     """Score each chart with a fit on the others."""
     total: dict[str, tuple[int, int]] = {}
-    for label in labels:
-        others = [other for other in labels if other is not label]
-        found = score([label], fit(others, home, names, rounds))
+    for number, label in enumerate(losses.labels):
+        others = [other for other in range(len(losses.labels)) if other != number]
+        found = score([label], fit(losses, others, names, rounds))
         show(f"  without {label.name}:", found)
         for kind, (a, b) in found.items():
             good, count = total.get(kind, (0, 0))
@@ -157,13 +183,15 @@ def main() -> None:
         sys.exit(f"no weight {', '.join(sorted(unknown))}; there are: {', '.join(n for n, _ in home.weights)}")
     labels = load_labels(arguments.labels)
     show("before:", score(labels, home))
-    best = fit(labels, home, names, arguments.rounds)
+    labels.sort(key=lambda label: len(label.rows))  # short ones first: they tell soonest that weights are no good
+    losses = Losses(labels, home)
+    best = fit(losses, list(range(len(labels))), names, arguments.rounds)
     show("fitted:", score(labels, best))
     print(written(best, home, arguments.preset))
     if arguments.out:
         arguments.out.write_text(written(best, home, arguments.preset), encoding="utf-8")
     if arguments.leave_one_out:
-        leave_one_out(labels, home, names, arguments.rounds)
+        leave_one_out(losses, names, arguments.rounds)
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ def test_moves_by_name(picture: str, move: str, rows: list[int]) -> None:
 def test_a_spin_comes_before_a_doublestep_only_in_a_hurry() -> None:
     around = "1... .1.. ...1 ..1. 1..."
     assert move_rows(solved(around, gap=12), "spin") and not move_rows(solved(around, gap=12), "doublestep")
-    assert move_rows(solved(around, gap=24), "doublestep") and not move_rows(solved(around, gap=24), "spin")
+    assert move_rows(solved(around, gap=48), "doublestep") and not move_rows(solved(around, gap=48), "spin")
 
 
 def test_four_steps_are_two_brackets_and_never_hands() -> None:
