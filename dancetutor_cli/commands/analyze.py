@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, selection_options
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.reports.formats import FORMATS
@@ -150,7 +151,7 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     report = open_report(options["format_name"], tasks[0].preset.name)
     report.begin()
     cache = None if options["no_cache"] else ResultCache(default_folder())
-    for raw in analyze_all(tasks, options["jobs"], cache):
+    for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.preset)):
         result = run.without_known(raw)
         tally.add(result)
         report.add(result)

@@ -15,35 +15,47 @@ if TYPE_CHECKING:
 _WORTH_WORKERS = 8
 
 
-def analyze_all(tasks: Sequence[Task], jobs: int | None, cache: ResultCache | None) -> Iterator[FileResult]:
+def analyze_all(
+    tasks: Sequence[Task],
+    jobs: int | None,
+    cache: ResultCache | None,
+    before_work: Callable[[Task], None] = lambda task: None,
+) -> Iterator[FileResult]:
     """The result of every task, in the order of the tasks, as early as they are known.
 
     jobs : worker processes for what is not in the cache; None: one for each core, 1: this process does it
+    before_work : called with the first task whose result is not in the cache
     """
     keys = [cache.key(task) if cache else None for task in tasks]
     known = {n: found for n, key in enumerate(keys) if cache and key and (found := cache.get(key)) is not None}
     missing = [n for n in range(len(tasks)) if n not in known]
     if cache and missing:
         cache.prune()
+    if missing:
+        before_work(tasks[missing[0]])
     work = _in_workers if jobs != 1 and len(missing) >= _WORTH_WORKERS else _here
     fresh = work([tasks[n] for n in missing], jobs)
     done: dict[int, FileResult] = dict(known)
     for n in range(len(tasks)):
         while n not in done:
-            place, result = next(fresh)
+            place, result, sound = next(fresh)
             done[missing[place]] = result
             key = keys[missing[place]]
-            if cache and key and result.error is None:
+            if cache and key and sound:
                 cache.put(key, result)
         yield done.pop(n)
 
 
-def _here(tasks: Sequence[Task], _: int | None) -> Iterator[tuple[int, FileResult]]:
+# Place and result of each task, and whether the result is about the file: not that a worker broke down.
+_Fresh = Iterator[tuple[int, FileResult, bool]]
+
+
+def _here(tasks: Sequence[Task], _: int | None) -> _Fresh:
     for place, task in enumerate(tasks):
-        yield place, analyze_file(task)
+        yield place, analyze_file(task), True
 
 
-def _in_workers(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, FileResult]]:
+def _in_workers(tasks: Sequence[Task], jobs: int | None) -> _Fresh:
     from dancetutor_cli.jobs.pool import Task as Work
     from dancetutor_cli.jobs.pool import default_jobs, open_workers
 
@@ -53,7 +65,7 @@ def _in_workers(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, 
             workers.submit(Work(place, _analyze, (task,)))
         for done in workers.done():
             result = done.result if done.error is None else failed(tasks[done.key], str(done.error))
-            yield done.key, result
+            yield done.key, result, done.error is None
     finally:
         workers.close()
 

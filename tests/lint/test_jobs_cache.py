@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.analyze_all import analyze_all
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.pool import Done, SerialWorkers
 
 NOTES = "#TITLE:{};\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
 
@@ -77,12 +80,23 @@ def test_a_damaged_entry_is_no_result(song: Path, tmp_path: Path) -> None:
     assert list(analyze_all([task], 1, cache)) == fresh
 
 
-def test_an_error_is_not_kept(tmp_path: Path) -> None:
+def test_what_could_not_be_opened_is_not_kept(tmp_path: Path) -> None:
+    task = LintRun(Request()).task(tmp_path / "nowhere.sm")
     cache = ResultCache(tmp_path / "cache")
-    (tmp_path / "bad.sm").write_text("nothing")
-    task = LintRun(Request()).task(tmp_path / "bad.sm")
-    assert next(analyze_all([task], 1, cache)).error
-    assert not (tmp_path / "cache").exists()
+    (result,) = analyze_all([task], 1, cache)
+    assert result.error and not (tmp_path / "cache").exists()
+
+
+def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Dying(SerialWorkers):
+        def done(self) -> Iterator[Done]:
+            yield from (Done(task.key, error=UnavailableError("killed")) for task in self._queue)
+
+    monkeypatch.setattr("dancetutor_cli.jobs.analyze_all._WORTH_WORKERS", 1)
+    monkeypatch.setattr("dancetutor_cli.jobs.pool.open_workers", lambda jobs, report: Dying(report))
+    cache = ResultCache(tmp_path / "cache")
+    (result,) = analyze_all([LintRun(Request()).task(song)], 2, cache)
+    assert result.error and "killed" in result.error and not (tmp_path / "cache").exists()
 
 
 def test_workers_give_the_same_in_the_same_order(song: Path) -> None:
@@ -108,3 +122,23 @@ def test_a_kept_result_needs_neither_numpy_nor_numba(song: Path, tmp_path: Path)
     assert "numba" in said[0].stderr
     assert said[1].stderr == ""
     assert said[1].stdout == said[0].stdout != ""
+
+
+def test_a_file_that_cannot_be_read_as_a_chart_is_kept_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = [tmp_path / f"{n}.sm" for n in range(3)]
+    for path in paths:
+        path.write_text("no chart at all")
+    cache = ResultCache(tmp_path / "cache")
+    tasks = [LintRun(Request()).task(path) for path in paths]
+    first = list(analyze_all(tasks, 1, cache))
+    monkeypatch.setattr("dancetutor_cli.jobs.analyze_all.analyze_file", None)  # nothing is left to do
+    worked: list[Path] = []
+    assert list(analyze_all(tasks, 1, cache, lambda task: worked.append(task.path))) == first
+    assert all(result.error for result in first) and worked == []
+
+
+def test_work_is_announced_once(song: Path, tmp_path: Path) -> None:
+    worked: list[Path] = []
+    task = LintRun(Request()).task(song)
+    list(analyze_all([task, task], 1, None, lambda one: worked.append(one.path)))
+    assert worked == [song]
