@@ -83,7 +83,7 @@ class SpeedSegments:
     """#SPEEDS of a chart: how far apart all notes are drawn, as a factor that changes while the song runs; s segments.
 
     start, end : float64 (s,), seconds of the music, ascending: from start to end the factor goes evenly from that of
-    the segment before (1 before the first) to ratio : float64 (s,), and stays there. With C mods the games leave it out.
+    the segment before (1 before the first) to ratio : float64 (s,), and stays there. With C mods games leave it out.
     """
 
     start: Seconds
