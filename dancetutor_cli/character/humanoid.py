@@ -1,8 +1,9 @@
 """Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
 
 Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
-Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid and KayKit. The result is checked against the tree: a bone lies below
-the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification, humanoid.md.
+Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit and others. The result is checked against the tree: a
+bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification,
+humanoid.md.
 """
 
 from __future__ import annotations
@@ -27,18 +28,19 @@ _SIDED = {
     "LowerLeg": ("knee", "leg lowerleg calf shin leglower knee"),
     "Foot": ("talocrural", "foot ankle"),
     "Toes": ("metatarsal", "toes toe toebase ball"),
-    "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone"),
-    "UpperArm": ("shoulder", "arm upperarm uparm armupper"),
+    "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone scapula"),
+    "UpperArm": ("shoulder", "arm upperarm uparm armupper shldr"),
     "LowerArm": ("elbow", "forearm lowerarm armlower elbow"),
     "Hand": ("radiocarpal", "hand wrist"),
     "Eye": ("eyeball_joint", "eye"),
 }
-_SPINE = re.compile(r"(spine|chest|upperchest|torso|abdomen|waist)\w*")
+_SPINE = re.compile(r"(spine|chest|upperchest|torso|abdomen|waist|upperbody)\w*")
 _HELPERS = frozenset(
     {"ik", "fk", "ctrl", "control", "pole", "target", "roll", "twist", "end", "leaf", "nub", "slot", "handslot"}
     | {"mch", "org", "tip", "helper"}
 )
-_PREFIXES = ("mixamorig", "bip01", "bip001", "ccbase", "def", "jbipc", "jbip", "bone")
+_FILLERS = frozenset({"x", "m", "c", "stretch", "bend"})  # middle, and what bends of a bone with a twist
+_PREFIX = re.compile(r"(mixamorig\d*|character\d+|(valvebiped)?bip\d+|ccbase|def|jbip|bone)(?=.)")
 _LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
 _PAIRED = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
 REQUIRED = ("hips", "spine", "head", *(side + bone for side in ("left", "right") for bone in _PAIRED))
@@ -152,11 +154,7 @@ def words_of(name: str) -> tuple[str, str]:
             tokens.remove(token)
     if _HELPERS & {re.sub(r"\d+$", "", t) for t in tokens}:
         return side, ""
-    plain = "".join(tokens)
-    for prefix in _PREFIXES:
-        if plain.startswith(prefix) and len(plain) > len(prefix):
-            plain = plain[len(prefix) :]
-            break
+    plain = _PREFIX.sub("", "".join(t for t in tokens if t not in _FILLERS), count=1)
     for word, found in (("left", "left"), ("right", "right")):
         if not side and plain.startswith(word) and len(plain) > len(word):
             side, plain = found, plain[len(word) :]
@@ -166,7 +164,7 @@ def words_of(name: str) -> tuple[str, str]:
 def _from_names(container: Container, nodes: Nodes) -> dict[str, int]:
     items = container.items("nodes")
     order = [i for i in nodes.order if "mesh" not in items[i]]  # a mesh may be called "Arm.L" too
-    words = {i: words_of(nodes.names[i]) for i in order}
+    words = {i: words_of(name) for i, name in _unnumbered({i: nodes.names[i] for i in order}).items()}
     rigify = _rigify_spine(words)
     bones: dict[str, int] = dict(rigify)
     for i in order:
@@ -177,7 +175,36 @@ def _from_names(container: Container, nodes: Nodes) -> dict[str, int]:
             if plain in names.split() or (bare in names.split() and not _is_second(plain)):
                 bones.setdefault(f"{side}{bone}" if side else bone, i)
                 break
+    _complete(nodes, words, bones)
     return bones
+
+
+def _unnumbered(names: dict[int, str]) -> dict[int, str]:
+    """The names without the number that some sites append to every one of them, as in `LeftArm_09`."""
+    numbers = [found.group(1) for name in names.values() if (found := re.search(r"_(\d+)$", name))]
+    if len(numbers) < 0.8 * len(names) or len(set(numbers)) < 0.9 * len(numbers):
+        return names
+    return {i: re.sub(r"_\d+$", "", name) for i, name in names.items()}
+
+
+def _complete(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, int]) -> None:
+    """Bones whose names mean another one elsewhere, by their place: a thigh called leg, an arm called shoulder."""
+    knees = {side: i for i, (side, word) in reversed(words.items()) if word in ("knee", "shin", "calf")}
+    for side in ("left", "right"):
+        if f"{side}UpperLeg" not in bones and side in knees:
+            bones[f"{side}LowerLeg"] = knees[side]
+        for upper, lower in (("UpperLeg", "LowerLeg"), ("UpperArm", "LowerArm")):
+            if f"{side}{upper}" in bones or f"{side}{lower}" not in bones:
+                continue
+            above = int(nodes.parents[bones[f"{side}{lower}"]])
+            if above >= 0 and words.get(above, ("", ""))[0] == side:
+                bones[f"{side}{upper}"] = above
+        if bones.get(f"{side}Shoulder") == bones.get(f"{side}UpperArm", -1):
+            del bones[f"{side}Shoulder"]
+    tops = [bones[b] for b in ("leftUpperLeg", "rightUpperLeg", "head") if b in bones]
+    if "hips" not in bones and len(tops) == 3:
+        shared = [n for n in _above(nodes, tops[0]) if all(n in _above(nodes, top) for top in tops)]
+        bones.update({"hips": shared[0]} if shared else {})
 
 
 def _is_second(plain: str) -> bool:

@@ -47,6 +47,22 @@ STYLES = {
     "vroid": "J_Bip_C_Hips J_Bip_C_Spine J_Bip_C_Chest J_Bip_C_UpperChest J_Bip_C_Neck J_Bip_C_Head "
     "J_Bip_{S}_UpperLeg J_Bip_{S}_LowerLeg J_Bip_{S}_Foot J_Bip_{S}_ToeBase J_Bip_{S}_Shoulder J_Bip_{S}_UpperArm "
     "J_Bip_{S}_LowerArm J_Bip_{S}_Hand",
+    "mixamo twice": "mixamorig1:Hips mixamorig1:Spine mixamorig1:Spine1 mixamorig1:Spine2 mixamorig1:Neck "
+    "mixamorig1:Head mixamorig1:{side}UpLeg mixamorig1:{side}Leg mixamorig1:{side}Foot mixamorig1:{side}ToeBase "
+    "mixamorig1:{side}Shoulder mixamorig1:{side}Arm mixamorig1:{side}ForeArm mixamorig1:{side}Hand",
+    "humanik": "Character1_Hips Character1_Spine Character1_Spine1 Character1_Spine2 Character1_Neck Character1_Head "
+    "Character1_{side}UpLeg Character1_{side}Leg Character1_{side}Foot Character1_{side}ToeBase "
+    "Character1_{side}Shoulder Character1_{side}Arm Character1_{side}ForeArm Character1_{side}Hand",
+    "auto-rig": "root.x spine_01.x spine_02.x spine_03.x neck.x head.x thigh_stretch.{s} leg_stretch.{s} foot.{s} "
+    "toes_01.{s} shoulder.{s} arm_stretch.{s} forearm_stretch.{s} hand.{s}",
+    "shoulder is the arm": "Hips Spine_01 Spine_02 Spine_03 Neck Head UpperLeg_{S} LowerLeg_{S} Ankle_{S} Ball_{S} "
+    "Clavicle_{S} Shoulder_{S} Elbow_{S} Hand_{S}",
+    "hip is the thigh": "Root_M Spine1_M Spine2_M Chest_M Neck_M Head_M Hip_{S} Knee_{S} Ankle_{S} Toes_{S} "
+    "Scapula_{S} Shoulder_{S} Elbow_{S} Wrist_{S}",
+    "leg is the thigh": "center upper_body upper_body2 chest neck head leg_{S} knee_{S} ankle_{S} toe_{S} "
+    "shoulder_{S} arm_{S} elbow_{S} wrist_{S}",
+    "daz": "hip abdomenLower abdomenUpper chestLower neckLower head {s}ThighBend {s}Shin {s}Foot {s}Toe {s}Collar "
+    "{s}ShldrBend {s}ForearmBend {s}Hand",
     "h-anim": " ".join(j if i < 6 else "{s}_" + j for i, j in enumerate(_JOINTS)),
 }
 _VRM_BONES = "hips spine chest upperChest neck head UpperLeg LowerLeg Foot Toes Shoulder UpperArm LowerArm Hand"
@@ -101,6 +117,18 @@ def test_naming_styles(tmp_path: Path, style: str) -> None:
             mine = character.skeleton.rest[character.skeleton.index(name)]
             # scaled to the same height of 1.70 m, else unchanged: it was in our pose already
             np.testing.assert_allclose(mine, ours.rest[ours.index(name)], atol=0.04, err_msg=name)
+
+
+def test_numbers_that_a_site_appends_to_every_name(tmp_path: Path) -> None:
+    names = renamed("mixamo")
+
+    def change(document: dict[str, Any]) -> None:
+        rename(names)(document)
+        for number, node in enumerate(document["nodes"]):
+            node["name"] += f"_{number:02}"
+
+    character = load_character(str(edited(SOURCE, tmp_path / "x.glb", change)))
+    assert set(names) <= set(character.skeleton.names)
 
 
 @pytest.mark.parametrize("version", ["VRM", "VRMC_vrm"])
