@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, character_option, gait_option, preset_option, selection_options
 from dancetutor_cli.errors import FileError, UsageError
 
@@ -69,6 +70,7 @@ def command(
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
     task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait)
+    tell_of_compiling(preset)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))
     _check_target(target, SUFFIXES)

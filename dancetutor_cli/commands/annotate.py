@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, selection_options
 from dancetutor_cli.errors import UsageError
 
@@ -78,6 +79,7 @@ def command(
     """
     from dancetutor_cli.jobs.annotate import Order
     from dancetutor_cli.library import find_files
+    from dancetutor_cli.play import DEFAULT_PRESET
 
     if into_file and "edit" not in styles:
         raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
@@ -95,6 +97,8 @@ def command(
     songs = _songs(_items(paths, output, find_files(paths)))
     talk = _Talk(order, check, dry_run)
     talk.begin()
+    if not strip:
+        tell_of_compiling(preset or DEFAULT_PRESET)
     for outcome in _outcomes(songs, order, jobs):
         talk.tell(outcome)
     return talk.end()

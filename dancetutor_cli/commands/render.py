@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.film_options import film_options, film_request
+from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import preset_option, selection_options
 from dancetutor_cli.errors import FileError, UsageError
 
@@ -102,6 +103,8 @@ def _render_one(
 
     kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
     request = film_request(path, options, kind)
+    if not quiet:
+        tell_of_compiling(request.preset)
     subject = look_up(request)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     _check_target(target, folder is not None)
