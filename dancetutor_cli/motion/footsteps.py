@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 STANCE = 0.6  # part of a cycle that a foot stands
 SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
 ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
-SIDESTEP = 0.6  # length of a step aside as a part of one ahead
+SIDESTEP = 0.4  # length of a step aside as a part of one ahead
 OVER_EDGE = 0.02  # metres that a foot rises more to get over the edge of the pad
 
 
@@ -123,7 +123,8 @@ def _footfalls(
     travel = goal.middle - begin.middle
     along = float(np.arctan2(travel[0], travel[1]))
     # steps across the way she faces are short, or ankles would bend aside
-    lengths = np.cumsum(SIDESTEP + (1.0 - SIDESTEP) * np.maximum(np.cos([*ways, goal.heading] - np.array(along)), 0.0))
+    ahead = np.maximum(np.cos(np.array([begin.heading, *ways, goal.heading]) - along), 0.0)
+    lengths = np.cumsum(SIDESTEP + (1.0 - SIDESTEP) * np.minimum(ahead[1:], ahead[:-1]))
     steps = []
     for k in range(1, count + 1):
         side = (first + k - 1) % 2

@@ -88,19 +88,24 @@ def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> 
     """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
     total: GaitPose | None = None
     for walk in walks:
-        fade = smooth((times - walk.start) / FADE) * smooth((walk.end - times) / FADE)
-        if not fade.any():
+        first_at, end_at = np.searchsorted(times, (walk.start, walk.end))
+        if first_at == end_at:
             continue
+        near = slice(int(first_at), int(end_at))
+        fade = smooth((times[near] - walk.start) / FADE) * smooth((walk.end - times[near]) / FADE)
         landings = np.array([walk.start, *walk.landings])
         first = 0.5 if walk.first == 1 else 1.0
-        phase = np.interp(times, landings, first - 0.5 + 0.5 * np.arange(len(landings)))
+        phase = np.interp(times[near], landings, first - 0.5 + 0.5 * np.arange(len(landings)))
         pose = blended_pose(*gaits_of(walk.gait, settings), walk.share, phase)
-        faded = [getattr(pose, f.name) for f in fields(GaitPose)]
-        faded = [v * (fade if v.ndim == 1 else fade[:, None]) for v in faded]
-        if total is not None:
-            faded = [getattr(total, f.name) + v for f, v in zip(fields(GaitPose), faded, strict=True)]
-        total = GaitPose(*faded)
+        total = total or _standing_pose(len(times))
+        for f in fields(GaitPose):
+            value = getattr(pose, f.name)
+            getattr(total, f.name)[near] += value * (fade if value.ndim == 1 else fade[:, None])
     return total
+
+
+def _standing_pose(count: int) -> GaitPose:
+    return GaitPose(*(np.zeros((count, 2) if f.name == "hands" else count) for f in fields(GaitPose)))
 
 
 def turned(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:

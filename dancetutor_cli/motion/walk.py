@@ -62,6 +62,9 @@ def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) ->
     if plan.first < walk.least:
         return plan
     goal = standing(plan.feet, -np.inf)
+    places, following = _centres(ground), [_next_step(track, -np.inf) for track in plan.feet]
+    if len(places) > 1 and None not in following:
+        goal = stand_at(np.array([_nearest(places, following), 0.0]), 0.0, settings)
     away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
     begin = stand_at(away, -np.pi / 2, settings)
     ready = plan.first - walk.settle
@@ -70,7 +73,9 @@ def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) ->
         return plan
     level = ground.level(*begin.middle)
     feet = tuple(
-        FootTrack((float(b[0]), float(b[1])), float(y), (*steps.swings[side], *track.swings), level)
+        FootTrack(
+            (float(b[0]), float(b[1])), float(y), (*steps.swings[side], *_from_there(track.swings, goal, side)), level
+        )
         for side, (b, y, track) in enumerate(zip(begin.balls, begin.yaws, plan.feet, strict=True))
     )
     first = Turn(BEGIN - 1.0, BEGIN - 0.5, begin.heading)
@@ -112,14 +117,13 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
     for start, ready in _waits(plan, mines, walk.wait):
         begin = standing(plan.feet, start, plan.turns)
         following = [_next_step(track, ready) for track in plan.feet]
-        if any(s is None or s.kind == "evade" for s in following):
+        targets = np.array([s.target for s in following if s is not None and s.kind != "evade"])
+        if len(targets) < len(following):
             continue
-        targets = np.array([s.target for s in following if s is not None])
         if np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
             continue
-        nearest = places[np.argmin(np.abs(places - targets[:, 0].mean()))]
         whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
-        goal = stand_at(np.array([nearest, 0.0]), whole, settings)
+        goal = stand_at(np.array([_nearest(places, following), 0.0]), whole, settings)
         way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
         steps = footsteps(begin, goal, way, ground, gait, start + walk.pause, ready - REST, settings)
         if steps is not None and steps.room >= settings.step.apart - 0.01:
@@ -129,6 +133,12 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
 
 def _next_step(track: FootTrack, time: float) -> Swing | None:
     return next((s for s in track.swings if s.lift >= time - 1e-9 and s.kind != "pivot"), None)
+
+
+def _nearest(places: Array, following: list[Swing | None]) -> float:
+    """Which of the places is nearest to where both feet will step next."""
+    middle = np.mean([s.target[0] for s in following if s is not None])
+    return float(places[np.argmin(np.abs(places - middle))])
 
 
 def _centres(ground: Ground) -> Array:
@@ -160,22 +170,22 @@ def _inserted(plan: Plan, steps: Steps, goal: Stand, ready: float) -> Plan:
     for side, track in enumerate(plan.feet):
         after = [s for s in track.swings if s.land > steps.walk.start]
         before = track.swings[: len(track.swings) - len(after)]
-        here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
-        moved: list[Swing] = []
-        for swing in after:
-            if swing.kind != "pivot":
-                moved += [_from_there(swing, goal), *after[len(moved) + 1 :]]
-                break
-            moved.append(replace(swing, target=here))
+        moved = _from_there(tuple(after), goal, side)
         tracks.append(replace(track, swings=(*before, *steps.swings[side], *moved)))
     turns = sorted([*plan.turns, *steps.turns], key=lambda t: t.start)
     walks = sorted([*plan.walks, steps.walk], key=lambda w: w.start)
     return replace(plan, feet=(tracks[0], tracks[1]), turns=tuple(turns), walks=tuple(walks))
 
 
-def _from_there(swing: Swing, goal: Stand) -> Swing:
-    """The first step after a walk: its way was planned from elsewhere."""
-    if swing.kind != "jump":
-        return replace(swing, bulge=(0.0, 0.0))
+def _from_there(swings: tuple[Swing, ...], goal: Stand, side: int) -> tuple[Swing, ...]:
+    """What a foot does after a walk, planned as if it came from elsewhere: its pivots and its first step are new."""
+    here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
     middle = goal.balls.mean(axis=0)
-    return replace(swing, turn=0.0, middle0=(float(middle[0]), float(middle[1])))
+    for k, swing in enumerate(swings):
+        if swing.kind == "pivot":
+            continue
+        first = replace(swing, bulge=(0.0, 0.0))
+        if swing.kind == "jump":
+            first = replace(swing, turn=0.0, middle0=(float(middle[0]), float(middle[1])))
+        return (*(replace(s, target=here) for s in swings[:k]), first, *swings[k + 1 :])
+    return tuple(replace(s, target=here) for s in swings)
