@@ -104,12 +104,15 @@ def preset(
     ----------
     name : one of `look.cameras` (back, front, side, three-quarter, top)
     extent : least and greatest corner (3,) of the pad's surface in the world, see `Scene.extent`
-    size : (width, height) of the picture; region : left, top, right, bottom of the part she fills, 0..1
+    size : (width, height) of the picture; region : left, top, right, bottom of the part she fills, 0..1;
+        where it is the whole picture, the camera's own holds
     tall : height of who dances, metres, where it is more than the configured `height` of a camera that shows all of her
     """
     if name not in look.cameras:
         raise UsageError(f"no camera '{name}'; there are: {', '.join(look.cameras)}, or POSITION/TARGET as x,y,z/x,y,z")
     settings = look.cameras[name]
+    if region == WHOLE:
+        region = settings.region
     if not settings.feet_only:
         settings = replace(settings, height=max(settings.height, tall))
     box = _box(extent, settings, look.stage.pad_height)

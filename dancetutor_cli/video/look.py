@@ -24,6 +24,7 @@ class CameraLook:
     margin: float
     arms: float
     feet_only: bool = False
+    region: Box = (0.0, 0.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +109,7 @@ def read_look(path: Path) -> Look:
     for name, camera in look.cameras.items():
         if not 1 <= camera.field <= 120 or not -89.99 <= camera.elevation <= 89.99:
             raise FileError(path, f"cameras.{name}: field must be 1..120 degrees and elevation -89.99..89.99")
+        _check_region(path, f"cameras.{name}.region", camera.region)
     positive = {
         "free_field": look.free_field,
         "follow.seconds": look.follow.seconds,
@@ -123,12 +125,16 @@ def read_look(path: Path) -> Look:
     for name, value in positive.items():
         if not value > 0:
             raise FileError(path, f"{name}: {value:g} must be more than 0")
-    left, top, right, bottom = look.follow.region
-    if not (0 <= left < right <= 1 and 0 <= top < bottom <= 1):
-        raise FileError(path, "follow.region: left, top, right, bottom must be shares 0 to 1 in rising order")
+    _check_region(path, "follow.region", look.follow.region)
     if not 20 <= look.light.elevation <= 89:
         raise FileError(path, f"light.elevation: {look.light.elevation:g} must be 20..89 degrees")
     return look
+
+
+def _check_region(path: Path, name: str, region: Box) -> None:
+    left, top, right, bottom = region
+    if not (0 <= left < right <= 1 and 0 <= top < bottom <= 1):
+        raise FileError(path, f"{name}: left, top, right, bottom must be shares 0 to 1 in rising order")
 
 
 @cache

@@ -265,7 +265,7 @@ def test_a_palm_on_the_pad_leaves_its_mark_and_a_raised_hand_none(scene):
     empty = cpu.frame(replace(state, joints=None)).astype(int)
     place = np.array([-0.28, 0.0, 0.28])  # a blank tile, far from both feet
     row, column = scene.camera("top", size).project(place[None], size)[0, 1::-1].astype(int)
-    around = np.s_[row - 25 : row + 25, column - 25 : column + 25]
+    around = np.s_[row - 19 : row + 19, column - 19 : column + 19]
     wrist = names.index("r_radiocarpal")
     for height, seen in ((0.0, True), (0.5, False)):
         joints = state.joints.copy()
