@@ -23,7 +23,7 @@ from dancetutor_cli.play.vocabulary import MODELS
 
 _EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
-_NODES_A_ROW = 10  # and one for each column: so many nodes a long chart is first given room for
+_NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
 _MOST_MOVES_KEPT = 4_000_000  # then the tables start anew, so that a long run does not fill the memory
 
 
@@ -110,7 +110,7 @@ class Engine:
                 missing = np.full(len(self.tables.state_key) - len(nodes.slot), -1, dtype=np.int32)
                 nodes = nodes._replace(slot=np.append(nodes.slot, missing))
             elif wanted == store.MORE_NODES:
-                nodes = nodes._replace(node=_more_nodes(nodes.node, row, n))
+                _make_room(nodes.node, row, n)
             elif wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, n)
         return found, nodes
@@ -140,13 +140,14 @@ def _nodes(rows: int, node: NDArray[np.int32], states: int) -> Nodes:
     return Nodes(np.empty((rows + 2, 2), dtype=np.int64), node, np.full(states, -1, dtype=np.int32))
 
 
-def _more_nodes(node: NDArray[np.int32], row: int, rows: int) -> NDArray[np.int32]:
-    """Room for as many nodes as the rest of the rows will need if it goes on like this, or half as many again."""
+def _make_room(node: NDArray[np.int32], row: int, rows: int) -> None:
+    """Room for as many nodes as the rest of the rows will need if it goes on like this, at most twice as many.
+
+    The array grows where it is, so that old and new are not in memory together.
+    """
     used = len(node)
     like_this = used * rows // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
-    more = np.empty((min(max(like_this, used * 9 // 8 + MOST_MOVES), 2 * used), 2), dtype=np.int32)
-    more[:used] = node
-    return more
+    node.resize((min(max(like_this, used * 9 // 8 + MOST_MOVES), 2 * used), 2), refcheck=False)
 
 
 @dataclass(frozen=True, slots=True)

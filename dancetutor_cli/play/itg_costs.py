@@ -15,10 +15,10 @@ from dancetutor_cli.play.vocabulary import EVENTS as NAMES
 
 (
     DOUBLESTEP, FAST_JACK, FOOTSWITCH, SLOW_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET, SLOW_BRACKET,
-    FAST_JUMP, CROSSOVER, CROSSOVER_START, CROSSOVER_BACK, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING, DISTANCE,
-    STRETCH, TWISTED, MINE, RELEASE, HAND, HAND_HOLD, UNPLAYABLE, RESTED_DOUBLESTEP, MARKED_DOUBLESTEP,
-    RELEASED_DOUBLESTEP, MARKED_FOOTSWITCH,
-) = range(30)  # fmt: skip
+    FAST_JUMP, CROSSOVER, CROSSOVER_START, CROSSOVER_BACK, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180,
+    FACING, DISTANCE, STRETCH, TWISTED, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, UNPLAYABLE, RESTED_DOUBLESTEP,
+    MARKED_DOUBLESTEP, RELEASED_DOUBLESTEP, MARKED_FOOTSWITCH,
+) = range(32)  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
     EVENT_HALF, EVENT_FULL, EVENT_FRONT, EVENT_BACK, EVENT_SPIN, EVENT_DOUBLESTEP, EVENT_FORCED, EVENT_JUMP_FOOTSWITCH,
@@ -144,6 +144,8 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
     terms[CROSSOVER] = w[CROSSOVER]
     if g.right[before[1], 0] >= g.left[before[0], 0] - EPSILON:
         terms[CROSSOVER_START] = w[CROSSOVER_START]
+    if pressed[0] and pressed[1]:
+        terms[CROSSOVER_JUMP] = w[CROSSOVER_JUMP]
     if size >= 180.0 - EPSILON:
         terms[CROSSOVER_FULL] = w[CROSSOVER_FULL]
         events |= EVENT_FULL
@@ -167,9 +169,12 @@ def charge_mines(before, s, pressed, mines, terms, g, w):  # type: ignore[no-unt
     for foot in range(2):
         if pressed[foot]:
             s[LEFT_LIFTED + foot] = 0
-        elif mines & mask_of(s[foot], foot, g):
+            continue
+        if mines & mask_of(s[foot], foot, g):
             terms[MINE] += w[MINE]
             s[LEFT_LIFTED + foot] = 1
+        if before[LEFT_LIFTED + foot] and pressed[1 - foot]:
+            terms[LIFTED] += w[LIFTED]
 
 
 @njit

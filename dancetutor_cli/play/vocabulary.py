@@ -25,9 +25,9 @@ _THESIS = (
 
 _ITG = (
     "doublestep", "fast-jack", "footswitch", "slow-footswitch", "sideswitch", "jump-footswitch", "holdswitch",
-    "bracket", "slow-bracket", "fast-jump", "crossover", "crossover-start", "crossover-back", "crossover-full",
-    "spin", "turn-135", "turn-180", "facing", "distance", "stretch", "twisted", "mine", "release", "hand", "hand-hold",
-    "unplayable",
+    "bracket", "slow-bracket", "fast-jump", "crossover", "crossover-start", "crossover-back", "crossover-jump",
+    "crossover-full", "spin", "turn-135", "turn-180", "facing", "distance", "stretch", "twisted", "mine", "lifted",
+    "release", "hand", "hand-hold", "unplayable",
 )  # fmt: skip
 # weights that take the place of another under some condition; they have no column of their own
 _ITG_INSTEAD = ("rested-doublestep", "marked-doublestep", "released-doublestep", "marked-footswitch")
