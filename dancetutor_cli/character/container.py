@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MAX_FILE = 100_000_000  # bytes; a file of this size or more is refused unread
 MAX_JSON = 16_000_000  # bytes
 MAX_ITEMS = 20_000  # nodes, accessors, buffer views, meshes ...
-MAX_ELEMENTS = 20_000_000  # numbers in one accessor
+MAX_ELEMENTS = 4_000_000  # numbers in one accessor
 MAX_PIXELS = 4096 * 4096  # of one image
 MAX_ALL_PIXELS = 8 * MAX_PIXELS  # of all images of a file
 
@@ -96,7 +96,9 @@ class Container:
         width = _WIDTHS.get(str(item.get("type")), 0)
         if dtype.kind == "V" or not width:
             raise self.fail(f"accessor {index} has an unknown type; the file is broken")
-        count = self.integer(item.get("count"), 1, MAX_ELEMENTS // width, "accessor count")
+        count = self.integer(item.get("count"), 1, 2**32, "accessor count")
+        if count * width > MAX_ELEMENTS:
+            raise self.fail(f"accessor {index} holds more than {MAX_ELEMENTS} numbers; reduce the character's mesh")
         if "bufferView" in item:
             raw = self._array(item, dtype, count, width)
         elif "sparse" in item:

@@ -108,9 +108,11 @@ class _Cutter:
 
     def _split(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Each triangle as four, with new vertices in the middle of its edges."""
+        count = len(self.columns)
         edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        pairs, number = np.unique(edges, axis=0, return_inverse=True)
-        ab, bc, ca = (number.reshape(-1, 3) + len(self.columns)).T
+        keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_inverse=True)
+        pairs = np.stack([keys // count, keys % count], axis=1)
+        ab, bc, ca = (number.reshape(-1, 3) + count).T
         a, b, c = triangles.T
         self.columns = np.vstack([self.columns, self.columns[pairs].mean(axis=1)])
         joints, weights = _mixed(self.joints[pairs], self.weights[pairs])

@@ -21,8 +21,8 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 MAX_JOINTS = 1024
 MAX_SKINNED = 16 * MAX_JOINTS  # joints of all skins together
-MAX_VERTICES = 2_000_000
-MAX_TRIANGLES = 4_000_000
+MAX_VERTICES = 500_000
+MAX_TRIANGLES = 500_000
 MAX_PRIMITIVES = 4096
 _TRIANGLES = 4  # glTF's primitive mode
 
@@ -178,7 +178,7 @@ class _Reader:
         self.vertices += count
         self.triangles += len(triangles)
         if self.vertices > MAX_VERTICES or self.triangles > MAX_TRIANGLES:
-            raise self.container.fail(f"has more than {MAX_VERTICES} vertices or {MAX_TRIANGLES} triangles")
+            raise self.container.fail(f"has more than {MAX_VERTICES} vertices or {MAX_TRIANGLES} triangles; reduce it")
         normals = self._attribute(attributes, "NORMAL", 3, count) if "NORMAL" in attributes else None
         if "skin" in node:
             joints, weights = self._weights(node, attributes, count)

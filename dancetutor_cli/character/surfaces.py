@@ -17,6 +17,7 @@ from dancetutor_cli.character.model import Character, Material, Mesh
 
 _BLOCK = 8  # texels a side that a colour fills: pure in three halvings of the texture
 _MOST_COLORS = 4096  # on a palette; more become 16 steps of red, green and blue
+_CODE = np.array([65536, 256, 1])  # red, green and blue as one number
 _EVEN = 0.02  # colours that differ less than this are one
 
 
@@ -46,17 +47,17 @@ def _painted(mesh: Mesh, places: NDArray[np.float64]) -> tuple[Mesh, NDArray[np.
         mixed = srgb_from_linear(base * colors.mean(axis=0))
         material = replace(material, base_color=_rgba(mixed, material))
         return replace(mesh, material=material, colors=None), places
-    paint = np.rint(srgb_from_linear(base * colors[mesh.triangles].mean(axis=1)) * 255).astype(np.uint8)
-    if len(np.unique(paint, axis=0)) > _MOST_COLORS:
+    paint = np.rint(srgb_from_linear(base * colors[mesh.triangles].mean(axis=1)) * 255).astype(np.int64)
+    if len(np.unique(paint @ _CODE)) > _MOST_COLORS:
         paint = paint // 17 * 17
-    palette, which = np.unique(paint, axis=0, return_inverse=True)
-    which = which.reshape(-1)
-    pairs = np.stack([mesh.triangles.reshape(-1), np.repeat(which, 3)], axis=1)
-    used, triangles = np.unique(pairs, axis=0, return_inverse=True)  # a vertex for each colour around it
-    texture, spots = _swatches(palette)
+    codes, which = np.unique(paint @ _CODE, return_inverse=True)
+    pairs = mesh.triangles.reshape(-1) * np.int64(len(codes)) + np.repeat(which.reshape(-1), 3)
+    used, triangles = np.unique(pairs, return_inverse=True)  # a vertex for each colour around it
+    vertices, color = used // len(codes), used % len(codes)
+    texture, spots = _swatches((codes[:, None] // _CODE % 256).astype(np.uint8))
     whole = replace(material, texture=texture, base_color=_rgba(np.ones(3), material))
-    out = take(mesh, used[:, 0], triangles.reshape(-1, 3))
-    return replace(out, uv=spots[used[:, 1]], material=whole, colors=None), places[used[:, 0]]
+    out = take(mesh, vertices, triangles.reshape(-1, 3))
+    return replace(out, uv=spots[color], material=whole, colors=None), places[vertices]
 
 
 def _rgba(rgb: NDArray[np.float64], material: Material) -> tuple[float, float, float, float]:
@@ -101,13 +102,16 @@ def open_pieces(triangles: NDArray[np.int32], places: NDArray[np.float64]) -> ND
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    _, same = np.unique(np.round(places * 1e4).astype(np.int64), axis=0, return_inverse=True)
+    steps = np.clip(np.round(places * 1e4), -1e6, 1e6).astype(np.int64) + 1_000_000
+    _, same = np.unique((steps[:, 0] * 2_000_001 + steps[:, 1]) * 2_000_001 + steps[:, 2], return_inverse=True)
     welded = same.reshape(-1)[triangles].astype(np.int64)
     count = int(welded.max(initial=0)) + 1
     edges = np.sort(welded[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    keys, uses = np.unique(edges[:, 0] * count + edges[:, 1], return_counts=True)
-    rim = np.isin(edges[:, 0] * count + edges[:, 1], keys[uses == 1]).reshape(-1, 3).any(axis=1)
+    _, number, uses = np.unique(edges[:, 0] * count + edges[:, 1], return_inverse=True, return_counts=True)
+    rim = (uses[number.reshape(-1, 3)] == 1).any(axis=1)
     graph = coo_array((np.ones(len(edges), np.int8), (edges[:, 0], edges[:, 1])), shape=(count, count))
     _, piece = connected_components(graph, directed=False)
     mine = piece[welded[:, 0]]
-    return np.isin(mine, np.unique(mine[rim]))
+    has_rim = np.zeros(count, dtype=np.bool_)
+    has_rim[mine[rim]] = True
+    return has_rim[mine]
