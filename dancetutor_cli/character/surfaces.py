@@ -114,4 +114,4 @@ def open_pieces(triangles: NDArray[np.int32], places: NDArray[np.float64]) -> ND
     mine = piece[welded[:, 0]]
     has_rim = np.zeros(count, dtype=np.bool_)
     has_rim[mine[rim]] = True
-    return has_rim[mine]
+    return np.asarray(has_rim[mine])
