@@ -15,18 +15,21 @@ __all__ = ["FeetProblem", "Ignores", "Overrides", "overrides_for"]
 def overrides_for(song: Song, chart: Chart) -> tuple[Overrides, Ignores, tuple[FeetProblem, ...]]:
     """Everything people said about the feet of a chart; to be asked before the chart is solved.
 
-    Pinned measures in the file and overrides in `data.sme` beside it; where both speak of a cell, the pin counts.
+    Pinned measures in the file, overrides in `data.sme` beside it, `feet` in the dancetutor.yaml up the tree; where
+    several speak of a cell, the first of these counts.
 
     Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
+    FileError : dancetutor.yaml cannot be read
     """
     from dancetutor_cli.feet.contradictions import contradictions
     from dancetutor_cli.feet.pins import pinned
+    from dancetutor_cli.feet.settings import read_settings
     from dancetutor_cli.feet.sme import read_sme
 
     pins, problems = pinned(song, chart)
-    editor = read_sme(song, chart)
-    taken = {(s.tick, s.column) for s in pins}
-    said = [*pins, *(s for s in editor.said if (s.tick, s.column) not in taken)]
-    good, contradictory = contradictions(chart, said)
+    editor, settings = read_sme(song, chart), read_settings(song, chart)
+    said = {(s.tick, s.column): s for s in (*settings.said, *editor.said, *pins)}  # later ones win
+    good, contradictory = contradictions(chart, said.values())
     cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
-    return Overrides.of(cells), Ignores(editor.ignores), (*problems, *editor.problems, *contradictory)
+    ignores = Ignores(editor.ignores, settings.ignores or {})
+    return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -51,16 +52,23 @@ class Overrides:
 
 @dataclass(frozen=True, slots=True)
 class Ignores:
-    """Findings that a person does not want to see at some rows, in SMEditor's words.
+    """Findings that a person does not want to see at some rows, in SMEditor's words or by rule.
 
     codes : {tick: of "DS" (doublestep), "FS" (footswitch missed), "AM" (ambiguous) those that are silenced there}
+    rules : {tick: codes or names of the linter's rules, or beginnings of codes}
     """
 
     codes: dict[int, frozenset[str]] = field(default_factory=dict)
+    rules: Mapping[int, frozenset[str]] = field(default_factory=dict)
 
     def silenced(self, tick: int, code: str) -> bool:
         """Whether findings of this kind in the row at `tick` are not wanted."""
         return code in self.codes.get(tick, ())
+
+    def silenced_rule(self, tick: int, code: str, name: str) -> bool:
+        """Whether findings of a rule of the linter are not wanted in the row at `tick`."""
+        said = self.rules.get(tick, ())
+        return any(name == one.lower() or code.startswith(one.upper()) or one.lower() == "all" for one in said)
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,10 +52,11 @@ def _moves(subject: ChartSubject, words: Mapping[str, str]) -> list[tuple[int, s
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     """What the linter finds in a chart, with the configuration that holds for its file."""
+    from dancetutor_cli.library.settings_file import find_settings_file
     from dancetutor_cli.lint.check import check_chart
-    from dancetutor_cli.lint.configuration import find_configuration, load_configuration
+    from dancetutor_cli.lint.configuration import load_configuration
 
-    settings = load_configuration(find_configuration(subject.song.path.absolute().parent)).settings
+    settings = load_configuration(find_settings_file(subject.song.path.absolute().parent)).settings
     return check_chart(subject, settings)
 
 

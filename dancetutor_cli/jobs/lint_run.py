@@ -13,11 +13,10 @@ from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.settings_file import find_settings_file, places_of_settings_file
 from dancetutor_cli.lint.configuration import (
     Configuration,
-    find_configuration,
     load_configuration,
-    places_for_configuration,
     with_assignments,
     with_selection,
 )
@@ -69,7 +68,7 @@ class LintRun:
 
     def _source(self, folder: Path) -> Path | None:
         if folder not in self._sources:
-            self._sources[folder] = find_configuration(folder)
+            self._sources[folder] = find_settings_file(folder)
         return self._sources[folder]
 
     def preset(self, path: Path) -> Preset:
@@ -89,7 +88,7 @@ class LintRun:
         yield path.parent / "data.sme"
         yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
         if self.request.config is None:
-            yield from places_for_configuration(path.parent)
+            yield from places_of_settings_file(path.parent)
         else:
             yield Path(self.request.config)
         with suppress(DancetutorError):

@@ -42,9 +42,12 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
 
 
 def _silenced(finding: Finding, subject: ChartSubject) -> bool:
-    """Whether the author told the editor that this finding is not wanted in this row."""
-    code = _EDITOR_CODES.get(finding.rule)
-    return bool(code and finding.beat is not None and subject.ignores.silenced(round(finding.beat * 48), code))
+    """Whether the author said, in an editor or in dancetutor.yaml, that this finding is not wanted in this row."""
+    if finding.beat is None:
+        return False
+    tick, code = round(finding.beat * 48), _EDITOR_CODES.get(finding.rule)
+    known = subject.ignores
+    return bool(code and known.silenced(tick, code)) or known.silenced_rule(tick, finding.rule, finding.name)
 
 
 def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:

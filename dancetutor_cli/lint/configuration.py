@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -11,12 +11,12 @@ from typing import Any, TypeVar
 import yaml
 
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.library.settings_file import Condition, SettingError, check_keys, condition_of, texts_of
 from dancetutor_cli.lint.registry import matching, rule_named
-from dancetutor_cli.lint.settings import SEVERITIES, Condition, Layer, Options, Settings
+from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
 
-FILE_NAME = "dancetutor.yaml"
 FAIL_ON = ("error", "warning", "never")
 _Found = TypeVar("_Found")
 _TOP_KEYS = (
@@ -32,7 +32,6 @@ _TOP_KEYS = (
     "feet",
 )
 _OVERRIDE_KEYS = ("when", "select", "ignore", "rules")
-_WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,27 +43,6 @@ class Configuration:
     preset: str | None = None
     fail_on: str | None = None
     baseline: Path | None = None
-
-
-class _ConfigError(Exception):
-    """Something wrong at a key path inside a file."""
-
-    def __init__(self, keys: Sequence[str | int], message: str) -> None:
-        super().__init__(message)
-        self.keys = tuple(keys)
-        self.message = message
-
-
-def find_configuration(start: Path) -> Path | None:
-    """The nearest dancetutor.yaml in the folder of `start` or above it."""
-    return next((place for place in places_for_configuration(start) if place.is_file()), None)
-
-
-def places_for_configuration(start: Path) -> Iterator[Path]:
-    """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
-    folder = start.absolute()
-    for candidate in (folder, *folder.parents):
-        yield candidate / FILE_NAME
 
 
 def load_configuration(source: str | Path | None) -> Configuration:
@@ -84,7 +62,7 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
             configuration = _apply(configuration, data, Path.cwd())
-        except _ConfigError as fault:
+        except SettingError as fault:
             raise UsageError(f"--set {text}: {fault.message}") from None
     return configuration
 
@@ -132,37 +110,48 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configur
         base = _extend(base, beside if beside.is_file() else _located(str(name)), (*seen, path.resolve()))
     try:
         return replace(_apply(base, data, path.parent), sources=(*base.sources, path))
-    except _ConfigError as fault:
+    except SettingError as fault:
         raise source.error(fault.keys, fault.message) from None
 
 
 def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Configuration:
-    _check_keys(data, _TOP_KEYS, ())
+    check_keys(data, _TOP_KEYS, ())
     settings = base.settings.with_layer(_layer(data, Condition(), ()))
     for number, entry in enumerate(_list(data, "overrides")):
         place = ("overrides", number)
         if not isinstance(entry, Mapping):
-            raise _ConfigError(place, f"an override is a mapping of {', '.join(_OVERRIDE_KEYS)}")
-        _check_keys(entry, _OVERRIDE_KEYS, place)
-        settings = settings.with_layer(_layer(entry, _condition(entry.get("when"), folder, (*place, "when")), place))
+            raise SettingError(place, f"an override is a mapping of {', '.join(_OVERRIDE_KEYS)}")
+        check_keys(entry, _OVERRIDE_KEYS, place)
+        settings = settings.with_layer(_layer(entry, condition_of(entry.get("when"), folder, (*place, "when")), place))
+    if data.get("feet"):
+        _check_feet(data, folder)
     fail_on = data.get("fail-on", base.fail_on)
     if fail_on is not None and fail_on not in FAIL_ON:
-        raise _ConfigError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
+        raise SettingError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
     baseline = folder / str(data["baseline"]) if data.get("baseline") else base.baseline
     stream_rows = data.get("stream-rows", settings.stream_rows)
     if not isinstance(stream_rows, int) or stream_rows < 1:
-        raise _ConfigError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
+        raise SettingError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
     preset = data.get("preset", base.preset)
     if preset is not None and (folder / str(preset)).is_file():
         preset = str(folder / str(preset))
     return Configuration(replace(settings, stream_rows=stream_rows), base.sources, preset, fail_on, baseline)
 
 
+def _check_feet(data: Mapping[str, Any], folder: Path) -> None:
+    """What `feet` says is read where feet are found; here it is only checked, for it knows no rules."""
+    from dancetutor_cli.feet.settings import entries_of
+
+    for number, entry in enumerate(entries_of(data, folder)):
+        for rule in {rule for rules in entry.ignore.values() for rule in rules}:
+            _known(matching, rule, ("feet", number, "ignore"))
+
+
 def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...]) -> Layer:
     rules: dict[str, Options] = {}
     entries = data.get("rules") or {}
     if not isinstance(entries, Mapping):
-        raise _ConfigError((*place, "rules"), "'rules' is a mapping of rules to their settings")
+        raise SettingError((*place, "rules"), "'rules' is a mapping of rules to their settings")
     for name, options in entries.items():
         at = (*place, "rules", str(name))
         code = _known(rule_named, str(name), at).code
@@ -176,17 +165,17 @@ def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...
 def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
     defaults = default_rules()[code]
     if not isinstance(options, Mapping):
-        raise _ConfigError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
+        raise SettingError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
     given: dict[str, Any] = {
         key: "off" if key == "severity" and value is False else value for key, value in options.items()
     }
     for key, value in given.items():
         if key not in defaults:
-            raise _ConfigError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
+            raise SettingError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
         if key == "severity" and value not in SEVERITIES:
-            raise _ConfigError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
+            raise SettingError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
         if not _same_kind(value, defaults[key]):
-            raise _ConfigError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
+            raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
     return given
 
 
@@ -198,31 +187,9 @@ def _same_kind(value: Any, default: Any) -> bool:
     return isinstance(value, type(default))
 
 
-def _condition(when: Any, folder: Path, place: tuple[str | int, ...]) -> Condition:
-    if not isinstance(when, Mapping) or not when:
-        raise _ConfigError(place, f"an override needs 'when' with one or more of {', '.join(_WHEN_KEYS)}")
-    _check_keys(when, _WHEN_KEYS, place)
-    return Condition(
-        root=str(folder.absolute()),
-        paths=tuple(_texts(when, "path")),
-        steps_types=tuple(text.lower() for text in _texts(when, "steps-type")),
-        difficulties=tuple(text.lower() for text in _texts(when, "difficulty")),
-        meters=_meters(when["meter"], (*place, "meter")) if "meter" in when else None,
-    )
-
-
-def _meters(value: Any, place: tuple[str | int, ...]) -> tuple[int, int]:
-    """A meter, or a range written "1-7", "8-" or "-7"."""
-    low, dash, high = str(value).partition("-")
-    try:
-        return int(low or 0), int(high or 1_000_000) if dash else int(low)
-    except ValueError:
-        raise _ConfigError(place, f'"{value}" is no range of meters; write 8, "1-7", "8-" or "-7"') from None
-
-
 def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:
     found: frozenset[str] = frozenset()
-    for selector in _texts(data, key):
+    for selector in texts_of(data, key):
         found |= _known(matching, selector, (*place, key))
     return found
 
@@ -231,24 +198,11 @@ def _known(look_up: Callable[[str], _Found], name: str, place: tuple[str | int, 
     try:
         return look_up(name)
     except DancetutorError as error:
-        raise _ConfigError(place, str(error)) from None
-
-
-def _texts(data: Mapping[str, Any], key: str) -> list[str]:
-    value = data.get(key)
-    if value is None:
-        return []
-    return [str(entry) for entry in value] if isinstance(value, list) else [str(value)]
+        raise SettingError(place, str(error)) from None
 
 
 def _list(data: Mapping[str, Any], key: str) -> list[Any]:
     value = data.get(key) or []
     if not isinstance(value, list):
-        raise _ConfigError((key,), f"'{key}' is a list")
+        raise SettingError((key,), f"'{key}' is a list")
     return value
-
-
-def _check_keys(data: Mapping[str, Any], known: Sequence[str], place: tuple[str | int, ...]) -> None:
-    for key in data:
-        if key not in known:
-            raise _ConfigError((*place, str(key)), f"there is no '{key}' here; there are {', '.join(known)}")

@@ -8,53 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from fnmatch import fnmatchcase
 from pathlib import PurePath
 from typing import Any
 
+from dancetutor_cli.library.settings_file import Condition
+
 SEVERITIES = ("error", "warning", "info", "off")
 Options = Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """When a layer holds; an empty part always does.
-
-    paths : shell patterns, relative to the folder of the configuration `root`
-    steps_types, difficulties : lower case
-    meters : least and greatest meter
-    """
-
-    root: str = ""
-    paths: tuple[str, ...] = ()
-    steps_types: tuple[str, ...] = ()
-    difficulties: tuple[str, ...] = ()
-    meters: tuple[int, int] | None = None
-
-    @property
-    def is_about_charts(self) -> bool:
-        """Whether it can only be decided for a chart."""
-        return bool(self.steps_types or self.difficulties or self.meters)
-
-    def holds_for_path(self, path: PurePath) -> bool:
-        """Whether one of the patterns fits; a pattern without a slash fits any part of the path, as in .gitignore."""
-        if not self.paths:
-            return True
-        if path.is_relative_to(self.root):
-            path = path.relative_to(self.root)
-        whole = path.as_posix()
-        return any(
-            fnmatchcase(whole, pattern) if "/" in pattern else any(fnmatchcase(part, pattern) for part in path.parts)
-            for pattern in self.paths
-        )
-
-    def holds_for_chart(self, steps_type: str, difficulty: str, meter: int) -> bool:
-        """Whether steps type, difficulty and meter fit."""
-        return (
-            (not self.steps_types or steps_type.lower() in self.steps_types)
-            and (not self.difficulties or difficulty.lower() in self.difficulties)
-            and (self.meters is None or self.meters[0] <= meter <= self.meters[1])
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +26,7 @@ class Layer:
     rules : code -> {"severity": ..., option: ...}
     """
 
-    when: Condition = Condition()
+    when: Condition = field(default_factory=Condition)
     select: frozenset[str] | None = None
     ignore: frozenset[str] = frozenset()
     rules: Mapping[str, Options] = field(default_factory=dict)

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.library.settings_file import find_settings_file
 from dancetutor_cli.lint.configuration import (
     Configuration,
     default_rules,
-    find_configuration,
     load_configuration,
     with_assignments,
     with_selection,
@@ -116,7 +116,7 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
     (tmp_path / "dancetutor.yaml").write_text("{}")
     deep = tmp_path / "a" / "b"
     deep.mkdir(parents=True)
-    assert find_configuration(deep) == tmp_path / "dancetutor.yaml"
+    assert find_settings_file(deep) == tmp_path / "dancetutor.yaml"
 
 
 @pytest.mark.parametrize(
