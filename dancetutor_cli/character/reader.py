@@ -24,7 +24,7 @@ MAX_SKINNED = 16 * MAX_JOINTS  # joints of all skins together
 MAX_VERTICES = 500_000
 MAX_TRIANGLES = 500_000
 MAX_PRIMITIVES = 4096
-_TRIANGLES = 4  # glTF's primitive mode
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6  # glTF's primitive modes
 
 
 def read_character(path: Path) -> Character:
@@ -163,7 +163,7 @@ class _Reader:
         if self.primitives > MAX_PRIMITIVES:
             raise self.container.fail(f"has more than {MAX_PRIMITIVES} parts; join its meshes")
         for primitive in primitives:
-            if not isinstance(primitive, dict) or primitive.get("mode", _TRIANGLES) != _TRIANGLES:
+            if not isinstance(primitive, dict) or primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
                 continue
             name = str(node.get("name") or mesh.get("name") or f"mesh{index}")[:200]
             self._primitive(name, index, node, primitive)
@@ -215,7 +215,7 @@ class _Reader:
             indices = np.arange(count)
         if indices.ndim != 1 or indices.dtype.kind == "f" or (indices.size and int(indices.max()) >= count):
             raise self.container.fail("a mesh's indices point past its vertices; the file is broken")
-        return indices[: len(indices) // 3 * 3].reshape(-1, 3).astype(np.int32)
+        return _in_threes(indices.astype(np.int32), primitive.get("mode", _TRIANGLES))
 
     def _weights(
         self, node: dict[str, Any], attributes: dict[str, Any], count: int
@@ -248,6 +248,17 @@ class _Reader:
         placed = positions @ matrix[:3, :3].T + matrix[:3, 3]
         turned = None if normals is None else normals @ np.linalg.pinv(matrix[:3, :3])
         return placed.astype(np.float32), turned, joint
+
+
+def _in_threes(indices: NDArray[np.int32], mode: object) -> NDArray[np.int32]:
+    """Triangles (t, 3) of a list of vertices, all facing the same way."""
+    if mode == _TRIANGLES:
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+    if mode == _FAN:
+        return np.stack([indices[1:-1], indices[2:], np.broadcast_to(indices[0], len(indices[2:]))], axis=1)
+    out = np.stack([indices[:-2], indices[1:-1], indices[2:]], axis=1)
+    out[1::2] = out[1::2, [1, 0, 2]]
+    return out
 
 
 def vertex_normals(positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -212,6 +212,35 @@ def test_materials_of_the_file_are_kept(tmp_path: Path) -> None:
     np.testing.assert_allclose(read[0].uv, np.column_stack([v + 0.5, -2 * u]), atol=1e-6)
 
 
+@pytest.mark.parametrize("mode", [5, 6])
+def test_strips_and_fans_are_triangles_that_face_one_way(tmp_path: Path, mode: int) -> None:
+    indices = np.array([0, 1, 3, 2], "<u2") if mode == 5 else np.array([0, 1, 2, 3], "<u2")
+    document, binary = parts_of(SOURCE.read_bytes())
+    binary += bytes(-len(binary) % 4)
+    corners = square(Material("x", (1, 1, 1, 1))).positions.astype("<f4")
+    document["bufferViews"] += [
+        {"buffer": 0, "byteOffset": len(binary), "byteLength": 48},
+        {"buffer": 0, "byteOffset": len(binary) + 48, "byteLength": 8},
+    ]
+    views = len(document["bufferViews"])
+    document["accessors"] += [
+        {"bufferView": views - 2, "componentType": 5126, "count": 4, "type": "VEC3"},
+        {"bufferView": views - 1, "componentType": 5123, "count": 4, "type": "SCALAR"},
+    ]
+    items = len(document["accessors"])
+    document["meshes"].append(
+        {"primitives": [{"attributes": {"POSITION": items - 2}, "indices": items - 1, "mode": mode}]}
+    )
+    document["nodes"].append({"mesh": len(document["meshes"]) - 1})
+    document["nodes"][0]["children"].append(len(document["nodes"]) - 1)
+    document["buffers"][0]["byteLength"] = len(binary) + 56
+    path = tmp_path / "x.glb"
+    path.write_bytes(joined(document, binary + corners.tobytes() + indices.tobytes()))
+    mesh = read_glb(path).meshes[-1]
+    assert len(mesh.triangles) == 2 and area(mesh) == pytest.approx(0.16, rel=1e-5)
+    np.testing.assert_allclose(mesh.normals, np.tile([0, 0, 1], (4, 1)), atol=1e-6)
+
+
 def test_many_large_textures_are_reduced_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("dancetutor_cli.character.materials.ALL_TEXELS", 128 * 128)
     texture = read_glb(SOURCE).meshes[0].material.texture
