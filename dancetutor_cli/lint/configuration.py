@@ -12,7 +12,7 @@ import yaml
 
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.library.settings_file import Condition, SettingError, check_keys, condition_of, texts_of
-from dancetutor_cli.lint.registry import matching, rule_named
+from dancetutor_cli.lint.registry import all_rules, matching, rule_named
 from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
@@ -176,6 +176,8 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
             raise SettingError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
         if not _same_kind(value, defaults[key]):
             raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
+        if fault := all_rules()[code].fault(key, value):
+            raise SettingError((*place, key), f"{code} {key}: {fault}")
     return given
 
 

@@ -12,8 +12,6 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
 _KINDS = {"mine": Kind.MINE, "roll": Kind.ROLL, "hold": Kind.HOLD, "lift": Kind.LIFT, "fake": Kind.FAKE,
           "keysound": Kind.KEYSOUND}  # fmt: skip
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
-# Kinds of note that rule DT508 can forbid: those of the file, and what several at once make.
-KINDS = (*_KINDS, "jump", "hand")
 
 
 class Notes:
@@ -39,7 +37,7 @@ class Notes:
         yield from _runs(hidden, notes.tick, notes.line)
 
     def of_kind(self, kind: str) -> list[tuple[int, int]]:
-        """Tick and line of every note of a kind of `KINDS`; jumps and hands are rows."""
+        """Tick and line of every note of a kind of DT508; jumps and hands are rows."""
         notes = self._chart.notes
         if kind in _KINDS:
             found = notes.kind == _KINDS[kind]

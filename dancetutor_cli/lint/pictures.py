@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Song
+
+
+def sizes_fault(sizes: Sequence[object]) -> str | None:
+    """What is wrong with a list of sizes, or None."""
+    wrong = [size for size in sizes if not re.fullmatch(r"[1-9]\d*x[1-9]\d*", str(size))]
+    return f"'{wrong[0]}' is no size; write it as 418x164" if wrong else None
 
 
 def picture_fault(song: Song, tag: str, sizes: Sequence[str], *, required: bool) -> str | None:

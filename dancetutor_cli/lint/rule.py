@@ -29,6 +29,11 @@ class Rule(ABC):
     def __init__(self, options: Mapping[str, Any]) -> None:
         self.options = options
 
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """What is wrong with the value of an option, beyond its kind; None if nothing."""
+        return None
+
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
         """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
         return Finding(self.code, self.name, self.options["severity"], message, **{**place, **more})

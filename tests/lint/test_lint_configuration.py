@@ -53,6 +53,35 @@ def test_a_file_changes_single_entries(tmp_path: Path) -> None:
     assert rules["DT205"] == {"severity": "warning", "max_rows": 3}
 
 
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("DT508: {kinds: [mine, spikes]}", "there is no kind 'spikes'; there are mine, roll, hold"),
+        ("DT401: {grid: []}", "divisors of 192"),
+        ("DT401: {grid: [0]}", "divisors of 192"),
+        ("DT401: {grid: [4, 7]}", "divisors of 192"),
+        ("DT401: {grid: [a]}", "divisors of 192"),
+        ("DT504: {sizes: [418x]}", "'418x' is no size; write it as 418x164"),
+        ("DT505: {sizes: [10x0]}", "'10x0' is no size"),
+    ],
+)
+def test_values_that_no_rule_can_use_are_refused(option: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(FileError) as caught:
+        configured(f"rules:\n  {option}\n", tmp_path)
+    assert str(caught.value).startswith(f"{tmp_path / 'dancetutor.yaml'}:2") and words in str(caught.value)
+
+
+def test_every_kind_of_note_can_be_forbidden() -> None:
+    from dancetutor_cli.chart import parse
+    from dancetutor_cli.lint.notes import Notes
+    from dancetutor_cli.lint.rules.forbidden_notes import KINDS
+
+    rows = "1MK0\n2L40\n303F\n1110\n1001\n"
+    song = parse(f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n{rows};\n".encode(), Path("x.sm"))
+    notes = Notes(song.charts[0])
+    assert {kind: len(notes.of_kind(kind)) > 0 for kind in KINDS} == dict.fromkeys(KINDS, True)
+
+
 def test_yaml_off_needs_no_quotes(tmp_path: Path) -> None:
     assert severity(configured("rules: {spin: off}", tmp_path), "DT202", tmp_path / "x.sm") == "off"
 

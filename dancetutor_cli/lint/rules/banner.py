@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.pictures import picture_fault
+from dancetutor_cli.lint.pictures import picture_fault, sizes_fault
 from dancetutor_cli.lint.rule import FileRule
 
 if TYPE_CHECKING:
@@ -24,6 +24,11 @@ class BannerSize(FileRule):
 
     code = "DT504"
     name = "banner-size"
+
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """Sizes that are none."""
+        return sizes_fault(value) if option == "sizes" else None
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""

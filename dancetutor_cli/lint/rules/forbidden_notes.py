@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.rule import ChartRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
+
+
+# Kinds of the file, and what several notes at once make.
+KINDS = ("mine", "roll", "hold", "lift", "fake", "keysound", "jump", "hand")
 
 
 class ForbiddenNotes(ChartRule):
@@ -34,6 +38,12 @@ class ForbiddenNotes(ChartRule):
 
     code = "DT508"
     name = "forbidden-notes"
+
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """Names of kinds that there are not."""
+        unknown = [kind for kind in value if kind not in KINDS] if option == "kinds" else []
+        return f"there is no kind '{unknown[0]}'; there are {', '.join(KINDS)}" if unknown else None
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each kind, at its first note, with their number."""

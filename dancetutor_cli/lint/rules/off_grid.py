@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.rule import ChartRule
@@ -34,6 +34,14 @@ class OffGrid(ChartRule):
 
     code = "DT401"
     name = "off-grid"
+
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """A list of quantisations a measure of 192 ticks can be cut into."""
+        fits = option != "grid" or (
+            value and all(isinstance(name, int) and name > 0 and 192 % name == 0 for name in value)
+        )
+        return None if fits else f"a list of divisors of 192, for example [4, 8, 16], not {value}"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of such rows, at its first."""
