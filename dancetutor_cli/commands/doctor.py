@@ -25,7 +25,7 @@ def command(as_json: bool) -> None:
     else:
         width = max(len(c.name) for c in checks)
         for check in checks:
-            mend = f" Mend: {check.mend}" if check.mend else ""
-            click.echo(f"{check.state:<7} {check.name:<{width}}  {check.message}{mend}")
+            message = f"{check.message.rstrip('.')}. Mend: {check.mend}" if check.mend else check.message
+            click.echo(f"{check.state:<7} {check.name:<{width}}  {message}")
     if any(check.state == "broken" for check in checks):
         sys.exit(2)

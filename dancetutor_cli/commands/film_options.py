@@ -41,7 +41,10 @@ _OPTIONS = (
     click.option("--size", type=_Size(), help="Default: the layout's, 1280x720; a GIF's is smaller."),
     click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
     click.option(
-        "--section", metavar="START:END", help="Only this part: seconds, or beats (16b:32b) or measures (4m:8m)."
+        "--section",
+        metavar="START:END",
+        help="Only this part: seconds, beats (b16:b32), measures (m4:m8), or the "
+        "third finding of a rule and what is around it (DT201:3).",
     ),
     click.option(
         "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."

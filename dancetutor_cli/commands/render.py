@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Request, Subject
     from dancetutor_cli.video.encoder import Target
 
+LONG_GIF = 20.0  # seconds; a megabyte takes about four
 LONG = 20 * 60.0  # seconds of film; more than this is asked about first
 
 
@@ -158,6 +159,9 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
         return extras.poses(film, subject) if options["poses"] else film
 
     _warn(subject.warnings)
+    if kind in ("gif", "webp") and subject.clock.seconds > LONG_GIF:
+        what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
+        click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
     encoder = choose(options["encoder"]) if kind == "mp4" else "x264"
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality, encoder)
     with FilmProgress(target.name, quiet) as progress:

@@ -36,6 +36,11 @@ def examine() -> list[Check]:
 # name of --encoder -> ffmpeg's encoder
 ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac", "webp": "libwebp_anim"}
 _NEEDED = ("x264", "aac")
+_OPTIONAL = {
+    "nvenc": "needs an NVIDIA GPU that encodes, and its driver; x264 does without",
+    "vaapi": "needs a GPU at /dev/dri/renderD128 and its VA driver; x264 does without",
+    "webp": "write .mp4 or .gif, or pip install --force-reinstall imageio-ffmpeg",
+}
 # Scripts in which titles come, with letters that tell whether a font has them.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
 
@@ -89,7 +94,7 @@ def _encoder(name: str) -> Check:
         return Check(label, "ok", f"{ENCODERS[name]} encodes a frame")
     if name in _NEEDED:
         return Check(label, "broken", failure, "pip install --force-reinstall imageio-ffmpeg")
-    return Check(label, "without", failure)
+    return Check(label, "without", failure.split(";")[0], _OPTIONAL.get(name, ""))
 
 
 def _rubberband() -> Check:
@@ -131,7 +136,7 @@ def _font() -> Check:
     if not missing:
         return Check("font", "ok", message)
     lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
-    mend = "install fonts-dejavu-core and fonts-noto-cjk (or Noto Sans CJK), or give --font FILE for such titles"
+    mend = "install Noto Sans CJK or DejaVu Sans (Debian: fonts-noto-cjk, fonts-dejavu-core), or give --font FILE"
     return Check("font", "without", f"{message}; no letters for {lost}", mend)
 
 

@@ -121,3 +121,21 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert error.strip().splitlines()[-1].endswith("interrupted") and "Traceback" not in error
     assert list(out.iterdir()) == []
+
+
+def test_a_charts_own_music_stays_in_the_folder_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "secret.ogg").write_bytes(b"OggS")
+    song = tmp_path / "song" / "song.ssc"
+    song.parent.mkdir()
+    text = "#VERSION:0.83;\n#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n"
+    text += "#NOTEDATA:;\n#STEPSTYPE:dance-single;\n#DIFFICULTY:Hard;\n#METER:9;\n#MUSIC:../secret.ogg;\n"
+    song.write_text(text + "#NOTES:\n1000\n0100\n0010\n0001\n;\n")
+    assert render(song, "-o", tmp_path / "film.mp4", "-q", *TINY) == 2
+    assert "refused" in capsys.readouterr().err and not (tmp_path / "film.mp4").exists()
+
+
+def test_a_long_gif_is_made_with_a_note(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG + "1000\n0100\n0010\n0001\n,\n" * 12 + "1000\n0000\n0000\n0000\n;\n")
+    assert render(song, "-o", tmp_path / "film.gif", "-q", "--jobs", "1", *TINY) == 0
+    assert "choose a part with --section" in capsys.readouterr().err and (tmp_path / "film.gif").exists()
