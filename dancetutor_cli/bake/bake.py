@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
+from dancetutor_cli.bake.pieces import joined, piece_ends, trimmed
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.bar import bar_of, grips_of, hold_share, holding
@@ -26,28 +29,23 @@ from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.motion.walk import ground_of, with_walks
 from dancetutor_cli.physics.hair import add_hair
 from dancetutor_cli.play.model import Play
-from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.rig.soles import BodyPoint, palm_points, place, sole_points
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
-Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
-SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
-NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
-KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
+OVERLAP = 5.0  # seconds that a piece of a long song is planned and baked beyond its ends: what differs has died away
 
 
 def bake(
@@ -120,21 +118,45 @@ def mines_of(play: Play, pad: Pad) -> Array:
 
 
 def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: MotionSettings) -> Motion:
-    """Bake a plan from `start` to `end`, seconds; the work behind `bake`."""
+    """Bake a plan from `start` to `end`, seconds; the work behind `bake`.
+
+    Long songs are baked in pieces, always the same ones, so memory and time per second stay as they are in a short one.
+    """
     skeleton = dancer_skeleton()
+    ends = piece_ends(plan, start, end)
+    pieces = []
+    for k, (first, last) in enumerate(pairwise(ends)):
+        before = first if k == 0 else first - OVERLAP
+        margin = MARGIN if k == 0 else MARGIN + OVERLAP
+        after = MARGIN if last == end else OVERLAP
+        part = trimmed(plan, first - margin, last + after)
+        times = (np.floor(4 * (before - MARGIN)) / 4, last + after)
+        keys = _piece(part, fps, before, last, times, skeleton, settings)
+        pieces.append((keys, first if k else -np.inf, last if last < end else np.inf))
+    at, rotations, root = joined(pieces)
+    contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
+    grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
+    return Motion(skeleton, fps, at, rotations, root, contacts, plan.bar, grips, plan.ground)
+
+
+def _piece(
+    plan: Plan, fps: float, start: float, end: float, span: tuple[float, float], skeleton: Skeleton,
+    settings: MotionSettings,
+) -> Keys:  # fmt: skip
+    """Keys from `start` to `end`; the body's path is planned over the longer `span`."""
     rate = settings.sampling.work_rate
-    grid = np.arange(np.floor((start - MARGIN) * rate), np.ceil((end + MARGIN) * rate) + 1) / rate
+    grid = np.arange(np.floor(span[0] * rate), np.ceil(span[1] * rate) + 1) / rate
     drop = settings.step.heel_drop
     feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
     body = body_path(plan, grid, feet, skeleton, settings)
     body = _settled(plan, grid, feet, body, skeleton, settings)
-    at = _key_times(plan, fps, start, end)
+    at = key_times(plan, fps, start, end)
     rotations, root = _posed(plan, body, at, skeleton, settings)
     keys = (at, rotations, root)
     for _ in range(REFINEMENTS):
-        middles = _doubtful(skeleton, keys)
+        middles = doubtful(skeleton, keys)
         if len(middles):
-            keys = _refined(skeleton, keys, (middles, *_posed(plan, body, middles, skeleton, settings)))
+            keys = refined(skeleton, keys, (middles, *_posed(plan, body, middles, skeleton, settings)))
     at, rotations, root = keys
     look(skeleton, rotations, root, body, at, settings)
     ends = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
@@ -142,9 +164,7 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
     free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
     add_layers(skeleton, at, rotations, stepping(ends, settings), free, settings.layers)
     add_hair(skeleton, at, rotations, root, settings.hair)
-    contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
-    grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
-    return Motion(skeleton, fps, at, quat.continuous(rotations), root, contacts, plan.bar, grips, plan.ground)
+    return keys
 
 
 def _settled(
@@ -202,46 +222,6 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     return rotations, root
 
 
-def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
-    return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
-
-
-def _doubtful(skeleton: Skeleton, keys: Keys) -> Array:
-    """Times half-way between keys that have a foot or palm near the ground which moves between them."""
-    times, rotations, root = keys
-    transforms = world_transforms(skeleton, rotations, root)
-    doubt = np.zeros(len(times) - 1, dtype=bool)
-    for points in _limb_points(skeleton):
-        places = place(points, *transforms)
-        near = places[..., 1].min(axis=1) < NEAR_GROUND
-        moves = np.abs(np.diff(places, axis=0)).max(axis=(1, 2)) > KEY_TOLERANCE
-        doubt |= (near[1:] | near[:-1]) & moves
-    doubt |= np.abs(np.diff(root[:, 1], n=1)) > 0.004
-    return ((times[1:] + times[:-1]) / 2)[doubt & (np.diff(times) > SHORTEST_GAP)]
-
-
-def _refined(skeleton: Skeleton, keys: Keys, between: Keys) -> Keys:
-    """Keys plus those of the frames `between` them that interpolation would miss.
-
-    A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
-    it, a landing for example, the frame between becomes a key.
-    """
-    times, rotations, root = keys
-    after = np.searchsorted(times, between[0])
-    share = ((between[0] - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
-    guess = quat.slerp(rotations[after - 1], rotations[after], share)
-    seen = world_transforms(skeleton, guess, root[after - 1] + share * (root[after] - root[after - 1]))
-    true = world_transforms(skeleton, between[1], between[2])
-    wanted = np.zeros(len(between[0]), dtype=bool)
-    for points in _limb_points(skeleton):
-        right, drawn = place(points, *true), place(points, *seen)
-        low = np.minimum(right[..., 1], drawn[..., 1]).min(axis=1) < NEAR_GROUND
-        wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
-    order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
-    merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]
-    return merged[0], merged[1], merged[2]
-
-
 def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
     """Centre of mass (f, 3) of solved frames."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, rotations, root))
@@ -252,23 +232,3 @@ def _clock(chart: Chart, rate: float) -> Callable[[int], float]:
         return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate
 
     return second
-
-
-def _key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
-    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land."""
-    regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
-    extra = [t for foot in plan.feet for s in foot.swings for t in (s.lift, s.land)]
-    extra += [t for p in plan.presses for t in (p.start, p.end)]
-    special = np.array([t for t in extra if start <= t <= end])
-    times = np.concatenate((special, regular))
-    kind = np.concatenate((np.zeros(len(special)), np.ones(len(regular))))
-    order = np.lexsort((kind, times))
-    times, kind = times[order], kind[order]
-    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds are one; the contact's own time stays
-    last = -np.inf
-    for k, t in enumerate(times):
-        if t - last < 1e-5:
-            keep[k] = False
-        else:
-            last = t
-    return np.asarray(times[keep])

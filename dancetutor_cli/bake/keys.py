@@ -1,0 +1,78 @@
+"""The keys of a bake: which times get one, so that what a viewer draws between them holds every contact too."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import BodyPoint, palm_points, place, sole_points
+
+Array = NDArray[np.float64]
+Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
+SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
+NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
+KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
+
+
+def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
+    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land."""
+    regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
+    extra = [t for foot in plan.feet for s in foot.swings for t in (s.lift, s.land)]
+    extra += [t for p in plan.presses for t in (p.start, p.end)]
+    special = np.array([t for t in extra if start <= t <= end])
+    times = np.concatenate((special, regular))
+    kind = np.concatenate((np.zeros(len(special)), np.ones(len(regular))))
+    order = np.lexsort((kind, times))
+    times, kind = times[order], kind[order]
+    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds are one; the contact's own time stays
+    last = -np.inf
+    for k, t in enumerate(times):
+        if t - last < 1e-5:
+            keep[k] = False
+        else:
+            last = t
+    return np.asarray(times[keep])
+
+
+def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
+    return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
+
+
+def doubtful(skeleton: Skeleton, keys: Keys) -> Array:
+    """Times half-way between keys that have a foot or palm near the ground which moves between them."""
+    times, rotations, root = keys
+    transforms = world_transforms(skeleton, rotations, root)
+    doubt = np.zeros(len(times) - 1, dtype=bool)
+    for points in _limb_points(skeleton):
+        places = place(points, *transforms)
+        near = places[..., 1].min(axis=1) < NEAR_GROUND
+        moves = np.abs(np.diff(places, axis=0)).max(axis=(1, 2)) > KEY_TOLERANCE
+        doubt |= (near[1:] | near[:-1]) & moves
+    doubt |= np.abs(np.diff(root[:, 1], n=1)) > 0.004
+    return ((times[1:] + times[:-1]) / 2)[doubt & (np.diff(times) > SHORTEST_GAP)]
+
+
+def refined(skeleton: Skeleton, keys: Keys, between: Keys) -> Keys:
+    """Keys plus those of the frames `between` them that interpolation would miss.
+
+    A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
+    it, a landing for example, the frame between becomes a key.
+    """
+    times, rotations, root = keys
+    after = np.searchsorted(times, between[0])
+    share = ((between[0] - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
+    guess = quat.slerp(rotations[after - 1], rotations[after], share)
+    seen = world_transforms(skeleton, guess, root[after - 1] + share * (root[after] - root[after - 1]))
+    true = world_transforms(skeleton, between[1], between[2])
+    wanted = np.zeros(len(between[0]), dtype=bool)
+    for points in _limb_points(skeleton):
+        right, drawn = place(points, *true), place(points, *seen)
+        low = np.minimum(right[..., 1], drawn[..., 1]).min(axis=1) < NEAR_GROUND
+        wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
+    order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
+    merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]
+    return merged[0], merged[1], merged[2]

@@ -1,0 +1,83 @@
+"""Long songs in pieces that meet where the dancer stands, so that an hour needs no more memory at once than minutes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.bake.keys import Keys
+from dancetutor_cli.motion.track import FootTrack, Plan
+from dancetutor_cli.rig import quaternion as quat
+
+Array = NDArray[np.float64]
+LENGTH = 90.0  # seconds of a piece, about
+LONGEST = 135.0  # a song up to so long is one piece
+WITHIN = 20.0  # seconds around a piece's even end in which the best place to end it is looked for
+
+
+def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
+    """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand around every so often."""
+    if end - start <= LONGEST:
+        return [start, end]
+    moving = sorted((s.lift, s.land) for track in plan.feet for s in track.swings)
+    moving += [(p.start - p.lead, p.end + p.lead) for p in plan.presses]
+    lifts, lands = np.array(sorted(moving)).reshape(-1, 2).T
+    lands = np.maximum.accumulate(np.concatenate(([-np.inf], lands)))  # when both feet are down again
+    lifts = np.append(lifts, np.inf)
+    out = [start]
+    while end - out[-1] > LONGEST:
+        out.append(_longest_stand(lands, lifts, out[-1] + LENGTH))
+    return [*out, end]
+
+
+def _longest_stand(lands: Array, lifts: Array, around: float) -> float:
+    """The middle of the longest stretch within reach of `around` in which nothing moves, seconds."""
+    low, high = around - WITHIN, around + WITHIN
+    begin, end = np.clip(lands, low, high), np.clip(lifts, low, high)
+    k = int(np.argmax(end - begin))
+    return float((begin[k] + end[k]) / 2) if end[k] > begin[k] else around
+
+
+def trimmed(plan: Plan, start: float, end: float) -> Plan:
+    """The plan with only what matters between two seconds: there it says the same."""
+    turns = plan.turns
+    first = max(int(np.searchsorted([t.start for t in turns], start)) - 2, 0)
+    return replace(
+        plan,
+        feet=(_track(plan.feet[0], start, end), _track(plan.feet[1], start, end)),
+        turns=tuple(t for t in turns[first:] if t.start <= end),
+        presses=tuple(p for p in plan.presses if p.end >= start - 2.0 and p.start <= end + 2.0),
+        grips=tuple(g for g in plan.grips if g.end >= start - 2.0 and g.start <= end + 2.0),
+        walks=tuple(w for w in plan.walks if w.end >= start and w.start <= end),
+    )
+
+
+def _track(track: FootTrack, start: float, end: float) -> FootTrack:
+    swings = track.swings
+    first = max(int(np.searchsorted([s.land for s in swings], start)) - 2, 0)
+    kept = tuple(s for s in swings[first:] if s.lift <= end)
+    if first == 0:
+        return replace(track, swings=kept)
+    before = swings[first - 1]
+    return FootTrack(before.target, before.yaw, kept, before.level)
+
+
+def joined(pieces: list[tuple[Keys, float, float]]) -> Keys:
+    """The keys of all pieces, each from its first second to before its last; turns never jump to their negative."""
+    parts: list[Keys] = []
+    for (times, rotations, root), first, last in pieces:
+        keep = (times >= first) & (times < last)
+        turns = quat.continuous(rotations[keep])
+        if parts:
+            flipped = np.sum(turns[0] * parts[-1][1][-1], axis=-1) < 0
+            turns[:, flipped] *= -1.0
+        parts.append((times[keep], turns, root[keep]))
+    if len(parts) == 1:
+        return parts[0]
+    return (
+        np.concatenate([p[0] for p in parts]),
+        np.concatenate([p[1] for p in parts]),
+        np.concatenate([p[2] for p in parts]),
+    )
