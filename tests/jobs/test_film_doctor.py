@@ -1,0 +1,84 @@
+"""`doctor`: one line for each thing, what is missing is named with its mend, and only what is needed is broken."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.jobs import doctor
+from dancetutor_cli.jobs.doctor import Check, examine
+from dancetutor_cli.video import probe, text
+from dancetutor_cli.video.gl import probe as gl_probe
+
+
+def by_name() -> dict[str, Check]:
+    return {check.name: check for check in examine()}
+
+
+def test_everything_a_film_needs_is_looked_at() -> None:
+    found = by_name()
+    for name in ("cpu renderer", "ffmpeg", "encoder x264", "encoder aac", "speed change"):
+        assert found[name].state == "ok", found[name]
+    assert {"gl renderer", "encoder nvenc", "encoder vaapi", "numba cache", "font", "disk"} <= set(found)
+    for check in found.values():
+        assert "\n" not in check.message + check.mend
+        assert check.state == "ok" or check.mend, check
+
+
+def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+
+    def works(encoder: str) -> str | None:
+        tried.append(encoder)
+        return None if encoder in ("libx264", "aac") else "no such device"
+
+    monkeypatch.setattr(probe, "works", works)
+    found = by_name()
+    assert {"h264_nvenc", "h264_vaapi"} <= set(tried)
+    assert found["encoder nvenc"] == Check(
+        "encoder nvenc",
+        "without",
+        "no such device",
+        "needs an NVIDIA GPU that encodes, and its driver; x264 does without",
+    )
+    monkeypatch.setattr(probe, "_has_cuda", lambda: True)
+    assert probe.choose("auto") == "x264"
+    with pytest.raises(UnavailableError, match="vaapi does not work here: no such device"):
+        probe.choose("vaapi")
+    monkeypatch.setattr(probe, "works", lambda encoder: None)
+    assert probe.choose("auto") == "nvenc" and probe.choose("vaapi") == "vaapi"
+
+
+def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/nowhere/ffmpeg")
+    with pytest.raises(SystemExit) as stop:
+        main(["doctor", "--json"])
+    assert stop.value.code == 2
+    checks = {check["name"]: check for check in json.loads(capsys.readouterr().out)["checks"]}
+    assert checks["ffmpeg"]["state"] == "broken" and checks["cpu renderer"]["state"] == "ok"
+    assert "encoder x264" not in checks
+
+
+def test_no_opengl_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise UnavailableError("No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1.")
+
+    monkeypatch.setattr(gl_probe, "require_gl", missing)
+    check = doctor._guarded("gl renderer", doctor._gl)
+    assert (check.state, check.message) == ("without", "No OpenGL found") and "apt-get" in check.mend
+
+
+def test_fonts_and_disk_say_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(text, "system_fonts", lambda: ())
+    text._font_of.cache_clear()
+    try:
+        check = doctor._font()
+    finally:
+        text._font_of.cache_clear()
+    assert check.state == "without" and "Western, Cyrillic, Japanese" in check.message and "--font" in check.mend
+    monkeypatch.setattr(doctor, "_ROOM", 1e30)
+    assert doctor._disk().state == "without" and str(Path.cwd()) in doctor._disk().message
