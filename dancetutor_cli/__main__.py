@@ -9,6 +9,9 @@ from collections.abc import Sequence
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run `dancetutor`; ends the process with 0, 1 (findings) or 2 (something could not be read or run)."""
+    from dancetutor_cli.startup import collect_seldom, leave_garbage
+
+    collect_seldom()
     import click
 
     from dancetutor_cli.commands import cli
@@ -46,6 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
         _say(f"internal error: {type(error).__name__}: {error}; set DANCETUTOR_TRACEBACK=1 to see where, and report it")
         status = 2
+    leave_garbage()
     sys.exit(status if isinstance(status, int) else 0)
 
 

@@ -19,6 +19,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
 from dancetutor_cli.errors import DancetutorError, UnavailableError
+from dancetutor_cli.startup import collect_seldom, leave_garbage
 
 Report = Callable[[int], None]
 
@@ -112,12 +113,14 @@ def _leave(_number: int, _frame: object) -> None:
 
 def _worker(connection: Connection) -> None:
     """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
+    collect_seldom()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _leave)  # so that an encoder at work is ended first
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pickle.loads(connection.recv_bytes())
             if task is None:
+                leave_garbage()
                 return
             done = attempt(task, lambda n: connection.send(n))
             try:
