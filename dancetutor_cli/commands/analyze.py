@@ -70,7 +70,18 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="FILE.html|.svg",
     help="Draw the charts of one file as a sheet of measures.",
 )
-@click.option("--suggest", is_flag=True, help="Tell which note, moved to another panel, would remove a finding.")
+@click.option(
+    "--suggest",
+    is_flag=True,
+    help="Tell what makes a doublestep, and which note, moved to another panel, would remove a finding.",
+)
+@click.option(
+    "--alternatives",
+    type=click.IntRange(min=0, max=100),
+    default=0,
+    metavar="N",
+    help="Tell of the N next cheapest plays: whose limbs differ, and what decides.  [formats text and json]",
+)
 @click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
@@ -101,7 +112,7 @@ def command(**options: Any) -> int:  # fmt: skip
         selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
         want_rows=options["format_name"] == "json",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
-                                            "baseline", "update_baseline", "suggest")},
+                                            "baseline", "update_baseline", "suggest", "alternatives")},
     )  # fmt: skip
     if options["watch"]:
         return _watch(request, options)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.settings import Settings
@@ -28,6 +28,7 @@ class Task:
     want_rows : whether the result shall carry every row, for JSON
     data : the bytes to read in place of the file's, for standard input
     suggest : whether findings shall tell which moved note would remove them
+    alternatives : how many other plays shall be told of
     """
 
     path: Path
@@ -37,6 +38,7 @@ class Task:
     want_rows: bool = False
     data: bytes | None = None
     suggest: bool = False
+    alternatives: int = 0
 
 
 def analyze_file(task: Task) -> FileResult:
@@ -95,14 +97,9 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
     from dancetutor_cli.jobs.excerpt import arrows, with_excerpts
     from dancetutor_cli.jobs.rows import json_rows
     from dancetutor_cli.jobs.tech_counts import tech_counts
-    from dancetutor_cli.lint.check import check_chart
 
     chart, play = subject.chart, subject.play
-    findings = check_chart(subject, task.settings)
-    if task.suggest:
-        from dancetutor_cli.jobs.suggest import with_suggestions
-
-        findings = with_suggestions(findings, subject, task.settings, task.preset)
+    findings, causes = _findings(subject, task)
     dense = density(chart, task.settings.stream_rows)
     return ChartResult(
         index=chart.index,
@@ -122,7 +119,44 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         stream_measures=dense.stream_measures,
         arrows="" if subject.pad is None else arrows(subject.pad),
         tech=tech_counts(subject),
+        alternatives=_alternatives(subject, task) if task.alternatives else None,
+        causes=causes,
+        ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
     )
+
+
+def _findings(subject: ChartSubject, task: Task) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
+    """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
+    from dancetutor_cli.lint.check import check_chart
+
+    findings, causes = check_chart(subject, task.settings), None
+    if task.want_rows or task.suggest:
+        from dancetutor_cli.jobs.causes import causes_of, with_causes
+
+        causes = causes_of(subject, task.preset)
+        findings = with_causes(findings, causes, subject.pad.names if subject.pad else ())
+    if task.suggest:
+        from dancetutor_cli.jobs.suggest import with_suggestions
+
+        findings = with_suggestions(findings, subject, task.settings, task.preset)
+    return findings, causes
+
+
+def _alternatives(subject: ChartSubject, task: Task) -> tuple[AlternativeResult, ...]:
+    from dancetutor_cli.jobs.alternatives import alternatives_of
+
+    return alternatives_of(subject, task.preset, task.alternatives)
+
+
+def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
+    from dancetutor_cli.chart.model import TICKS_PER_BEAT
+    from dancetutor_cli.play import Ambiguity
+
+    play = subject.play
+    if play is not None and play.ambiguity is not None:
+        for row in play.ambiguity.nonzero()[0].tolist():
+            kind = Ambiguity(int(play.ambiguity[row])).name.lower()
+            yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
 
 
 def failed(task: Task, message: str) -> FileResult:

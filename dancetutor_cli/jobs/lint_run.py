@@ -43,6 +43,7 @@ class Request:
     update_baseline: bool = False
     want_rows: bool = False
     suggest: bool = False
+    alternatives: int = 0
 
 
 @dataclass
@@ -105,8 +106,9 @@ class LintRun:
         settings = self.configuration(path).settings
         request = self.request
         return Task(
-            path, self.preset(path), request.selection, settings, request.want_rows, data, suggest=request.suggest
-        )
+            path, self.preset(path), request.selection, settings, request.want_rows, data, request.suggest,
+            request.alternatives,
+        )  # fmt: skip
 
     def fail_on(self, path: Path) -> str:
         """The least severity that fails the run, as the configuration of the first file says."""

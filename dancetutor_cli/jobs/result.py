@@ -20,13 +20,48 @@ TECH_COUNTS = (
 
 
 @dataclass(frozen=True, slots=True)
+class DifferentRun:
+    """Rows one after the other that two plays step with other limbs, with their letters in each, as in {dt1 ...}."""
+
+    first_beat: float
+    last_beat: float
+    best: str
+    other: str
+
+
+@dataclass(frozen=True, slots=True)
+class AlternativeResult:
+    """Another way to play a chart. extra : how much more it costs; terms : what differs in cost, the largest first"""
+
+    extra: int
+    terms: tuple[tuple[str, int], ...]
+    runs: tuple[DifferentRun, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """What makes a doublestep.
+
+    beat : of the doublestep; forced : whether the other foot holds; cause : "hold", "mine", "jump" or "pattern"
+    at_beat, column : of the cause; None for a pattern
+    """
+
+    beat: float
+    forced: bool
+    cause: str
+    at_beat: float | None
+    column: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class ChartResult:
     """One analysed chart. `rows` are the JSON rows of analysis-json.md, None where nobody asked for them.
 
     counts : name of the move -> rows in which it happens; tech : how often each of `TECH_COUNTS` happens
     playable : False if the steps type has no pad; then there are no rows and no cost
     nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
-    arrows : a sign for each panel, to draw rows with
+    arrows : a sign for each panel, to draw rows with; alternatives, causes : None where nobody asked for them
+    ambiguous : beat of each row with ties, and "resolved" or "open", see `play.model.Ambiguity`; None likewise
     """
 
     index: int
@@ -46,6 +81,9 @@ class ChartResult:
     stream_measures: int = 0
     arrows: str = ""
     tech: Mapping[str, int] = field(default_factory=dict)
+    alternatives: tuple[AlternativeResult, ...] | None = None
+    causes: tuple[Cause, ...] | None = None
+    ambiguous: tuple[tuple[float, str], ...] | None = None
 
     @property
     def label(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from typing import IO, Any
 
 import dancetutor_cli
@@ -62,6 +63,9 @@ def chart_object(chart: ChartResult) -> dict[str, Any]:
         "cost": chart.cost,
         "rows": list(chart.rows or ()),
         "findings": [finding_object(finding) for finding in chart.findings],
+        "doublesteps": [asdict(cause) for cause in chart.causes or ()],
+        "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
+        **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
     }
 
 

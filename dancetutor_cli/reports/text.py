@@ -18,6 +18,7 @@ from dancetutor_cli.reports.tally import Tally
 
 _STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
 _WIDTH_WITHOUT_TERMINAL = 100
+_MOST_LETTERS = 16  # rows of another play that are written out
 
 
 class TextReport:
@@ -57,10 +58,27 @@ class TextReport:
         self._line("\n", self._paint(safe(chart.label), "bold"), name)
         if chart.playable:
             self._stream.write(chart_table(chart, self._console))
+            self._alternatives(chart)
         for finding in chart.findings:
             self._finding(result, chart, finding)
         if chart.findings:
             self._line()
+
+    def _alternatives(self, chart: ChartResult) -> None:
+        """Other plays: what they cost more and why, and their letters against those of the play above."""
+        if chart.alternatives is None:
+            return
+        self._line("other plays:" if chart.alternatives else "there is no other play")
+        for other in chart.alternatives:
+            why = ", ".join(f"{name} {cost:+}" for name, cost in other.terms)
+            self._line("  ", self._paint(f"{other.extra:+}" if other.extra else "tie", "bold"), f"  {why}".rstrip())
+            for run in other.runs:
+                beats = f"{round(run.first_beat, 3):g}"
+                if run.last_beat > run.first_beat:
+                    beats += f" to {round(run.last_beat, 3):g}"
+                self._line(
+                    f"      beat {beats}: ", _cut(run.other), self._paint(" in place of ", "dim"), _cut(run.best)
+                )
 
     def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
         rule = self._paint(f"{finding.rule}", _STYLES[finding.severity])
@@ -78,6 +96,11 @@ class TextReport:
 
     def _paint(self, text: str, style: str) -> str:
         return Style.parse(style).render(text, color_system=self._colours) if self._colours and text else text
+
+
+def _cut(letters: str) -> str:
+    rows = letters.split(" ")
+    return " ".join(rows[:_MOST_LETTERS]) + (f" ... ({len(rows)} rows)" if len(rows) > _MOST_LETTERS else "")
 
 
 def moment(finding: Finding) -> str:
