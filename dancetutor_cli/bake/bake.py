@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
-from dancetutor_cli.bake.pieces import joined, piece_ends, trimmed
+from dancetutor_cli.bake.pieces import Each, Piece, in_turn, joined, piece_ends, trimmed
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.bar import bar_of, grips_of, hold_share, holding
@@ -59,6 +59,7 @@ def bake(
     rate: float = 1.0,
     bar: bool = False,
     gait: str = "flat",
+    each: Each = in_turn,
 ) -> Motion:
     """Make the dancer play a chart.
 
@@ -71,6 +72,7 @@ def bake(
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
+    each : does the pieces of a long song, in turn or in several processes; the result is the same
 
     Returns
     -------
@@ -90,7 +92,7 @@ def bake(
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
         )
-    return bake_plan(plan, fps, start, end, settings)
+    return bake_plan(plan, fps, start, end, settings, each)
 
 
 def plan_of(
@@ -117,12 +119,13 @@ def mines_of(play: Play, pad: Pad) -> Array:
     return np.column_stack((play.rows.second[row], stage.panels_on_ground(pad)[column]))
 
 
-def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: MotionSettings) -> Motion:
+def bake_plan(
+    plan: Plan, fps: float, start: float, end: float, settings: MotionSettings, each: Each = in_turn
+) -> Motion:
     """Bake a plan from `start` to `end`, seconds; the work behind `bake`.
 
     Long songs are baked in pieces, always the same ones, so memory and time per second stay as they are in a short one.
     """
-    skeleton = dancer_skeleton()
     ends = piece_ends(plan, start, end)
     pieces = []
     for k, (first, last) in enumerate(pairwise(ends)):
@@ -130,27 +133,24 @@ def bake_plan(plan: Plan, fps: float, start: float, end: float, settings: Motion
         margin = MARGIN if k == 0 else MARGIN + OVERLAP
         after = MARGIN if last == end else OVERLAP
         part = trimmed(plan, first - margin, last + after)
-        times = (np.floor(4 * (before - MARGIN)) / 4, last + after)
-        keys = _piece(part, fps, before, last, times, skeleton, settings)
-        pieces.append((keys, first if k else -np.inf, last if last < end else np.inf))
-    at, rotations, root = joined(pieces)
+        span = (np.floor(4 * (before - MARGIN)) / 4, last + after)
+        pieces.append(Piece(part, fps, (before, last), (first if k else -np.inf, last), span, settings))
+    at, rotations, root = joined(pieces, each([(bake_piece, piece) for piece in pieces]))
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
-    return Motion(skeleton, fps, at, rotations, root, contacts, plan.bar, grips, plan.ground)
+    return Motion(dancer_skeleton(), fps, at, rotations, root, contacts, plan.bar, grips, plan.ground)
 
 
-def _piece(
-    plan: Plan, fps: float, start: float, end: float, span: tuple[float, float], skeleton: Skeleton,
-    settings: MotionSettings,
-) -> Keys:  # fmt: skip
-    """Keys from `start` to `end`; the body's path is planned over the longer `span`."""
+def bake_piece(piece: Piece) -> Keys:
+    """All keys of one piece, also those of its overlap; may run in any process."""
+    plan, settings, skeleton = piece.plan, piece.settings, dancer_skeleton()
     rate = settings.sampling.work_rate
-    grid = np.arange(np.floor(span[0] * rate), np.ceil(span[1] * rate) + 1) / rate
+    grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
     drop = settings.step.heel_drop
     feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
     body = body_path(plan, grid, feet, skeleton, settings)
     body = _settled(plan, grid, feet, body, skeleton, settings)
-    at = key_times(plan, fps, start, end)
+    at = key_times(plan, piece.fps, *piece.baked)
     rotations, root = _posed(plan, body, at, skeleton, settings)
     keys = (at, rotations, root)
     for _ in range(REFINEMENTS):

@@ -2,19 +2,46 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys
+from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import FootTrack, Plan
 from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]
 LENGTH = 90.0  # seconds of a piece, about
 LONGEST = 135.0  # a song up to so long is one piece
+AFTER = 1.0  # seconds; heels rise for swings that begin so soon
 WITHIN = 20.0  # seconds around a piece's even end in which the best place to end it is looked for
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One piece of work; pickles. All pairs are (first, last) seconds.
+
+    plan : what matters of the plan; baked : gets keys; kept : the part of them that goes into the song
+    span : the body's path is planned over it
+    """
+
+    plan: Plan
+    fps: float
+    baked: tuple[float, float]
+    kept: tuple[float, float]
+    span: tuple[float, float]
+    settings: MotionSettings
+
+
+Each = Callable[[Sequence[tuple[Callable[[Piece], Keys], Piece]]], Iterable[Keys]]
+
+
+def in_turn(work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) -> Iterable[Keys]:
+    """Do one piece after the other in this process."""
+    return (function(piece) for function, piece in work)
 
 
 def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
@@ -57,18 +84,18 @@ def trimmed(plan: Plan, start: float, end: float) -> Plan:
 def _track(track: FootTrack, start: float, end: float) -> FootTrack:
     swings = track.swings
     first = max(int(np.searchsorted([s.land for s in swings], start)) - 2, 0)
-    kept = tuple(s for s in swings[first:] if s.lift <= end)
+    kept = tuple(s for s in swings[first:] if s.lift <= end + AFTER)
     if first == 0:
         return replace(track, swings=kept)
     before = swings[first - 1]
     return FootTrack(before.target, before.yaw, kept, before.level)
 
 
-def joined(pieces: list[tuple[Keys, float, float]]) -> Keys:
-    """The keys of all pieces, each from its first second to before its last; turns never jump to their negative."""
+def joined(pieces: Sequence[Piece], keys: Iterable[Keys]) -> Keys:
+    """The kept keys of all pieces in their order; turns never jump to their negative."""
     parts: list[Keys] = []
-    for (times, rotations, root), first, last in pieces:
-        keep = (times >= first) & (times < last)
+    for k, (piece, (times, rotations, root)) in enumerate(zip(pieces, keys, strict=True)):
+        keep = (times >= piece.kept[0]) & ((times < piece.kept[1]) | (k + 1 == len(pieces)))
         turns = quat.continuous(rotations[keep])
         if parts:
             flipped = np.sum(turns[0] * parts[-1][1][-1], axis=-1) < 0
@@ -76,8 +103,5 @@ def joined(pieces: list[tuple[Keys, float, float]]) -> Keys:
         parts.append((times[keep], turns, root[keep]))
     if len(parts) == 1:
         return parts[0]
-    return (
-        np.concatenate([p[0] for p in parts]),
-        np.concatenate([p[1] for p in parts]),
-        np.concatenate([p[2] for p in parts]),
-    )
+    times, root = (np.concatenate([p[k] for p in parts]) for k in (0, 2))
+    return times, np.concatenate([p[1] for p in parts]), root

@@ -45,12 +45,15 @@ _FILE = click.Path(path_type=Path)
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @gait_option
+@click.option(
+    "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
+)
 @character_option
 @selection_options
 @preset_option
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
-    gait: str,
+    gait: str, jobs: int,
     report_to: str | None, plot: Path | None, character: str, preset: str, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
@@ -69,7 +72,7 @@ def command(
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
-    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait)
+    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs)
     tell_of_compiling(preset)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +12,8 @@ from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
+    from dancetutor_cli.bake.keys import Keys
+    from dancetutor_cli.bake.pieces import Piece
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.motion.track import Plan
@@ -26,6 +30,7 @@ class BakeTask:
     preset : of the solver; play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
     bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
+    jobs : processes among which the pieces of a long song are shared
     """
 
     path: Path
@@ -37,6 +42,7 @@ class BakeTask:
     play_file: Path | None = None
     bar: bool = False
     gait: str = "flat"
+    jobs: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +92,35 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
         rate=task.rate,
         bar=task.bar,
         gait=task.gait,
+        each=partial(_shared, task.jobs),
     )
+
+
+def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) -> Iterator[Keys]:
+    """Results of pieces of work in their order, made in up to `jobs` processes."""
+    from dancetutor_cli.bake.pieces import in_turn
+    from dancetutor_cli.jobs.pool import Task, open_workers
+
+    if jobs <= 1 or len(work) == 1:
+        yield from in_turn(work)
+        return
+    workers = open_workers(min(jobs, len(work)), lambda key, n: None)
+    try:
+        for k, (function, piece) in enumerate(work):
+            workers.submit(Task(k, _piece, (function, piece)))
+        results: dict[int, Keys] = {}
+        for done in workers.done():
+            if done.error is not None:
+                raise done.error
+            results[done.key] = done.result
+    finally:
+        workers.close()
+    for k in range(len(work)):
+        yield results.pop(k)
+
+
+def _piece(_: object, function: Callable[[Piece], Keys], piece: Piece) -> Keys:
+    return function(piece)
 
 
 def plan_asked(asked: Asked, task: BakeTask) -> Plan:

@@ -1,0 +1,73 @@
+"""A long song in pieces: the same motion as baked whole, the same bytes in any number of processes."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+from bake_plays import MEDLEY, chart, pad, play
+
+from dancetutor_cli.bake import bake, pieces, plan_of, report
+from dancetutor_cli.bake.pieces import piece_ends, trimmed
+from dancetutor_cli.jobs.bake import _shared
+from dancetutor_cli.motion.feet import foot_path
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.rig.kinematics import world_transforms
+
+EVENTS = [(time + 14.0 * k, pressed) for k in range(4) for time, pressed in MEDLEY]
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces of some 16 seconds, so that a minute has several."""
+    monkeypatch.setattr(pieces, "LENGTH", 16.0)
+    monkeypatch.setattr(pieces, "LONGEST", 24.0)
+    monkeypatch.setattr(pieces, "WITHIN", 4.0)
+
+
+@pytest.fixture(scope="module")
+def whole() -> Motion:
+    return bake(chart(), play(EVENTS), pad())
+
+
+def places(motion: Motion) -> np.ndarray:
+    return world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
+
+
+def test_pieces_join_to_what_is_baked_whole(whole: Motion, short: None) -> None:
+    plan = plan_of(chart(), play(EVENTS), pad())
+    assert len(piece_ends(plan, whole.times[0], whole.times[-1])) > 3
+    parts = bake(chart(), play(EVENTS), pad())
+    np.testing.assert_array_equal(parts.times, whole.times)
+    away = np.linalg.norm(places(parts) - places(whole), axis=2)
+    assert away.max() < 0.0005 and np.median(away) < 1e-5
+    # no turn jumps to its negative at a seam
+    assert (np.sum(parts.rotations[1:] * parts.rotations[:-1], axis=2) > 0).all()
+    assert report(parts)["contacts missed"].value == report(whole)["contacts missed"].value
+
+
+def test_pieces_end_where_nobody_moves(short: None) -> None:
+    plan = plan_of(chart(), play(EVENTS), pad())
+    for end in piece_ends(plan, 0.0, 70.0)[1:-1]:
+        swings = [s for track in plan.feet for s in track.swings]
+        assert not any(s.lift < end < s.land for s in swings)
+        assert not any(p.start - p.lead < end < p.end for p in plan.presses)
+
+
+def test_any_number_of_processes_gives_the_same_bytes(short: None) -> None:
+    alone, shared = (bake(chart(), play(EVENTS), pad(), each=partial(_shared, jobs)) for jobs in (1, 2))
+    assert alone.rotations.tobytes() == shared.rotations.tobytes()
+    assert alone.root.tobytes() == shared.root.tobytes() and alone.times.tobytes() == shared.times.tobytes()
+
+
+def test_a_trimmed_plan_says_the_same() -> None:
+    plan = plan_of(chart(), play(EVENTS), pad())
+    part = trimmed(plan, 20.0, 30.0)
+    times = np.linspace(20.0, 30.0, 500)
+    assert len(part.feet[0].swings) < len(plan.feet[0].swings) / 3
+    for cut, full in zip(part.feet, plan.feet, strict=True):
+        a, b = foot_path(cut, times, 0.09), foot_path(full, times, 0.09)
+        np.testing.assert_array_equal(a.ball, b.ball)
+        np.testing.assert_array_equal(a.pitch, b.pitch)
+        np.testing.assert_array_equal(a.down, b.down)
