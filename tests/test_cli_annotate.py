@@ -96,6 +96,40 @@ def test_styles_come_out_one_by_one(song: Path) -> None:
     assert files_of(song) == before
 
 
+@pytest.mark.parametrize("written", [*ALL.split(","), ALL, "measure,rows,edit --into-file"])
+def test_strip_alone_takes_every_style_out(song: Path, written: str) -> None:
+    before = files_of(song)
+    assert Said([song, "--style", *written.split()]).status == 0
+    assert files_of(song) != before
+    said = Said([song, "--strip"])
+    assert said.status == 0
+    assert "unchanged" not in said.out.splitlines()[-2], said.out
+    assert files_of(song) == before
+    assert Said([song, "--strip", "--check"]).status == 0
+
+
+def test_strip_alone_leaves_files_that_are_not_ours(song: Path, ssc: Path) -> None:
+    before = ssc.read_bytes()
+    (song / "data.sme").write_bytes(b"not SMEditor's")
+    (song / "two_left_feet.dancetutor.json").write_bytes(b"{}")
+    Said([song])
+    said = Said([song, "--strip"])
+    assert said.status == 0, said.err
+    assert ssc.read_bytes() == before
+    assert (song / "data.sme").read_bytes() == b"not SMEditor's"
+    assert "warning: " in said.err
+    assert "is no JSON" in said.err
+    assert Said([song, "--strip", "--style", "smeditor"]).status == 2, "who names a style wants to know"
+
+
+def test_what_is_not_written_would_change(song: Path) -> None:
+    assert Said([song, "--check"]).out.splitlines()[-1] == "2 files: 2 would change"
+    assert Said([song, "--dry-run"]).out.splitlines()[-1] == "2 files: 2 would change"
+    assert Said([song, "--diff"]).err.splitlines()[-1] == "2 files: 2 would change"
+    assert Said([song]).out.splitlines()[-1] == "2 files: 2 changed"
+    assert Said([song, "--check"]).out.splitlines()[-1] == "2 files: 2 unchanged"
+
+
 def test_check_says_where_and_why(song: Path, ssc: Path) -> None:
     said = Said([ssc, "--check"])
     assert said.status == 1
@@ -232,9 +266,13 @@ def test_pinned_feet_stay_and_guide_the_solver(ssc: Path) -> None:
     assert b"{dt1! RL}" in after
     assert after != pinned, "the feet around a pinned measure must follow it"
     assert Said([ssc, "--preset", "thesis", "--index", 0, "--check"]).status == 0
-    Said([ssc, "--strip"])
+    assert "would be stripped:" in (said := Said([ssc, "--strip", "--dry-run"])).out
+    assert "1 file: 1 would change" in said.out
+    kept = "two_left_feet.ssc: 1 pinned measure left alone; --force takes it out"
+    assert f"stripped {ssc}".removesuffix(ssc.name) + kept in Said([ssc, "--strip"]).out
     assert ssc.read_bytes().count(b"{dt1") == 1
-    Said([ssc, "--strip", "--force"])
+    assert kept in Said([ssc, "--strip"]).out, "the second time nothing changes, and the pin is still there"
+    assert "left alone" not in Said([ssc, "--strip", "--force"]).out
     assert ssc.read_bytes() == (SONG / ssc.name).read_bytes()
 
 

@@ -22,7 +22,9 @@ _MANY = 24  # songs from which on starting worker processes pays
 _COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 
 
-def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...]:
+def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...] | None:
+    if value is None:
+        return None
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
         if name not in STYLES:
@@ -35,10 +37,10 @@ def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
 @click.option(
-    "--style", "styles", default="measure", show_default=True, callback=_styles, metavar="STYLE[,STYLE]",
-    help=f"Where to write the feet: {', '.join(STYLES)}.",
+    "--style", "styles", callback=_styles, metavar="STYLE[,STYLE]",
+    help=f"Where to write the feet: {', '.join(STYLES)} [default: measure; with --strip all of them].",
 )  # fmt: skip
-@click.option("--strip", is_flag=True, help="Take the markers out again.")
+@click.option("--strip", is_flag=True, help="Take the markers out again: of every style, or only of --style.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
 @click.option("--dry-run", is_flag=True, help="Write nothing; say which files would change.")
@@ -57,7 +59,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str) -> tuple[str, ...
 @selection_options
 def command(
     paths: tuple[Path, ...],
-    styles: tuple[str, ...],
+    styles: tuple[str, ...] | None,
     strip: bool,
     check: bool,
     diff: bool,
@@ -81,10 +83,12 @@ def command(
     from dancetutor_cli.library import find_files
     from dancetutor_cli.play import DEFAULT_PRESET
 
-    if into_file and "edit" not in styles:
+    wanted = styles or (STYLES if strip else STYLES[:1])
+    if into_file and "edit" not in wanted:
         raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
     order = Order(
-        styles=styles,
+        styles=wanted,
+        named=styles is not None,
         preset=preset,
         selection=Selection(**selection),
         strip=strip,
@@ -205,7 +209,8 @@ class _Talk:
             for line in outcome.diff:
                 click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
         elif not self.check:
-            click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{_details(outcome)}")
+            details = _kept(outcome) if self.order.strip else _details(outcome)
+            click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{details}")
             for path in outcome.beside:
                 click.echo(f"  {_safe(path.name)}")
 
@@ -220,11 +225,21 @@ class _Talk:
         if self.unselected and len(self.unselected) == total - self.files["failed"]:
             has = _safe("; ".join(self.unselected[:20]))
             raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
-        parts = ", ".join(f"{n} {name}" for name, n in sorted(self.files.items()) if n)
+        words = {} if self.order.write else {"changed": "would change"}
+        parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
         click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.order.diff)
         if self.files["failed"]:
             return 2
         return 1 if self.check and self.lacking else 0
+
+
+def _kept(outcome: Outcome) -> str:
+    """What taking the markers out has left in the file."""
+    pinned = dict(outcome.counts).get("pinned", 0)
+    if not pinned:
+        return ""
+    measures, them = ("measures", "them") if pinned > 1 else ("measure", "it")
+    return f": {pinned} pinned {measures} left alone; --force takes {them} out"
 
 
 def _details(outcome: Outcome) -> str:
@@ -234,7 +249,7 @@ def _details(outcome: Outcome) -> str:
     if not measures:
         return ""
     parts = [f"{counts[name]} {word}" for name, word in words if counts[name]]
-    return f": {measures} measures" + (f" ({', '.join(parts)})" if parts else "")
+    return f": {measures} measure{'s' if measures > 1 else ''}" + (f" ({', '.join(parts)})" if parts else "")
 
 
 def _safe(text: str) -> str:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 class Order:
     """What shall be done with every file. Pickles.
 
+    named : whether somebody asked for these styles; else files beside the song that are not ours are no error
     preset : name or file of the cost preset; None: as the nearest dancetutor.yaml says
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
@@ -33,6 +34,7 @@ class Order:
     styles: tuple[str, ...]
     preset: str | None
     selection: Selection
+    named: bool = True
     strip: bool = False
     force: bool = False
     into_file: bool = False
@@ -155,8 +157,13 @@ class _Work:
         if base is not self.song:
             self.lacks.append(Lack("has charts for two pads to take out"))
         for style in self.beside if self._in_place else ():
-            for planned in beside.strip(style, self.song, charts):
-                self._add(planned)
+            try:
+                for planned in beside.strip(style, self.song, charts):
+                    self._add(planned)
+            except FileError as error:
+                if self.order.named:
+                    raise
+                self.notes.append(str(error))
 
     def outcome(self) -> Outcome:
         """Bring the changes to the disk if that is wanted, and say what became of the file."""

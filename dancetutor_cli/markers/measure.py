@@ -73,6 +73,12 @@ def strip(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
     return splices
 
 
+def pinned(data: bytes, chart: Chart) -> int:
+    """How many measures of a chart somebody has pinned."""
+    comments = (data[line.start : line.end] for line in measure_lines(data, chart))
+    return sum(any(match["pin"] for match in markers_in(comment)) for comment in comments)
+
+
 def _by_measure(chart: Chart, rows: StepRows, letters: Sequence[str]) -> dict[int, list[str]]:
     wanted: dict[int, list[str]] = {}
     for measure, text in zip(chart.rows.measure[rows.row].tolist(), letters, strict=True):

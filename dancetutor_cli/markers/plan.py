@@ -100,6 +100,7 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
         if MEASURE in styles:
             found += measure.strip(song.data, chart, force)
             plan.counts["removed"] += len(found)
+            plan.counts["pinned"] += 0 if force else measure.pinned(song.data, chart)
         if ROWS in styles:
             found += rows.strip(song.data, chart)
         if found:
