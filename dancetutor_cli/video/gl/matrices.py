@@ -57,3 +57,14 @@ def bounds_of(joints: Array, reach: Array) -> tuple[Array, Array]:
     held = reach > 0
     places, reach = joints[held, :3, 3], reach[held, None]
     return (places - reach).min(0), (places + reach).max(0)
+
+
+def within(light: Array, joints: Array, reach: Array) -> Array:
+    """The part of the shadow map (4,), left, top, right and bottom from 0 to 1, beyond which nothing of her is.
+
+    light : `light_matrix`; joints (j, 4, 4), reach (j,) as for `bounds_of`
+    """
+    held = reach > 0
+    places = (joints[held, :3, 3] @ light[:2, :3].T + light[:2, 3]) * 0.5 + 0.5
+    around = reach[held, None] / SHADOW_REACH
+    return np.concatenate([(places - around).min(0), (places + around).max(0)])

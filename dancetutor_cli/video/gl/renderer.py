@@ -17,7 +17,7 @@ from pyrender.renderer import Renderer as PyrenderRenderer
 from dancetutor_cli.errors import UnavailableError, UsageError
 from dancetutor_cli.video.camera import Camera
 from dancetutor_cli.video.geometry import pack
-from dancetutor_cli.video.gl.matrices import bounds_of, camera_matrix, light_matrix, reach
+from dancetutor_cli.video.gl.matrices import bounds_of, camera_matrix, light_matrix, reach, within
 from dancetutor_cli.video.gl.primitive import SkinnedPrimitive
 from dancetutor_cli.video.gl.probe import gpu_device
 from dancetutor_cli.video.gl.programs import Program, ProgramCache
@@ -60,8 +60,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._program_cache = ProgramCache()
         device = bytes(GL.glGetString(GL.GL_RENDERER)).decode("utf-8", "replace")
         most = int(GL.glGetIntegerv(GL.GL_MAX_SAMPLES))
-        self._samples = min(SAMPLES[quality] ** 2, most) if quality != "draft" else 0
-        self.description = f"gl: {device} through EGL, {max(self._samples, 1)} samples a pixel"
+        # Two by two pixels for each of the picture's: cheaper than as many samples where a processor draws. The rest of
+        # the samples, if there are to be more, are samples of these pixels.
+        self._fine = min(SAMPLES[quality], 2)
+        inner = min((SAMPLES[quality] // self._fine) ** 2, most)
+        self._samples = inner if inner > 1 else 0
+        self.description = f"gl: {device} through EGL, {self._fine**2 * inner} samples a pixel"
         self._build()
 
     def _build(self) -> None:
@@ -75,7 +79,9 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._primitives.append((primitive, self._skins[skin], tint))
         self._reach = reach(scene, mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
-        self._drawn = Target(self._size, self._samples, depth=True)
+        fine = (self._fine * self._size[0], self._fine * self._size[1])
+        self._drawn = Target(fine, self._samples, depth=True)
+        self._whole = Target(fine) if self._samples else self._drawn
         self._resolved = Target(self._size)
         self._picture = Target(self._size)
         self._standing: tuple[Camera, Standing] | None = None
@@ -156,6 +162,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             shift=shift,
             light=light,
             dark=float(look.light.shadow if cast.scale else 0.0),
+            within=within(light, joints_of(self._scene, state), self._reach),
             spread=float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0]),
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
@@ -182,7 +189,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             return
         look, (width, height) = self._scene.look.toon, self._size
         self._drawn.bind()
-        _scissor(box)
+        _scissor(self._fine * box)
         GL.glClear(GL.GL_COLOR_BUFFER_BIT | GL.GL_DEPTH_BUFFER_BIT)
         GL.glEnable(GL.GL_DEPTH_TEST)
         program = self._use_skinned(
@@ -211,8 +218,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
                 _bind_texture(_SKIN_UNIT, skin)
                 program.set_uniform("tint", tint)
                 primitive.draw(part)
-        x0, y0, x1, y1 = (int(v) for v in box)
-        self._resolved.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))
+        self._resolve(box)
         self._picture.bind()
         GL.glDisable(GL.GL_DEPTH_TEST)
         GL.glEnable(GL.GL_BLEND)
@@ -222,6 +228,15 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         _bind_texture(_FIRST_UNIT, self._resolved.texture)
         _cover(copy)
         GL.glDisable(GL.GL_BLEND)
+
+    def _resolve(self, box: NDArray[Any]) -> None:
+        """The dancer's pixels from all that was drawn for each of them."""
+        GL.glDisable(GL.GL_SCISSOR_TEST)
+        x0, y0, x1, y1 = (int(v) for v in self._fine * box)
+        if self._samples:
+            self._whole.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))
+        self._resolved.copy_from(self._whole, (x0, y0, x1, y1), (int(box[0]), int(box[1])), self._fine)
+        _scissor(box)
 
     def _read(self) -> NDArray[np.uint8]:
         GL.glDisable(GL.GL_SCISSOR_TEST)

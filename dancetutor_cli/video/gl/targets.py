@@ -105,14 +105,17 @@ class Target:
         GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, self.framebuffer)
         GL.glViewport(0, 0, *self.size)
 
-    def copy_from(self, other: Target, box: tuple[int, int, int, int], to: tuple[int, int]) -> None:
-        """Copy the pixels of `box` (x0, y0, x1, y1) of another target so that its first corner lies at `to`."""
+    def copy_from(self, other: Target, box: tuple[int, int, int, int], to: tuple[int, int], fine: int = 1) -> None:
+        """Copy the pixels of `box` (x0, y0, x1, y1) of another target so that its first corner lies at `to`.
+
+        fine : 1, or 2 where each pixel becomes the mean of two by two
+        """
         GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, other.framebuffer)
         GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, self.framebuffer)
         x0, y0, x1, y1 = box
-        GL.glBlitFramebuffer(
-            x0, y0, x1, y1, to[0], to[1], to[0] + x1 - x0, to[1] + y1 - y0, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST
-        )
+        end = to[0] + (x1 - x0) // fine, to[1] + (y1 - y0) // fine
+        smooth = GL.GL_NEAREST if fine == 1 else GL.GL_LINEAR
+        GL.glBlitFramebuffer(x0, y0, x1, y1, *to, *end, GL.GL_COLOR_BUFFER_BIT, smooth)
 
     def delete(self) -> None:
         """Give its memory back."""

@@ -9,6 +9,7 @@ uniform int shift;
 uniform mat4 light;
 uniform float dark;
 uniform float spread;         // distance of the shadow's taps, part of the map
+uniform vec4 within;          // the part of the map beyond which there is no shadow
 uniform vec3 contact;         // darkness, softness, strength of lit panels
 uniform float radius;
 uniform vec4 foot[4];         // heel x, z, toe x, z
@@ -19,7 +20,7 @@ out vec4 colour;
 
 float shadowed(vec3 at) {
     vec3 p = (light * vec4(at, 1.0)).xyz * 0.5 + 0.5;
-    if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) {
+    if (any(lessThan(p.xy, max(within.xy - 2.0 * spread, 0.0))) || any(greaterThan(p.xy, min(within.zw + 2.0 * spread, 1.0)))) {
         return 0.0;
     }
     float sum = 0.0;
