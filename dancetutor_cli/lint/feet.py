@@ -66,8 +66,8 @@ class Feet:
             yield int(stepped[first]), after - first
 
     def half_turns(self) -> Iterator[int]:
-        """Rows to which the body turns by 180 degrees, jumps too."""
-        turn = np.diff(self._play.facing, prepend=0.0)
+        """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
+        turn = np.diff(self._play.facing, prepend=self._play.facing[:1])
         yield from np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON).tolist()
 
     def same_foot_runs(self, length: int, max_seconds: float) -> Iterator[int]:

@@ -23,6 +23,8 @@ _JACK, _CANDLE, _GALLOP, _STREAM, _DRILL = (
     1 << EVENTS.index(name) for name in ("jack", "candle", "gallop", "stream", "drill")
 )
 
+_SWITCHES = sum(1 << bit for bit, name in enumerate(EVENTS) if "switch" in name)
+
 
 @dataclass(frozen=True, slots=True)
 class _Steps:
@@ -40,6 +42,7 @@ def name_moves(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.
     """Per row the names of what happens, sorted. `limb` : (n, c); `events` : (n,), bits of `EVENTS` from the solver."""
     found = events.astype(np.int64)
     steps = _single_steps(limb)
+    found[steps.row[:1]] &= ~_SWITCHES  # the starting stance is no step that another foot could take over
     if len(steps.row) > 1:
         found[steps.row[1:][_jacks(steps)]] |= _JACK
         found[steps.row[2:][_candles(steps, pad)]] |= _CANDLE

@@ -128,3 +128,10 @@ def test_feet_of_a_pattern(steps_type: str, name: str, picture: str, feet: str, 
         )
     found = letters(play.solve(rows, pad, ITG))
     assert wrong(found, feet) == [], f"{name}: {found}"
+
+
+def test_nothing_is_switched_before_the_first_step() -> None:
+    """In doubles she stands on the middle panels; a first jump on two panels of the left pad is no jump footswitch."""
+    pad = pad_of("dance-double")
+    solved = play.solve(rows_of("1..1.... 1....... ...1....", 48, 150.0), pad, ITG)
+    assert solved.moves[0] == ("jump",)
