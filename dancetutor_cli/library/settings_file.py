@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -23,14 +24,19 @@ class SettingError(Exception):
 
 def find_settings_file(start: Path) -> Path | None:
     """The nearest dancetutor.yaml in the folder of `start` or above it."""
-    return next((place for place in places_of_settings_file(start) if place.is_file()), None)
+    return next((Path(place) for place in _places(start) if os.path.isfile(place)), None)  # noqa: PTH113 (quicker)
 
 
 def places_of_settings_file(start: Path) -> Iterator[Path]:
     """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
-    folder = start.absolute()
-    for candidate in (folder, *folder.parents):
-        yield candidate / FILE_NAME
+    return map(Path, _places(start))
+
+
+def _places(start: Path) -> Iterator[str]:
+    folder, below = os.path.abspath(start), ""  # noqa: PTH100 (links stay links)
+    while folder != below:
+        yield os.path.join(folder, FILE_NAME)  # noqa: PTH118
+        folder, below = os.path.dirname(folder), folder  # noqa: PTH120
 
 
 @dataclass(frozen=True, slots=True)
