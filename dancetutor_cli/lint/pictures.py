@@ -1,13 +1,34 @@
-"""Whether a picture that a song names is there and has a usual size."""
+"""What rules about pictures share: whether the one that a song names is there and has a usual size."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.rule import FileRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Song
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class PictureRule(FileRule):
+    """A rule about the picture that a tag of the song names. `tag` : its name; options `sizes` and `required`"""
+
+    tag: ClassVar[str]
+
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """Sizes that are none."""
+        return sizes_fault(value) if option == "sizes" else None
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding."""
+        fault = picture_fault(subject.song, self.tag, self.options["sizes"], required=self.options["required"])
+        if fault:
+            yield self.finding(fault, subject.tag_place(self.tag))
 
 
 def sizes_fault(sizes: Sequence[object]) -> str | None:

@@ -66,21 +66,22 @@ class ReaderRule(Rule):
 
 
 class MoveRule(ChartRule):
-    """A chart rule that reports every row in which a named move happens.
+    """A chart rule that reports every row in which a named move, or a kind of it, happens.
 
     With an option `max_seconds` only those rows count that come at most so long after the step before.
+    `said` : what to say about a row; a rule that has more to tell has a `message` of its own
     """
 
     move: ClassVar[str]
+    said: ClassVar[str]
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with the move."""
         longest = self.options.get("max_seconds", math.inf)
-        for row in subject.rows_with(self.move):
-            if subject.pause(row) > longest + 1e-6:
-                continue
-            yield self.finding(self.message(subject, row), subject.at_row(row))
+        for row in subject.rows_with_any(self.move):
+            if subject.pause(row) <= longest + 1e-6:
+                yield self.finding(self.message(subject, row), subject.at_row(row))
 
-    @abstractmethod
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""
+        return self.said

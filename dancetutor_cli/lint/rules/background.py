@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.pictures import picture_fault, sizes_fault
-from dancetutor_cli.lint.rule import FileRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import FileSubject
+from dancetutor_cli.lint.pictures import PictureRule
 
 
-class BackgroundSize(FileRule):
+class BackgroundSize(PictureRule):
     """#BACKGROUND is empty, names a file that is not there, or a picture of an unusual size.
 
     `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "1920x1080"; an
@@ -24,14 +16,4 @@ class BackgroundSize(FileRule):
 
     code = "DT505"
     name = "background-size"
-
-    @classmethod
-    def fault(cls, option: str, value: Any) -> str | None:
-        """Sizes that are none."""
-        return sizes_fault(value) if option == "sizes" else None
-
-    def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """At most one finding."""
-        fault = picture_fault(subject.song, "BACKGROUND", self.options["sizes"], required=self.options["required"])
-        if fault:
-            yield self.finding(fault, subject.tag_place("BACKGROUND"))
+    tag = "BACKGROUND"

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.rule import MoveRule
 
 
-class Footswitch(ChartRule):
+class Footswitch(MoveRule):
     """One foot takes over the panel that the other stands on, in a chart whose players do not know footswitches yet.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
@@ -34,8 +27,5 @@ class Footswitch(ChartRule):
 
     code = "DT212"
     name = "footswitch"
-
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each footswitch."""
-        for row in subject.rows_with_any("footswitch"):
-            yield self.finding("a foot takes over the panel of the other: footswitch", subject.at_row(row))
+    move = "footswitch"
+    said = "a foot takes over the panel of the other: footswitch"

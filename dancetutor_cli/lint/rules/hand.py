@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from dancetutor_cli.lint.rule import MoveRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Hand(MoveRule):
@@ -33,7 +28,4 @@ class Hand(MoveRule):
     code = "DT302"
     name = "hand"
     move = "hand"
-
-    def message(self, subject: ChartSubject, row: int) -> str:
-        """The same for every hand."""
-        return "a hand has to press a panel"
+    said = "a hand has to press a panel"

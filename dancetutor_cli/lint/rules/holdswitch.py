@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.rule import MoveRule
 
 
-class Holdswitch(ChartRule):
+class Holdswitch(MoveRule):
     """A hold has to be handed from one foot to the other while it lasts.
 
     Bad: the right foot takes over the left panel, so that the left foot can step down.
@@ -32,8 +25,5 @@ class Holdswitch(ChartRule):
 
     code = "DT211"
     name = "holdswitch"
-
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each holdswitch."""
-        for row in subject.rows_with_any("holdswitch"):
-            yield self.finding("the feet change on a held panel: holdswitch", subject.at_row(row))
+    move = "holdswitch"
+    said = "the feet change on a held panel: holdswitch"

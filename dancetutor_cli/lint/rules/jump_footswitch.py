@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from dancetutor_cli.lint.rule import MoveRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class JumpFootswitch(MoveRule):
@@ -33,7 +28,4 @@ class JumpFootswitch(MoveRule):
     code = "DT206"
     name = "jump-footswitch"
     move = "jump-footswitch"
-
-    def message(self, subject: ChartSubject, row: int) -> str:
-        """The same for every jump footswitch."""
-        return "a foot changes panels within this jump: jump footswitch"
+    said = "a foot changes panels within this jump: jump footswitch"

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.rule import MoveRule
 
 
-class Sideswitch(ChartRule):
+class Sideswitch(MoveRule):
     """One foot takes over the left or right panel that the other stands on, so the body has to turn sideways for it.
 
     Bad:
@@ -32,8 +25,5 @@ class Sideswitch(ChartRule):
 
     code = "DT208"
     name = "sideswitch"
-
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each sideswitch."""
-        for row in subject.rows_with_any("sideswitch"):
-            yield self.finding("a foot takes over a side panel from the other: sideswitch", subject.at_row(row))
+    move = "sideswitch"
+    said = "a foot takes over a side panel from the other: sideswitch"

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from dancetutor_cli.lint.rule import MoveRule
-
-if TYPE_CHECKING:
-    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Spin(MoveRule):
@@ -31,7 +26,4 @@ class Spin(MoveRule):
     code = "DT202"
     name = "spin"
     move = "spin"
-
-    def message(self, subject: ChartSubject, row: int) -> str:
-        """The same for every spin."""
-        return "the body turns beyond 180 degrees: a spin"
+    said = "the body turns beyond 180 degrees: a spin"
