@@ -51,7 +51,12 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     help="The least severity of a finding that makes the exit status 1.  [default: warning]",
 )
 @click.option("--exit-zero", is_flag=True, help="Findings do not fail the run; unreadable files still do.")
-@click.option("--select", multiple=True, metavar="RULES", help="Run only these rules: codes, names, families (DT2).")
+@click.option(
+    "--select",
+    multiple=True,
+    metavar="RULES",
+    help="Run only these rules: codes, names (those that are off, too), families (DT2).",
+)
 @click.option("--ignore", multiple=True, metavar="RULES", help="Do not run these rules.")
 @click.option("--config", metavar="FILE|NAME", help="Configuration, in place of the dancetutor.yaml up the tree.")
 @click.option(

@@ -12,7 +12,7 @@ import yaml
 
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.library.settings_file import Condition, SettingError, check_keys, condition_of, texts_of
-from dancetutor_cli.lint.registry import all_rules, matching, rule_named
+from dancetutor_cli.lint.registry import all_rules, matching, named_singly, rule_named
 from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
@@ -69,16 +69,16 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
 
 def with_selection(configuration: Configuration, select: Sequence[str], ignore: Sequence[str]) -> Configuration:
     """Apply --select and --ignore of the command line; each entry may hold several, with commas."""
-    chosen = _codes(part for text in select for part in text.split(",")) if select else None
-    dropped = _codes(part for text in ignore for part in text.split(","))
-    layer = Layer(select=chosen, ignore=dropped)
+    wanted = [part.strip() for text in select for part in text.split(",")]
+    dropped = _codes(part.strip() for text in ignore for part in text.split(","))
+    layer = Layer(select=_codes(wanted) if select else None, ignore=dropped, named=named_singly(wanted))
     return replace(configuration, settings=configuration.settings.with_layer(layer))
 
 
 def _codes(selectors: Iterable[str]) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     for selector in selectors:
-        found |= matching(selector.strip())
+        found |= matching(selector)
     return found
 
 
@@ -159,7 +159,8 @@ def _layer(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...
         short = "off" if options is False else options
         rules[code] = _options(code, {"severity": short} if isinstance(short, str) else short, at)
     select = _selected(data, "select", place) if data.get("select") is not None else None
-    return Layer(when, select, _selected(data, "ignore", place), rules)
+    ignore, named = _selected(data, "ignore", place), named_singly(texts_of(data, "select"))
+    return Layer(when, select, ignore, rules, named)
 
 
 def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:

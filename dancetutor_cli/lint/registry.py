@@ -39,6 +39,12 @@ def matching(selector: str) -> set[str]:
     return found or {rule_named(selector).code}
 
 
+def named_singly(selectors: Iterable[str]) -> frozenset[str]:
+    """Codes of the selectors that are the code or the name of one rule, not of a family."""
+    words = {selector.upper() for selector in selectors}
+    return frozenset(code for code, rule in all_rules().items() if {code, rule.name.upper()} & words)
+
+
 def described(classes: Iterable[type[Rule]]) -> str:
     """For error messages: "DT201 doublestep, DT202 spin"."""
     return ", ".join(f"{rule.code} {rule.name}" for rule in classes)

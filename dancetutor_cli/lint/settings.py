@@ -24,12 +24,14 @@ class Layer:
     select : codes of the only rules that are to run, None: says nothing
     ignore : codes of rules that are not to run
     rules : code -> {"severity": ..., option: ...}
+    named : codes of `select` that were named singly: these run, as a warning, even if they are off
     """
 
     when: Condition = field(default_factory=Condition)
     select: frozenset[str] | None = None
     ignore: frozenset[str] = frozenset()
     rules: Mapping[str, Options] = field(default_factory=dict)
+    named: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +50,9 @@ class Settings:
 
     def fingerprint(self) -> str:
         """The same text for the same settings, in every process."""
-        layers = [(x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules) for x in self.layers]
+        layers = [
+            (x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules, sorted(x.named)) for x in self.layers
+        ]
         return repr((self.stream_rows, layers))
 
     def for_file(self, path: PurePath) -> dict[str, Options]:
@@ -70,12 +74,16 @@ def _resolve(layers: Any) -> dict[str, Options]:
     rules: dict[str, dict[str, Any]] = {}
     selected: frozenset[str] | None = None
     ignored: frozenset[str] = frozenset()
+    named: frozenset[str] = frozenset()
     for layer in layers:
         for code, options in layer.rules.items():
             rules[code] = {**rules.get(code, {}), **options}
         if layer.select is not None:
-            selected, ignored = layer.select, ignored - layer.select
+            selected, ignored, named = layer.select, ignored - layer.select, layer.named
         ignored |= layer.ignore
+    for code in named & set(rules):
+        if rules[code]["severity"] == "off":
+            rules[code]["severity"] = "warning"
     return {
         code: options
         for code, options in sorted(rules.items())

@@ -86,6 +86,18 @@ def test_yaml_off_needs_no_quotes(tmp_path: Path) -> None:
     assert severity(configured("rules: {spin: off}", tmp_path), "DT202", tmp_path / "x.sm") == "off"
 
 
+def test_a_rule_that_is_off_runs_when_it_is_named_singly(tmp_path: Path) -> None:
+    plain, path = load_configuration(None), tmp_path / "x.sm"
+    assert severity(plain, "DT204", path) == "off"
+    for selectors in (["crossover"], ["spin,DT204"]):
+        assert severity(with_selection(plain, selectors, []), "DT204", path) == "warning"
+    assert severity(with_selection(plain, ["DT2"], []), "DT204", path) == "off"
+    assert severity(with_selection(plain, ["spin"], []), "DT202", path) == "warning"
+    strict = with_assignments(plain, ["DT204.severity=error"])
+    assert severity(with_selection(strict, ["crossover"], []), "DT204", path) == "error"
+    assert severity(configured("select: [crossover]", tmp_path), "DT204", path) == "warning"
+
+
 def test_select_and_ignore_take_families_and_names(tmp_path: Path) -> None:
     given = configured("select: [DT2, DT301]\nignore: spin\n", tmp_path)
     rules = given.settings.for_chart(tmp_path / "x.sm", "dance-single", "Hard", 9)
