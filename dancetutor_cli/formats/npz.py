@@ -18,6 +18,7 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | contact_kind | (c,) int8 | 1 tap, 2 lift, 3 hold, 4 roll head, 5 tap of a roll |
 | contact_part | (c,) int8 | 0 whole foot, 1 heel, 2 toe |
 | contact_panel | (c, 2) | (x, z) of the panel's centre in the world |
+| ground | (5,) | if she leaves the pad: its corners x0, z0, x1, z1, and how much lower the floor is |
 | bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
 | bar_spans | (k, 2) | x from and to of its pieces |
 | grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
@@ -36,7 +37,7 @@ import numpy as np
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
-from dancetutor_cli.motion.model import Bar, Contact, Grip, Motion
+from dancetutor_cli.motion.model import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.rig.skeleton import Skeleton
 
 SCHEMA = 1
@@ -63,7 +64,16 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
     if motion.bar is not None:
         arrays |= _bar_arrays(motion.bar, motion.grips)
+    if motion.ground is not None:
+        arrays["ground"] = np.array([*motion.ground.low, *motion.ground.high, motion.ground.drop])
     write_atomic(path, _zipped(arrays))
+
+
+def _ground(arrays: dict[str, Any]) -> Ground | None:
+    if "ground" not in arrays:
+        return None
+    x0, z0, x1, z1, drop = (float(v) for v in arrays["ground"])
+    return Ground((x0, z0), (x1, z1), drop)
 
 
 def _bar_arrays(bar: Bar, grips: tuple[Grip, ...]) -> dict[str, Any]:
@@ -111,7 +121,8 @@ def read_npz(path: Path) -> Motion:
         for i in range(len(arrays["contact_start"]))
     ]
     fps, times = float(arrays["fps"]), arrays["times"]
-    return Motion(skeleton, fps, times, arrays["rotations"], arrays["root"], tuple(contacts), *_bar(arrays))
+    parts = (times, arrays["rotations"], arrays["root"], tuple(contacts))
+    return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays))
 
 
 def _zipped(arrays: dict[str, Any]) -> bytes:

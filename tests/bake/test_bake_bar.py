@@ -91,7 +91,7 @@ def test_doubles_have_two_bars() -> None:
 def test_files_hold_the_bar(held: Motion, tmp_path: Path) -> None:
     write_npz(tmp_path / "a.npz", held)
     back = read_npz(tmp_path / "a.npz")
-    assert back.bar == held.bar and back.grips == held.grips
+    assert back.bar == held.bar and back.grips == held.grips and back.ground == held.ground is not None
     write_glb(tmp_path / "a.glb", load_dancer(), held)
     data = (tmp_path / "a.glb").read_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
