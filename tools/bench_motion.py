@@ -68,9 +68,25 @@ def measure() -> list[Row]:
     out.append(("animate frames", LENGTH * FPS / took[3], "frames/s", "", ""))
     out.append(("eight minutes against two, per second", took[12] / took[3] / 4, "x", "about 1", ""))
     out.append(("IK poses", _ik_rate(), "poses/s", "200,000", "300,000 measured elsewhere"))
+    out.append(("an hour, largest memory", _hour_memory(), "GiB", "at most 1.5", ""))
     chart, play, pad = _repeated(40.0, 1)
     out.append(("whole bake call of the demo, 41 s", _seconds(lambda: bake(chart, play, pad)), "s", "", ""))
     return out
+
+
+def _hour_memory() -> float:
+    """Largest memory of a process that bakes an hour, in GiB; nan where the system does not tell."""
+    import subprocess
+    import sys
+    from pathlib import Path
+
+    work = (
+        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import resource, bench_motion as b;"
+        "chart, play, pad = b._repeated(40.0, 90); m = b.bake(chart, play, pad, section=(0.0, 3600.0));"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    done = subprocess.run([sys.executable, "-c", work], capture_output=True, text=True, check=False)
+    return int(done.stdout) / 2 ** (30 if sys.platform == "darwin" else 20) if done.returncode == 0 else float("nan")
 
 
 def _ik_rate() -> float:
