@@ -171,8 +171,8 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
         extras.write_pose_index(target, subject, film.plan)
     if options["poster"]:
         extras.write_poster(options["poster"], film.plan)
-    if options["srt"]:
-        extras.write_subtitles(target.with_suffix(".srt"), film.plan)
+    if options["srt"] and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
+        _warn([warning])
     if not quiet:
         width, height = request.look.size
         length = f"{film.plan.clock.frames} pictures" if kind == "png" else f"{film.plan.clock.seconds:.1f} s"

@@ -73,8 +73,13 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     write_atomic(path, data.getvalue())
 
 
-def write_subtitles(path: Path, plan: FilmPlan) -> None:
-    """Subtitles that name the moves, beside the film."""
-    from dancetutor_cli.video.subtitles import subtitles
+def write_subtitles(path: Path, plan: FilmPlan) -> str | None:
+    """Subtitles that name the moves, beside the film. Returns a warning if there is nothing to name, so no file."""
+    from dancetutor_cli.video.subtitles import subtitle_style, subtitles
 
-    write_atomic(path, subtitles(plan.callouts, plan.clock).encode())
+    text = subtitles(plan.cues, plan.clock, subtitle_style())
+    if not text:
+        path.unlink(missing_ok=True)  # one of an earlier film would lie
+        return f"no move of this film has a name, so there is no {path.name}; configs/subtitles.yaml says what is named"
+    write_atomic(path, text.encode())
+    return None

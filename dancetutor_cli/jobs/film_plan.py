@@ -11,6 +11,7 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.callouts import callouts_of
+from dancetutor_cli.jobs.cues import cues_of
 from dancetutor_cli.jobs.film_request import Request, Subject, whole_song
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import StepKind
@@ -22,6 +23,7 @@ from dancetutor_cli.video.overlay import SongShape, Words
 from dancetutor_cli.video.scroll import ScrollSegments, parse_segments, parse_speeds
 from dancetutor_cli.video.sound import Click, SoundPlan
 from dancetutor_cli.video.sprites import highway_style, quantisation
+from dancetutor_cli.video.subtitles import subtitle_style
 from dancetutor_cli.video.text import Typeface, clean
 
 if TYPE_CHECKING:
@@ -87,6 +89,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         rows=step_rows(play),
         character=character,
         callouts=callouts_of(ChartSubject(song, chart, play, pad, ignores=ignores), highway_style().callouts, scrolls),
+        cues=cues_of(play, chart.timing, subtitle_style().moves),
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)

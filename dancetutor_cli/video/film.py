@@ -19,7 +19,7 @@ from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.highway import Highway, HighwayGeometry
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
+from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.sprites import highway_style
 from dancetutor_cli.video.television import Television
@@ -45,6 +45,7 @@ class FilmPlan:
     character : who dances, the motion is for its skeleton; None for the project's own dancer
     speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
     motion : the dancer's, or None where the layout has none; rows : the play's, for the next rows' pads
+    callouts : words in the picture; cues : moves for the subtitles
     """
 
     look: FilmLook
@@ -61,6 +62,7 @@ class FilmPlan:
     pad: PadLike | None
     rows: StepRows | None = None
     callouts: tuple[Callout, ...] = ()
+    cues: tuple[Cue, ...] = ()
     speeds: NDArray[np.float64] | None = None
     character: Character | None = None
 

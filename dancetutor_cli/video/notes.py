@@ -56,6 +56,16 @@ class Callout:
 
 
 @dataclass(frozen=True, slots=True)
+class Cue:
+    """A move to name in subtitles. second, end : of the music, when it comes and is over; who : "left foot", ..."""
+
+    second: float
+    end: float
+    text: str
+    who: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class BeatLines:
     """One entry per beat from 0 on. second, beat (as drawn) : float64 (b,); index = the beat's number."""
 

@@ -2,32 +2,125 @@
 
 from __future__ import annotations
 
-from dancetutor_cli.video.clock import Clock
-from dancetutor_cli.video.notes import Callout
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
 
-SHOWN = 1.5  # seconds of film before a move that its subtitle appears
-STAYS = 0.6  # seconds of film after it
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.play.vocabulary import EVENTS
+from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.notes import Cue
+from dancetutor_cli.video.settings import load
+
+HOLD = "hold"  # the one move that has a name here, and none among `EVENTS`
+_GAP = 0.1  # seconds; the same words again so soon are left standing, without a flicker
 
 
-def subtitles(callouts: tuple[Callout, ...], clock: Clock) -> str:
-    """The text of an .srt file: each move of each run, numbered from 1; a line ends where the next one begins."""
-    times: list[tuple[float, float, str]] = []
-    passed = 0.0
+@dataclass(frozen=True, slots=True)
+class SubtitleStyle:
+    """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves told together
+
+    moves : name of a move -> its words, the most telling first
+    """
+
+    before: float
+    stays: float
+    shortest: float
+    most: int
+    moves: dict[str, str]
+
+
+@dataclass
+class _Line:
+    """Moves told together. first, latest : when the first and the latest come; last : when all are over.
+
+    start, end : on the screen; all of these are seconds of the film
+    moves : word -> who, both in the order in which they come
+    """
+
+    first: float
+    latest: float
+    last: float
+    moves: dict[str, list[str]] = field(default_factory=dict)
+    start: float = 0.0
+    end: float = 0.0
+
+    def add(self, cue: Cue, first: float, last: float) -> None:
+        self.latest, self.last = max(self.latest, first), max(self.last, last)
+        who = self.moves.setdefault(cue.text, [])
+        who += (one for one in cue.who if one not in who)
+
+    def text(self, style: SubtitleStyle) -> str:
+        """A line for each move; if there are too many, the most telling."""
+        rank = list(style.moves.values())
+        kept = sorted(self.moves, key=lambda word: rank.index(word) if word in rank else -1)[: style.most]
+        return "\n".join(", ".join([word, *who]) for word, who in self.moves.items() if word in kept)
+
+
+@cache
+def subtitle_style() -> SubtitleStyle:
+    """The style as configured; FileError says what is wrong with it."""
+    path = config_path("subtitles.yaml")
+    style = load(path, SubtitleStyle)
+    if not 0 <= style.stays < style.shortest <= style.before or style.most < 1:
+        raise FileError(path, "wants 0 <= stays < shortest <= before, and most at least 1")
+    if unknown := set(style.moves) - {*EVENTS, HOLD}:
+        raise FileError(path, f"there is no move '{min(unknown)}'; there are: {', '.join(sorted((*EVENTS, HOLD)))}")
+    return style
+
+
+def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
+    """The text of an .srt file; "" if no move is named.
+
+    cues : by time. Words stand before their move and until it is over, but give way to the next ones; moves that come
+    faster than words can be read are told together.
+    """
+    shown: list[tuple[float, float, str]] = []
+    begin = 0.0
     for one in clock.passes:
-        for call in callouts:
-            if one.start <= call.second < one.end and call.second >= one.sound_from:
-                at = passed + (call.second - one.start) / one.rate
-                times.append((max(passed, at - SHOWN), min(clock.seconds, at + STAYS), call.text))
-        passed += one.seconds
-    lines = []
-    for number, (start, end, text) in enumerate(times):
-        if number + 1 < len(times):
-            end = min(end, max(start + 0.05, times[number + 1][0]))
-        lines.append(f"{number + 1}\n{_stamp(start)} --> {_stamp(end)}\n{text}\n")
-    return "\n".join(lines)
+        for line in _timed(_together(cues, one, begin, style), begin, begin + one.seconds, style):
+            text = line.text(style)
+            if shown and shown[-1][2] == text and line.start - shown[-1][1] < _GAP:
+                shown[-1] = (shown[-1][0], line.end, text)
+            else:
+                shown.append((line.start, line.end, text))
+        begin += one.seconds
+    blocks = (f"{n}\n{_stamp(start)} --> {_stamp(end)}\n{text}\n" for n, (start, end, text) in enumerate(shown, 1))
+    return "\n".join(blocks)
+
+
+def _together(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
+    """The moves that come in a run, which begins at `begin`; those too close to be read one by one in one line."""
+    lines: list[_Line] = []
+    for cue in cues:
+        if not max(one.start, one.sound_from) <= cue.second < one.end:
+            continue
+        first, last = (begin + (min(s, one.end) - one.start) / one.rate for s in (cue.second, cue.end))
+        first = max(begin, min(first, begin + one.seconds - style.stays))  # what comes last can be read, too
+        if not lines or first >= lines[-1].first + style.shortest:
+            lines.append(_Line(first, first, last))
+        lines[-1].add(cue, first, last)
+    return lines
+
+
+def _timed(lines: list[_Line], begin: float, over: float, style: SubtitleStyle) -> list[_Line]:
+    """Give the lines of a run their times on the screen; none stands with another, or beyond the run."""
+    least = style.shortest - style.stays  # seconds that words stand before their move even in a hurry
+    before: _Line | None = None
+    for line in lines:
+        line.start = max(begin, line.first - style.before)
+        if before is not None:
+            given_way = min(before.latest + style.stays, line.first - least)
+            line.start = max(line.start, given_way, before.start + style.shortest)
+            before.end = min(before.end, line.start)
+        line.end = max(line.last + style.stays, line.start + style.shortest)
+        before = line
+    if lines:
+        lines[-1].end = min(lines[-1].end, over)
+    return lines
 
 
 def _stamp(second: float) -> str:
-    milliseconds = round(second * 1000)
-    minutes, rest = divmod(milliseconds, 60_000)
+    minutes, rest = divmod(round(second * 1000), 60_000)
     return f"{minutes // 60:02d}:{minutes % 60:02d}:{rest // 1000:02d},{rest % 1000:03d}"

@@ -21,7 +21,6 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import Callout, Presses
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.settings import load
-from dancetutor_cli.video.subtitles import subtitles
 from dancetutor_cli.video.text import Typeface
 
 
@@ -154,13 +153,6 @@ def test_the_style_file_is_complete() -> None:
     style = load(config_path("highway.yaml"), sprites.HighwayStyle)
     assert set(style.quantisation) == set(sprites.QUANTISATIONS)
     assert len({*style.quantisation.values()} & {*limb_colours().by_limb}) == 0
-
-
-def test_subtitles_follow_the_runs() -> None:
-    clock = Clock((Pass(0.0, 4.0, 0.5), Pass(0.0, 4.0)), 30)
-    text = subtitles((Callout(2.0, 4.0, "spin", "move"),), clock)
-    assert text.startswith("1\n00:00:02,500 --> 00:00:04,600\nspin\n")
-    assert "2\n00:00:08,500 --> 00:00:10,600\nspin\n" in text
 
 
 def test_directions_are_those_of_the_pad() -> None:

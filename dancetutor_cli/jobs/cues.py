@@ -1,0 +1,95 @@
+"""What the subtitles of a film name: the moves of a play with the foot that does them, from begin to end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.play.model import Limb
+from dancetutor_cli.video.notes import Cue
+from dancetutor_cli.video.subtitles import HOLD
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.play.model import Play
+
+_CROSSED = ("crossover-half", "crossover-full")
+_WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, which they come with
+_RUNS = ("stream", "drill")
+_WHO = {
+    Limb.LEFT_FOOT: "left foot",
+    Limb.RIGHT_FOOT: "right foot",
+    Limb.LEFT_HAND: "left hand",
+    Limb.RIGHT_HAND: "right hand",
+}
+
+
+def cues_of(play: Play, timing: Timing, words: Mapping[str, str]) -> tuple[Cue, ...]:
+    """Every move that has a word, sorted by time.
+
+    words : name of a move (`play.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it are not.
+    Crossed feet are told once, where they cross, until they are back; a stream or drill once, where it begins.
+    """
+    found = [*_crossovers(play, words), *_moments(play, words), *_holds(play, timing, words)]
+    for name in _RUNS:
+        if name in words:
+            found += (
+                Cue(float(play.rows.second[first]), float(play.rows.second[last]), words[name], ())
+                for first, last in _stretches(play, (name,))
+            )
+    return tuple(sorted(found, key=lambda cue: (cue.second, cue.text)))
+
+
+def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
+    """Until the row in which the feet are uncrossed; one that turns full on its way is told again."""
+    second, last_row = play.rows.second, len(play.rows) - 1
+    for first, last in _stretches(play, _CROSSED):
+        end = float(second[min(last + 1, last_row)])
+        before: set[str] = set()
+        for row in range(first, last + 1):
+            full = {"crossover-full"} & set(play.moves[row])
+            now = full or {"crossover-half"}
+            if new := now - before:
+                way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
+                if word := words.get(way[0] if way else new.pop()):
+                    yield Cue(float(second[row]), end, word, _who(play, row))
+            before |= now
+
+
+def _moments(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
+    """Moves of one row, each time they come."""
+    named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
+    for row, names in enumerate(play.moves):
+        for name in named.intersection(names):
+            second = float(play.rows.second[row])
+            yield Cue(second, second, words[name], _who(play, row, name))
+
+
+def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue]:
+    if HOLD not in words:
+        return
+    row, column = np.nonzero(play.rows.hold_end >= 0)
+    ends = timing.seconds(play.rows.hold_end[row, column])
+    for r, c, end in zip(row.tolist(), column.tolist(), ends.tolist(), strict=True):
+        who = _WHO.get(Limb(int(play.limb[r, c])))
+        yield Cue(float(play.rows.second[r]), end, words[HOLD], () if who is None else (who,))
+
+
+def _who(play: Play, row: int, name: str = "") -> tuple[str, ...]:
+    """Who does a move of a row: everybody who steps in it, of a bracket the foot on two panels, of a hand the hand."""
+    limbs = [Limb(one) for one in play.limb[row].tolist() if one in _WHO]
+    if name == "bracket":
+        limbs = [one for one in limbs if limbs.count(one) > 1]
+    elif name == "hand":
+        limbs = [one for one in limbs if one in (Limb.LEFT_HAND, Limb.RIGHT_HAND)]
+    both = {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= set(limbs)  # both feet: it is no foot's move
+    return () if both and name != "bracket" else tuple(_WHO[one] for one in sorted(set(limbs)))
+
+
+def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
+    """First and last row of each run of rows that have one of these names."""
+    inside = np.array([False, *(any(name in moves for name in names) for moves in play.moves), False])
+    edges = np.diff(inside.astype(np.int8))
+    return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))

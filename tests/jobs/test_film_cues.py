@@ -1,0 +1,73 @@
+"""The moves that subtitles name, of charts whose moves are known by heart."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli import chart as charts
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.jobs.cues import cues_of
+from dancetutor_cli.jobs.feet import solve_with_feet
+from dancetutor_cli.play import load_preset
+from dancetutor_cli.video.notes import Cue
+from dancetutor_cli.video.subtitles import subtitle_style
+
+HEAD = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
+LEFT, RIGHT = ("left foot",), ("right foot",)
+
+
+def cues(rows: str) -> list[Cue]:
+    song = charts.parse((HEAD + rows.replace(" ", "\n") + "\n;\n").encode(), Path("song.sm"))
+    play, _ = solve_with_feet(song, song.charts[0], load_preset("itg"))
+    assert play is not None
+    return list(cues_of(play, song.charts[0].timing, subtitle_style().moves))
+
+
+def test_a_crossover_lasts_until_the_feet_are_back() -> None:
+    # left, up, right with the left foot in front or behind, up, left: quarter notes at 120 BPM
+    found = [one for one in cues("1000 0010 0001 0010 , 1000 0001 1000 0001") if "crossover" in one.text]
+    assert len(found) == 1
+    assert found[0].who == LEFT and found[0].second == 1.0
+    assert found[0].text in ("crossover behind", "crossover in front")
+    assert 1.5 <= found[0].end <= 2.0
+
+
+def test_candles_jumps_and_jacks_have_their_feet() -> None:
+    found = cues("0100 0001 0010 0001 , 1001 0000 1000 1000")
+    assert Cue(1.0, 1.0, "candle", LEFT) in found
+    assert Cue(2.0, 2.0, "jump", ()) in found
+    assert any(one.text == "jack" and one.second == 3.5 and len(one.who) == 1 for one in found)
+
+
+def test_a_hold_lasts_as_long_as_it_is_held() -> None:
+    found = cues("2000 0000 0000 3000 , 0001 0000 0000 0000")
+    assert [(one.second, one.end) for one in found if one.text == "hold"] == [(0.0, 1.5)]
+
+
+def test_a_film_without_moves_says_so_and_leaves_no_old_subtitles(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    song, film, old = tmp_path / "song.sm", tmp_path / "film.mp4", tmp_path / "film.srt"
+    song.write_text(HEAD + "1000\n0001\n1000\n0001\n,\n0110\n0000\n0000\n0000\n;\n")
+    options = (
+        "-o",
+        str(film),
+        "--srt",
+        "--size",
+        "64x64",
+        "--layout",
+        "highway",
+        "--fps",
+        "10",
+        "--jobs",
+        "1",
+        "--mute",
+    )
+    for section, told in ((("--section", "1:3"), True), (("--section", "0:1"), False)):
+        with pytest.raises(SystemExit) as stop:
+            main(["render", str(song), *options, *section])
+        assert stop.value.code == 0
+        assert old.exists() == told
+        assert ("there is no film.srt" in capsys.readouterr().err) != told
