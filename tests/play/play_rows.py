@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 from play_reference import Reference, Row
 
+from dancetutor_cli import play as solver
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play import Play, Rows, StepKind
+from dancetutor_cli.play import Play, Preset, Rows, StepKind
 from dancetutor_cli.play.model import Limb
 
 KINDS = {".": 0, "1": StepKind.TAP, "L": StepKind.LIFT, "2": StepKind.HOLD, "4": StepKind.ROLL, "r": StepKind.ROLL_TAP}
+OTHER_LIMB = {-2: -2, -1: -1, 0: 1, 1: 0, 2: 3, 3: 2}
 LIMBS = {Limb.LEFT_FOOT: "L", Limb.RIGHT_FOOT: "R", Limb.LEFT_HAND: "l", Limb.RIGHT_HAND: "r"}
 
 
@@ -104,3 +107,25 @@ def letters(play: Play) -> str:
         cells = (names[limb].lower() if part == 2 else names[limb] for limb, part in zip(limbs, parts, strict=True))
         words.append("".join(cells))
     return " ".join(words)
+
+
+def mirrored_rows(rows: Rows, image: NDArray[np.int64]) -> Rows:
+    """The rows with every panel's notes on its image."""
+    back = np.argsort(image)
+    return replace(rows, steps=rows.steps[:, back], hold_end=rows.hold_end[:, back], mines=rows.mines[:, back])
+
+
+def check_mirror(rows: Rows, pad: Pad, preset: Preset, *, left_right: bool) -> int:
+    """Rows with a margin have mirrored limbs; returns how many there are."""
+    image = pad.mirrored(left_right=left_right)
+    assert image is not None
+    found, mirror = solver.solve(rows, pad, preset), solver.solve(mirrored_rows(rows, image), pad, preset)
+    assert found.total == mirror.total
+    assert found.margin is not None and mirror.margin is not None
+    assert found.margin.tolist() == mirror.margin.tolist()
+    limb = mirror.limb[:, image]
+    if left_right:
+        limb = np.vectorize(OTHER_LIMB.get, otypes=[np.int8])(limb) if limb.size else limb
+    sure = found.margin != 0
+    assert (limb[sure] == found.limb[sure]).all()
+    return int(sure.sum())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,40 +10,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
-from play_rows import pad_of, timed
+from play_rows import check_mirror, pad_of, timed
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli import play
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.pads import Pad
-from dancetutor_cli.play import Limb, Preset, Rows, StepKind
+from dancetutor_cli.play import Limb, Rows, StepKind
 
 PRESETS = {name: play.load_preset(name) for name in play.preset_names()}
-OTHER_LIMB = {-2: -2, -1: -1, 0: 1, 1: 0, 2: 3, 3: 2}
-
-
-def mirrored_rows(rows: Rows, image: NDArray[np.int64]) -> Rows:
-    """The rows with every panel's notes on its image."""
-    back = np.argsort(image)
-    return replace(rows, steps=rows.steps[:, back], hold_end=rows.hold_end[:, back], mines=rows.mines[:, back])
-
-
-def check_mirror(rows: Rows, pad: Pad, preset: Preset, *, left_right: bool) -> int:
-    """Rows with a margin have mirrored limbs; returns how many there are."""
-    image = pad.mirrored(left_right=left_right)
-    assert image is not None
-    found, mirror = play.solve(rows, pad, preset), play.solve(mirrored_rows(rows, image), pad, preset)
-    assert found.total == mirror.total
-    assert found.margin is not None and mirror.margin is not None
-    assert found.margin.tolist() == mirror.margin.tolist()
-    limb = mirror.limb[:, image]
-    if left_right:
-        limb = np.vectorize(OTHER_LIMB.get, otypes=[np.int8])(limb) if limb.size else limb
-    sure = found.margin != 0
-    assert (limb[sure] == found.limb[sure]).all()
-    return int(sure.sum())
 
 
 @cache

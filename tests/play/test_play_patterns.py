@@ -5,10 +5,8 @@ A foot that nobody can know (either is as good) stands as `?`. Panels in the ord
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
-from play_rows import letters, pad_of, rows_of
+from play_rows import letters, mirrored_rows, pad_of, rows_of
 
 from dancetutor_cli import play
 
@@ -122,7 +120,7 @@ def test_feet_of_a_pattern(steps_type: str, name: str, picture: str, feet: str, 
     image = pad.mirrored(left_right=True)
     assert image is not None
     if mirrored:
-        rows = replace(rows, steps=rows.steps[:, image], hold_end=rows.hold_end[:, image], mines=rows.mines[:, image])
+        rows = mirrored_rows(rows, image)
         feet = " ".join(
             word if word == "?" else "".join(word[p] for p in image).translate(SWAP) for word in feet.split()
         )
