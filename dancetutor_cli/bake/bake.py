@@ -21,7 +21,7 @@ from dancetutor_cli.motion.ik import Targets, solve
 from dancetutor_cli.motion.layers import add_layers
 from dancetutor_cli.motion.look import look
 from dancetutor_cli.motion.model import Motion
-from dancetutor_cli.motion.paths import sample_path, smooth_path
+from dancetutor_cli.motion.paths import cubic, sample_path, smooth_path
 from dancetutor_cli.motion.plan import Planner
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 from dancetutor_cli.motion.targets import ik_targets, moved
@@ -43,6 +43,7 @@ STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
+OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 OVERLAP = 5.0  # seconds that a piece of a long song is planned and baked beyond its ends: what differs has died away
@@ -179,7 +180,7 @@ def _settled(
         targets = _targets(plan, body, coarse, skeleton, settings)
         rotations, root = solve(skeleton, targets, settings.body.reach)
         offset = _mass(skeleton, rotations, root) - root
-        above = np.column_stack([np.interp(grid, coarse, offset[:, k]) for k in range(3)])
+        above = smooth_path(cubic(coarse, offset, grid), np.ones(len(grid)), settings.sampling.work_rate, OFFSET_SMOOTH)
         drawn = root[:, 1] - targets.pelvis[:, 1]
         for k, press in enumerate(plan.presses):
             near = (coarse >= press.start - 0.05) & (coarse <= press.end + 0.05)

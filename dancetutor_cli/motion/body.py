@@ -23,6 +23,7 @@ from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+YAW_SMOOTH = 0.08  # seconds over which the pelvis turns with each step
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 
 
@@ -70,13 +71,14 @@ def body_path(
     if keep and before is not None:
         mass_ground = before.mass
     else:
-        mass_ground = balanced_path(feet, _lever(before.mass_height if before else None, times), times, settings)
+        lever = _lever(before.mass_height if before else None, times)
+        mass_ground = balanced_path(feet, lever, above[:, [0, 2]], times, settings)
     held = leaning_share(plan.grips, times)
     if plan.bar is not None and not (keep and before is not None):
         mass_ground = kept_back(mass_ground, held, plan.bar, settings.bar)
     ground = mass_ground - above[:, [0, 2]]
     turned = _yaw_target(plan.turns, times) + _turned_for_hands(plan.presses, times, settings)
-    yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, 0.05)[:, 0]
+    yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, YAW_SMOOTH)[:, 0]
     gait = walking(plan.walks, times, settings)
     sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
@@ -161,7 +163,7 @@ def _height(
     highest = highest - sink
     share, depth = bent[:, 0], bent[:, 1]
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
-    return height_path(times, wanted + above, highest + above, flights, body)
+    return height_path(times, wanted + above, highest + above, above, flights, body)
 
 
 def stepping(feet: tuple[FootPath, FootPath], settings: MotionSettings) -> Array:

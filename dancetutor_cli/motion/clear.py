@@ -6,22 +6,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.stage import BALL_AHEAD
 
 Array = NDArray[np.float64]
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
-_ASIDE = np.array([0.0, 0.03, -0.03, 0.06, -0.06, 0.09, -0.09, 0.12, -0.12, 0.15, -0.15, 0.18, -0.18])
-_SHARE = np.linspace(0.08, 0.92, 9)
+_ASIDE = np.arange(-9, 10) * 0.03  # metres
+_ASIDE = _ASIDE[np.argsort(np.abs(_ASIDE), kind="stable")]
+_SHARE = np.linspace(0.05, 0.95, 13)
 
 
 def detour(
-    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: float, apart: float
-) -> tuple[float, float]:
+    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: float, apart: float,
+    turned: float | None = None,
+) -> tuple[float, float]:  # fmt: skip
     """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
 
     Parameters
     ----------
     start, end : (2,) middle of the swinging foot; other : of the standing one; yaws in radians
     apart : metres; where no detour is enough, the best one is taken
+    turned : the yaw to which the standing foot turns on its ball meanwhile
     """
     path = end - start
     length = float(np.linalg.norm(path))
@@ -31,26 +35,40 @@ def detour(
     s = smooth(_SHARE)
     middle = start + s[:, None] * path
     bend = np.sin(np.pi * s) ** 2
-    yaw = start_yaw + s * (end_yaw - start_yaw)
-    along = HALF_SHOE * np.column_stack((np.sin(yaw), np.cos(yaw)))
-    still = HALF_SHOE * np.array([np.sin(other_yaw), np.cos(other_yaw)])
+    along = HALF_SHOE * headings(start_yaw + s * (end_yaw - start_yaw))
+    ahead = headings(other_yaw + s * ((other_yaw if turned is None else turned) - other_yaw))
+    still = other + BALL_AHEAD * (headings(np.array(other_yaw)) - ahead)
     places = middle + (_ASIDE[:, None] * bend)[..., None] * aside
-    gaps = segment_gaps(places - along, places + along, other - still, other + still).min(axis=1)
+    gaps = segment_gaps(places - along, places + along, still - HALF_SHOE * ahead, still + HALF_SHOE * ahead)
     # at its ends the path is given: no detour can do better there than the worse of both ends
-    enough = np.flatnonzero(gaps >= min(apart, gaps.max()) - 1e-6)
+    least = gaps.min(axis=1)
+    enough = np.flatnonzero(least >= min(apart, least.max()) - 1e-6)
     chosen = enough[np.argmin(np.abs(_ASIDE[enough]))]
     return float(aside[0] * _ASIDE[chosen]), float(aside[1] * _ASIDE[chosen])
 
 
+def headings(yaw: Array) -> Array:
+    """Unit vectors (..., 2), x and z, of yaws (...)."""
+    return np.stack((np.sin(yaw), np.cos(yaw)), axis=-1)
+
+
 def shoes_apart(middle: Array, yaw: float, other: Array, other_yaw: float) -> float:
     """Least distance in metres between the middle lines of two shoes, given the (2,) middles of both and their yaws."""
-    a = HALF_SHOE * np.array([np.sin(yaw), np.cos(yaw)])
-    b = HALF_SHOE * np.array([np.sin(other_yaw), np.cos(other_yaw)])
-    return float(segment_gaps((middle - a)[None], (middle + a)[None], other - b, other + b)[0])
+    ball, rest = (m + BALL_AHEAD * headings(np.array(y)) for m, y in ((middle, yaw), (other, other_yaw)))
+    return float(gaps_at(ball[None], np.array([yaw]), rest, other_yaw)[0])
+
+
+def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
+    """Least distance (k,) in metres between the middle lines of shoes, balls (k, 2) and yaws (k,), and another shoe."""
+    ahead = headings(yaws)
+    middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
+    rest = other - BALL_AHEAD * still
+    along = HALF_SHOE * ahead
+    return segment_gaps(middle - along, middle + along, rest - HALF_SHOE * still, rest + HALF_SHOE * still)
 
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Least distance (...) between segments a-b (..., 2) and one segment c-d (2,) in the plane."""
+    """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
     gaps = [_point_gap(p, c, d) for p in (a, b)] + [_point_gap(np.broadcast_to(p, a.shape), a, b) for p in (c, d)]
     apart = np.minimum.reduce(gaps)
     crossing = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.feet import GRAVITY
+from dancetutor_cli.motion.landing import beside, pose
 from dancetutor_cli.motion.stance import HOME_OUT, SHORTEST, Foot, Stance, pair
 from dancetutor_cli.motion.track import Swing
 from dancetutor_cli.play.model import Play
@@ -38,7 +39,10 @@ def evade_mines(play: Play, i: int, time: float, panels: Array, stance: Stance, 
 def _hop(stance: Stance, foot: Foot, time: float) -> None:
     """One foot of a hop of both to the middle of the pad."""
     mines = stance.settings.mines
-    target = stage.ball_of(np.array([foot.outward * HOME_OUT, 0.0]), foot.yaw)
+    body = stance.body_yaw()
+    aside = foot.outward * HOME_OUT * np.array([np.cos(body), -np.sin(body)])
+    foot.yaw = stance.limited(foot.yaw, body)
+    target = stage.ball_of(aside, stance.toes(foot))
     height, half = GRAVITY * mines.hop**2 / 8, mines.hop / 2
     _up(stance, foot, time, target, half, height, "jump", stance.settings.jump.tuck)
 
@@ -46,8 +50,9 @@ def _hop(stance: Stance, foot: Foot, time: float) -> None:
 def _lift(stance: Stance, foot: Foot, time: float, panel: Array) -> None:
     """One foot goes up while the other stands, and comes down on the inner edge of its panel."""
     mines, step = stance.settings.mines, stance.settings.step
-    middle = stance.middle(stance.feet[1 - foot.side])
-    target = stage.landing_ball(panel, stance.toes(foot), middle, 1.0, step.edge_margin, step.clearance)
+    other = pose(stance, stance.feet[1 - foot.side])
+    target = stage.landing_ball(panel, stance.toes(foot), other.middle, 1.0, step.edge_margin)
+    target, _ = beside(stance, panel, foot, target, foot.yaw, other)
     back = (foot.ball, foot.yaw)
     _up(stance, foot, time, target, mines.before + mines.rise, mines.height, "evade", 0.0)
     foot.evading = (time, back)

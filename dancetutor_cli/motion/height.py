@@ -20,6 +20,7 @@ from dancetutor_cli.motion.settings import BodySettings
 Array = NDArray[np.float64]
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
+GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
 LEAST_PHASE = 0.012  # seconds; shorter flights are left out: nobody sees them
 
 
@@ -41,12 +42,15 @@ class HeightPath:
         return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
-def height_path(times: Array, wanted: Array, highest: Array, flights: Array, body: BodySettings) -> HeightPath:
+def height_path(
+    times: Array, wanted: Array, highest: Array, above: Array, flights: Array, body: BodySettings
+) -> HeightPath:
     """Solve the programme.
 
     Parameters
     ----------
     times : (n,) even; wanted, highest : (n,) metres at those times, the latter ignored in flight
+    above : (n,) metres, how far the centre of mass is over the pelvis, whose jerk on the ground is least
     flights : (k, 2) of take-off and landing, seconds, in order; body : settings
     """
     flights = flights[(flights[:, 1] - flights[:, 0] > LEAST_PHASE)]
@@ -55,26 +59,21 @@ def height_path(times: Array, wanted: Array, highest: Array, flights: Array, bod
     nodes, flying = _nodes(times[0], times[-1], flights)
     inner = np.arange(1, len(nodes) - 1)
     in_flight = flying[inner - 1] & flying[inner]
-    problem = _objective(nodes, flying, in_flight, np.interp(nodes, times, wanted), body)
+    problem = _objective(
+        nodes, flying, in_flight, np.interp(nodes, times, wanted), np.interp(nodes, times, above), body
+    )
     acceleration = _second(nodes) / GRAVITY
     standing = ~in_flight
     touching = (flying[inner - 1] | flying[inner])[standing]
     n = int(standing.sum())
     force = Limits(
         inner[standing] - 1, acceleration[standing],
-        np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0),
+        np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0), GIVE_FORCE,
     )  # fmt: skip
     ground = np.flatnonzero(~(np.concatenate(([True], flying)) & np.concatenate((flying, [True]))))
     top = np.interp(nodes[ground], times, highest)
-    room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT)
-    for limits in (
-        [force, room],
-        [Limits(force.start, force.coefficients, force.low * 4, force.high * 4), room],
-        [room],
-    ):
-        solution = solve(problem, limits)
-        if solution.found:
-            break
+    room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT, GIVE_ROOM)
+    solution = solve(problem, [force, room])
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying))
 
 
@@ -117,8 +116,9 @@ def _third(t: Array) -> Array:
 
 
 def _objective(
-    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wanted: Array, body: BodySettings
-) -> BandedLeastSquares:
+    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wanted: Array, above: Array,
+    body: BodySettings,
+) -> BandedLeastSquares:  # fmt: skip
     n = len(nodes)
     problem = BandedLeastSquares(n, 1)
     step = np.gradient(nodes) * NODE_RATE
@@ -130,7 +130,8 @@ def _objective(
     jerk = _third(nodes) * body.height_smooth**3 / UNIT
     parts = np.stack([flying[k : n - 3 + k] for k in range(3)], axis=1)
     weight = np.where(parts.any(axis=1), 0.02, 1.0) * np.where(parts.all(axis=1), 0.0, step[1:-2])
-    problem.add(np.arange(n - 3), jerk, weight, np.zeros((n - 3, 1)))
+    throws = sum(jerk[:, k] * above[k : n - 3 + k] for k in range(4))
+    problem.add(np.arange(n - 3), jerk, weight, np.asarray(throws)[:, None])
     return problem
 
 

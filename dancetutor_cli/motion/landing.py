@@ -2,45 +2,83 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour, shoes_apart
+from dancetutor_cli.motion.clear import detour, gaps_at
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.stance import Foot, Stance
 from dancetutor_cli.play.model import Part
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
+ROOM = stage.HALF_PANEL - stage.BALL_MARGIN
+_ACROSS = np.linspace(-ROOM, ROOM, 11)
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball on its panel
+TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
+PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A foot that stands: its ball (2,), and where its toes point, radians."""
+
+    ball: Array
+    toes: float
+
+    @property
+    def middle(self) -> Array:
+        """The middle of the sole."""
+        return stage.middle_of(self.ball, self.toes)
+
+
+def pose(stance: Stance, foot: Foot) -> Pose:
+    """How a foot stands now."""
+    return Pose(foot.ball, stance.toes(foot))
 
 
 def landing(
-    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float,
-    other: tuple[Array, float], cut: float,
+    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float, other: Pose, cut: float,
 ) -> tuple[Array, float]:  # fmt: skip
     """Where the ball lands and how the foot is turned (without toe-out).
 
     panels : (c, 2); parts : (c,) which part of the foot presses a column; columns : those that it presses
-    yaw : wanted; other : middle and yaw of the other foot; cut : 0 for the panel's centre to 1 for its inner edge
+    yaw : wanted; other : the other foot then; cut : 0 for the panel's centre to 1 for its inner edge
     """
     step = stance.settings.step
     if len(columns) > 1:
         return _bracket(stance, panels, parts, columns, foot, yaw)
-    panel, toes = panels[columns[0]], stance.toes(foot, yaw)
-    middle, other_yaw = other
-    for share in (1.0, 0.75, 0.5, 0.25, 0.0):  # the nearest to the other foot that leaves it room
-        ball = stage.landing_ball(panel, toes, middle, cut * share, step.edge_margin, step.clearance)
-        if shoes_apart(stage.middle_of(ball, toes), toes, middle, other_yaw) >= step.apart:
-            break
-    return ball, yaw
+    toes = stance.toes(foot, yaw)
+    ball = stage.landing_ball(panels[columns[0]], toes, other.middle, cut, step.edge_margin)
+    return beside(stance, panels[columns[0]], foot, ball, yaw, other)
+
+
+def beside(stance: Stance, panel: Array, foot: Foot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
+    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
+    apart = stance.settings.step.apart
+    if gaps_at(ball[None], np.array([stance.toes(foot, yaw)]), other.ball, other.toes)[0] >= apart:
+        return ball, yaw
+    balls = panel + PLACES
+    turned = np.array([stance.limited(yaw + turn, stance.body_yaw()) for turn in TURNS])
+    grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
+    gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)
+    price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
+    price += np.maximum(apart - gaps, 0.0) * 1e6
+    best = int(np.argmin(price))
+    return grid[best], float(yaws[best])
 
 
 def _bracket(
     stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float
 ) -> tuple[Array, float]:
     """Heel on one panel, toes on the other."""
-    heel = next((c for c in columns if parts[c] == Part.HEEL), columns[0])
+    toe = next((c for c in columns if parts[c] == Part.TOE), None)
+    heel = next((c for c in columns if parts[c] == Part.HEEL and c != toe), None)
+    if heel is None:
+        heel = next(c for c in columns if c != toe)
     toe = next(c for c in columns if c != heel)
     along = panels[toe] - panels[heel]
     toes = float(np.arctan2(along[0], along[1]))
@@ -58,8 +96,8 @@ def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: floa
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
-def around(stance: Stance, foot: Foot, target: Array, yaw: float, other: Foot) -> tuple[float, float]:
-    """Sideways detour that keeps the swinging foot clear of the standing one."""
+def around(stance: Stance, foot: Foot, target: Array, yaw: float, other: Foot, turned: float) -> tuple[float, float]:
+    """Sideways detour that keeps the swinging foot clear of the standing one, which meanwhile turns to `turned`."""
     a, b, c = stance.toes(foot), stance.toes(foot, yaw), stance.toes(other)
-    middles = (stage.middle_of(foot.ball, a), stage.middle_of(target, b), stage.middle_of(other.ball, c))
-    return detour(middles[0], a, middles[1], b, middles[2], c, stance.settings.step.apart)
+    start, end, still = stage.middle_of(foot.ball, a), stage.middle_of(target, b), stage.middle_of(other.ball, c)
+    return detour(start, a, end, b, still, c, stance.settings.step.apart, stance.toes(other, turned))

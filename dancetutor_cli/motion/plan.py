@@ -14,7 +14,7 @@ from dancetutor_cli.motion.stance import SHORTEST, Stance
 from dancetutor_cli.motion.steps import Steps
 from dancetutor_cli.motion.touches import Touches
 from dancetutor_cli.motion.track import Plan, Turn
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
 
@@ -48,12 +48,12 @@ class Planner:
         for column in np.flatnonzero(self.play.limb[i] >= 0):
             pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
         evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
-        feet = [side for side in (0, 1) if side in pressed]
+        feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
         if feet:
             self._feet(i, time, feet, pressed)
         for limb, columns in pressed.items():
-            for column in columns:
-                self.touches.add(i, time, limb, column)
+            for pressed_column in columns:
+                self.touches.add(i, time, limb, pressed_column)
 
     def _feet(self, i: int, time: float, feet: list[int], pressed: dict[int, list[int]]) -> None:
         """One foot steps or both jump, and the body turns with them."""

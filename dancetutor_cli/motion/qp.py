@@ -1,5 +1,6 @@
 """Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
 
+Limits may give way at a price, so that one impossible place in a song does not leave it without a solution.
 Solved by an interior-point method (Mehrotra 1992); every step solves one banded system, so the cost is linear in the
 length of the song.
 """
@@ -24,17 +25,19 @@ class Limits:
     """m limits  low <= sum_i coefficients_i x[start + i] <= high ; infinite sides are left out.
 
     start : (m,); coefficients : (m, q), q at most 4; low, high : (m,)
+    give : a limit that is exceeded by e costs  e^2 / give , which is added to the sum; 0 for limits that hold
     """
 
     start: NDArray[np.int64]
     coefficients: Array
     low: Array
     high: Array
+    give: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """x : (n,); found : the limits hold and x is the minimum, to the tolerance; rounds : steps taken."""
+    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken."""
 
     x: Array
     found: bool
@@ -45,7 +48,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
     """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value."""
     if problem.right.shape[1] != 1:
         raise ValueError("limits are for one path at a time")
-    starts, rows, highs = [], [], []
+    starts, rows, highs, gives = [], [], [], []
     for part in limits:
         wide = np.zeros((len(part.start), REACH))
         wide[:, : part.coefficients.shape[1]] = part.coefficients
@@ -58,7 +61,8 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
             starts.append(start[use])
             rows.append(sign * wide[use])
             highs.append(bound[use])
-    stacked = np.concatenate(starts), np.concatenate(rows), np.concatenate(highs)
+            gives.append(np.full(len(highs[-1]), part.give))
+    stacked = np.concatenate(starts), np.concatenate(rows), np.concatenate(highs), np.concatenate(gives)
     right = np.ascontiguousarray(problem.right[:, 0])
     x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, ROUNDS)
     return Solution(x, bool(found), int(rounds))
@@ -103,21 +107,25 @@ def _longest_step(value: Array, change: Array) -> float:
 
 @njit(cache=True)
 def _direction(
-    factor: Array, start: NDArray[np.int64], rows: Array, dual: Array, primal: Array, s: Array, z: Array, aim: Array
-) -> tuple[Array, Array, Array]:
+    factor: Array, start: NDArray[np.int64], rows: Array, give: Array, dual: Array, primal: Array, s: Array, z: Array,
+    aim: Array,
+) -> tuple[Array, Array, Array]:  # fmt: skip
     """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
     right = -dual
-    _add_transposed(start, rows, -(aim - s * z + z * primal) / s, right)
+    loose = s + give * z
+    _add_transposed(start, rows, -(aim - s * z + z * primal) / loose, right)
     dx = _solve_one(factor, right)
-    ds = -primal - _times_rows(start, rows, dx)
-    dz = (aim - s * z - z * ds) / s
+    dz = (aim - s * z + z * (_times_rows(start, rows, dx) + primal)) / loose
+    ds = give * dz - primal - _times_rows(start, rows, dx)
     return dx, ds, dz
 
 
 @njit(cache=True)
 def _interior_point(
-    bands: Array, right: Array, start: NDArray[np.int64], rows: Array, high: Array, tolerance: float, most: int
-) -> tuple[Array, bool, int]:
+    bands: Array, right: Array, start: NDArray[np.int64], rows: Array, high: Array, give: Array, tolerance: float,
+    most: int,
+) -> tuple[Array, bool, int]:  # fmt: skip
+    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own."""
     x = _solve_one(_factor(bands), right)
     m = len(high)
     if m == 0:
@@ -128,23 +136,25 @@ def _interior_point(
     for turn in range(most):
         dual = _times_band(bands, x) - right
         _add_transposed(start, rows, z, dual)
-        primal = _times_rows(start, rows, x) + s - high
+        primal = _times_rows(start, rows, x) + s - give * z - high
         mu = np.dot(s, z) / m
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, turn
         system = bands.copy()
         for r in range(m):
-            w = z[r] / s[r]
+            w = z[r] / (s[r] + give[r] * z[r])
             for i in range(rows.shape[1]):
                 for j in range(i, rows.shape[1]):
                     system[start[r] + i, j - i] += w * rows[r, i] * rows[r, j]
         factor = _factor(system)
-        dx, ds, dz = _direction(factor, start, rows, dual, primal, s, z, np.zeros(m))
+        dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
         after = np.dot(s + ap * ds, z + ad * dz) / m
         centre = (after / mu) ** 3
-        dx, ds, dz = _direction(factor, start, rows, dual, primal, s, z, centre * mu - ds * dz)
+        dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
+        if give.max() > 0.0:
+            ap = ad = min(ap, ad)
         x += ap * dx
         s += ap * ds
         z += ad * dz

@@ -19,6 +19,7 @@ class StepSettings:
 
     longest: float
     double_support: float
+    double_support_fast: float
     height_slow: float
     height_fast: float
     fast: float
@@ -35,7 +36,6 @@ class StepSettings:
     let_go: float
     ankle_limit: float
     crossover_turn: float
-    clearance: float
     apart: float
     pivot_from: float
     pivot_to: float

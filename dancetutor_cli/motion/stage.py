@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
 BALL_AHEAD = 0.046  # the ball of the foot lies so far before the middle of the sole
-BALL_MARGIN = 0.042  # the ball stays so far inside the panel: half of its width
+BALL_MARGIN = 0.024  # the middle of the ball stays so far inside the panel: more than half of it presses
 
 
 def panels_on_ground(pad: Pad) -> Array:
@@ -39,34 +39,20 @@ def middle_of(ball: Array, yaw: float) -> Array:
     return np.asarray(ball - BALL_AHEAD * heading(yaw))
 
 
-def landing_ball(panel: Array, yaw: float, other: Array | None, cut: float, edge_margin: float, clear: float) -> Array:
-    """Where the ball of a foot lands on a panel.
+def landing_ball(panel: Array, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
+    """Where the ball of a foot would like to land on a panel.
 
     Parameters
     ----------
-    panel : (2,) centre of the panel; yaw : of the foot; other : (2,) middle of the other foot, or None
+    panel : (2,) centre of the panel; yaw : of the foot; other : (2,) middle of the other foot
     cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
-    clear : the middles of the feet stay this far apart, where the panel is wide enough
     """
     middle = panel.copy()
-    if other is not None:
-        away = other - panel
-        distance = float(np.linalg.norm(away))
-        if distance > 1e-6:
-            direction = away / distance
-            to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
-            middle = panel + direction * min(cut * to_edge, max(distance - clear, 0.0))
-        if distance < clear:
-            middle = _beside(panel, other, yaw, clear)
-    ball = ball_of(middle, yaw)
+    away = other - panel
+    distance = float(np.linalg.norm(away))
+    if distance > 1e-6:
+        direction = away / distance
+        to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
+        middle = panel + direction * min(cut * to_edge, distance)
     room = HALF_PANEL - BALL_MARGIN
-    return np.asarray(np.clip(ball, panel - room, panel + room))
-
-
-def _beside(panel: Array, other: Array, yaw: float, clear: float) -> Array:
-    """A place on a panel that the other foot stands on: as far from it as the panel allows."""
-    away = panel - other
-    if np.linalg.norm(away) < 1e-3:
-        away = np.array([np.cos(yaw), -np.sin(yaw)])
-    target = other + away / np.linalg.norm(away) * clear
-    return np.asarray(np.clip(target, panel - HALF_PANEL + 0.03, panel + HALF_PANEL - 0.03))
+    return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))

@@ -8,12 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.clear import gaps_at
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import FootTrack, Swing
 
 Array = NDArray[np.float64]
 SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
+SHORTEST_PIVOT = 0.04  # seconds
+STAND = 0.045  # seconds; a foot that has landed stays down so long, if its next note leaves it the time
 HOME_OUT = 0.098  # metres; a waiting foot stands so far beside the middle of the pad
 
 
@@ -27,6 +30,7 @@ class Foot:
     free: float = -np.inf  # the foot may not leave before
     landed: float = -np.inf  # when it came down
     swings: list[Swing] = field(default_factory=list)
+    holds: dict[int, float] = field(default_factory=dict)  # columns that it holds: until when
     evading: tuple[float, tuple[Array, float]] | None = None  # time of a mine, and where the foot stood before it
 
     @property
@@ -44,6 +48,10 @@ class Foot:
         """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
         early = max(time - let_go, self.landed + FREE_WINDOW)
         return min(early, time - SHORTEST) if self.free > early else time - SHORTEST
+
+    def earliest(self, time: float) -> float:
+        """When the foot may leave for a note: it has come to rest, and no hold needs it."""
+        return max(self.free, self.landed + min(STAND, (time - self.landed) / 3))
 
 
 class Stance:
@@ -68,10 +76,6 @@ class Stance:
         """Where the toes of a foot point, at its own yaw or at another one; radians."""
         return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
 
-    def middle(self, foot: Foot) -> Array:
-        """The middle of the sole, as `landing` sees the other foot: without toe-out."""
-        return stage.middle_of(foot.ball, foot.yaw)
-
     def body_yaw(self) -> float:
         """The yaw that the body aims at for the current feet normal, radians: crossed feet turn it less."""
         whole = 360.0 * round(self.normal / 360.0)
@@ -84,9 +88,10 @@ class Stance:
             rest = 90.0 + (rest - 90.0) * k
         return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
 
-    def turned_to(self) -> float:
-        """The yaw that the body turns to for the feet as they are now, radians."""
-        mean = (self.feet[0].yaw + self.feet[1].yaw) / 2
+    def turned_to(self, yaws: tuple[float, float] | None = None) -> float:
+        """The yaw that the body turns to for the feet's yaws, those of now or others, radians."""
+        left, right = yaws or (self.feet[0].yaw, self.feet[1].yaw)
+        mean = (left + right) / 2
         return float(mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean))
 
     def limited(self, yaw: float, body: float) -> float:
@@ -94,17 +99,25 @@ class Stance:
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))
 
-    def pivot(self, foot: Foot, start: float, time: float) -> None:
-        """The standing foot turns on its ball when the body turns too far from it."""
+    def pivot_yaw(self, foot: Foot, body: float, other: Array, other_toes: float) -> float:
+        """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
+
+        other, other_toes : ball and toes of the other foot after its step
+        """
         step = self.settings.step
-        body, limit = self.turned_to(), np.radians(step.pivot_from)
-        if abs(foot.yaw - body) <= limit:
-            return
-        yaw = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        if abs(foot.yaw - body) <= np.radians(step.pivot_from):
+            return foot.yaw
+        wanted = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        yaws = foot.yaw + np.linspace(1.0, 0.0, 9) * (wanted - foot.yaw)
+        gaps = gaps_at(np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out, other, other_toes)
+        return float(yaws[np.argmax(gaps >= min(step.apart, gaps.max()))])
+
+    def pivot(self, foot: Foot, yaw: float, start: float, time: float) -> None:
+        """The standing foot turns on its ball to a yaw."""
         begin = max(start, foot.swings[-1].land + FREE_WINDOW if foot.swings else start)
-        if begin > time - 0.04:
+        if yaw == foot.yaw or begin > time - SHORTEST_PIVOT:
             return
-        up = float(np.radians(step.pivot_pitch))
+        up = float(np.radians(self.settings.step.pivot_pitch))
         rest = foot.swings[-1].pitches[3] if foot.swings else 0.0
         pitches = (rest, max(up, rest), rest, rest)
         free = foot.free

@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.ease import reduction
 from dancetutor_cli.motion.evade import land_early, resumed
 from dancetutor_cli.motion.feet import GRAVITY
-from dancetutor_cli.motion.landing import around, heel_up, landing
+from dancetutor_cli.motion.landing import Pose, around, heel_up, landing, pose
 from dancetutor_cli.motion.stance import Foot, Stance, pair
 from dancetutor_cli.motion.track import Swing
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.model import Part, Play
 
 Array = NDArray[np.float64]
 LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
+NEIGHBOURS = 0.45  # metres between panels that one foot can press together
+SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
 
 class Steps:
@@ -33,13 +35,12 @@ class Steps:
         up = resumed(foot, time, step.longest)
         body = stance.body_yaw()
         yaw = stance.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
-        beside = (stance.middle(other), other.yaw)
-        target, yaw = landing(stance, self.panels, self.play.part[i], columns, foot, yaw, beside, cut)
+        columns = self._with_held(i, foot, columns, time)
+        target, yaw = landing(stance, self.panels, self.play.part[i], columns, foot, yaw, pose(stance, other), cut)
         galloping = self.take_off.get(side, (-1, 0.0))[0] == i
-        lift = self.take_off[side][1] if galloping else min(
-            time - duration * (1.0 - step.double_support), time - LEAST_SWING
-        )  # fmt: skip
-        lift = min(max(lift, foot.free), foot.latest(time, step.let_go)) if up is None else up
+        both = step.double_support + cut * (step.double_support_fast - step.double_support)
+        lift = self.take_off[side][1] if galloping else time - max(duration * (1.0 - both), LEAST_SWING)
+        lift = min(max(lift, foot.earliest(time)), foot.latest(time, step.let_go)) if up is None else up
         kind, tuck, middles = "step", 0.0, ((0.0, 0.0), (0.0, 0.0))
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         if np.linalg.norm(target - foot.ball) < 0.05:
@@ -52,12 +53,24 @@ class Steps:
                 kind, height, tuck = "jump", GRAVITY * (time - lift) ** 2 / 8, self.settings.jump.tuck
                 middles = (pair(foot.ball), pair(target))
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
-        bulge = around(stance, foot, target, yaw, other)
         toes = stance.toes(foot, yaw)
+        turned = other.yaw
+        if kind == "step":
+            after = stance.turned_to((yaw, other.yaw) if side == 0 else (other.yaw, yaw))
+            turned = stance.pivot_yaw(other, after, target, toes)
+        bulge = around(stance, foot, target, yaw, other, turned)
         swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
         foot.move(swing, target, yaw)
-        if kind == "step":
-            stance.pivot(other, lift, time)
+        stance.pivot(other, turned, lift, time)
+
+    def _with_held(self, i: int, foot: Foot, columns: list[int], time: float) -> list[int]:
+        """A heel or toe that taps alone does so beside a panel that the rest of the foot holds: a bracket."""
+        if len(columns) != 1 or self.play.part[i, columns[0]] == Part.WHOLE:
+            return columns
+        here = self.panels[columns[0]]
+        held = [c for c, end in foot.holds.items() if end > time and c != columns[0]]
+        near = [c for c in held if np.linalg.norm(self.panels[c] - here) < NEIGHBOURS]
+        return columns + near[-1:]
 
     def _gallop(self, i: int, time: float, duration: float, side: int) -> None:
         """A step after a wait, and soon after it one of the other foot: one jump whose second foot lands later."""
@@ -70,7 +83,9 @@ class Steps:
         if not (0.0 < gap <= jump.gallop and len(steps) == 1 and following[steps[0]] == 1 - side):
             return
         flight = min(float(np.sqrt(8 * jump.apex_near / GRAVITY)), jump.flight_share * duration)
-        take_off = max(time - flight, *(f.free for f in self.stance.feet))
+        take_off = max(time - flight, *(f.earliest(time) for f in self.stance.feet))
+        if take_off > time - SHORTEST_FLIGHT:
+            return
         self.take_off = {side: (i, take_off), 1 - side: (i + 1, take_off)}
 
     def jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
@@ -102,16 +117,18 @@ class Steps:
         """Where both balls land, and the feet's yaws."""
         stance = self.stance
         body = stance.body_yaw()
-        ends = [self.panels[pressed[s]].mean(axis=0) for s in (0, 1)]
-        goals = []
-        for foot in stance.feet:
-            yaw = stance.limited(foot.yaw + self.settings.jump.yaw_to_normal * (body - foot.yaw), body)
-            other = (ends[1 - foot.side], yaw)
-            columns = pressed[foot.side]
-            goals.append(landing(stance, self.panels, self.play.part[i], columns, foot, yaw, other, cut))
-        return goals
+        columns = [self._with_held(i, f, pressed[f.side], float(self.play.rows.second[i])) for f in stance.feet]
+        yaws = [stance.limited(f.yaw + self.settings.jump.yaw_to_normal * (body - f.yaw), body) for f in stance.feet]
+        goals: dict[int, tuple[Array, float]] = {}
+        for foot in sorted(stance.feet, key=lambda f: -len(columns[f.side])):  # brackets have no choice: they are first
+            side = 1 - foot.side
+            ball, yaw = goals.get(side, (self.panels[columns[side]].mean(axis=0), yaws[side]))
+            other = Pose(ball, stance.toes(stance.feet[side], yaw))
+            mine = columns[foot.side], foot, yaws[foot.side], other, cut
+            goals[foot.side] = landing(stance, self.panels, self.play.part[i], *mine)
+        return [goals[0], goals[1]]
 
     def _take_off(self, time: float, flight: float) -> float:
         feet: tuple[Foot, ...] = self.stance.feet
         latest = (f.latest(time, self.settings.step.let_go) for f in feet)
-        return min(max(time - flight, *(f.free for f in feet)), *latest)
+        return min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)

@@ -52,3 +52,19 @@ def test_loose_limits_change_nothing() -> None:
 def test_limits_that_contradict_are_reported() -> None:
     box = Limits(np.arange(9), np.ones((9, 1)), np.full(9, 1.0), np.full(9, 0.0))
     assert not solve(path_problem(np.zeros(9), 1.0), [box]).found
+
+
+def test_limits_that_give_way_cost_what_they_say() -> None:
+    """x >= 1 and x <= 0 at once: the sum with  e^2 / give  for each excess is least, found by a general solver."""
+    n, give = 9, 0.05
+    target = np.linspace(-0.5, 1.5, n)
+    box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, 1.0), np.full(n, 0.0), give)
+    found = solve(path_problem(target, 0.7), [box])
+    assert found.found
+
+    def whole(x: np.ndarray) -> float:
+        beyond = np.maximum(1.0 - x, 0.0) ** 2 + np.maximum(x, 0.0) ** 2
+        return cost(x, target, 0.7) + float(beyond.sum()) / give
+
+    best = minimize(whole, np.zeros(n), method="BFGS", options={"gtol": 1e-9})
+    np.testing.assert_allclose(found.x, best.x, atol=1e-4)

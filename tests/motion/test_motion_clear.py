@@ -1,0 +1,54 @@
+"""Shoes keep clear of each other: where a foot lands beside the other one, and the way it takes around it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.clear import HALF_SHOE, detour
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.landing import beside, pose
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.stance import Stance
+
+APART = default_settings().step.apart
+
+
+def line_points(middle: np.ndarray, yaw: float) -> np.ndarray:
+    """Points (k, 2) along the middle line of a shoe, by brute force instead of the segments' formula."""
+    return middle + np.linspace(-HALF_SHOE, HALF_SHOE, 60)[:, None] * np.array([np.sin(yaw), np.cos(yaw)])
+
+
+def gap(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a[:, None] - b[None], axis=2).min())
+
+
+@pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
+def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
+    """The right foot lands on the panel on whose middle the left one stands."""
+    stance = Stance(default_settings())
+    panel = np.array([0.14, 0.0])
+    left, right = stance.feet
+    left.ball, left.yaw = stage.ball_of(panel, yaw), yaw
+    ball, turned = beside(stance, panel, right, left.ball, yaw, pose(stance, left))
+    shoes = [
+        line_points(stage.middle_of(b, stance.toes(f, y)), stance.toes(f, y))
+        for f, b, y in ((left, left.ball, left.yaw), (right, ball, turned))
+    ]
+    assert gap(*shoes) >= APART - 1e-3
+    assert np.abs(ball - panel).max() <= stage.HALF_PANEL
+
+
+@pytest.mark.parametrize("turned", [None, 0.6])
+def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
+    start, end, other, yaw = np.array([0.2, -0.25]), np.array([0.15, 0.3]), np.array([0.17, 0.02]), 0.1
+    bulge = detour(start, 0.0, end, 0.2, other, yaw, APART, turned)
+    least = np.inf
+    pivot = stage.ball_of(other, yaw)
+    for share in smooth(np.linspace(0.05, 0.95, 60)):
+        middle = start + share * (end - start) + np.sin(np.pi * share) ** 2 * np.array(bulge)
+        now = yaw if turned is None else yaw + share * (turned - yaw)
+        least = min(least, gap(line_points(middle, share * 0.2), line_points(stage.middle_of(pivot, now), now)))
+    assert least >= APART - 0.006
+    assert np.linalg.norm(bulge) > 0.03  # straight through would hit it
