@@ -125,9 +125,14 @@ def open_film(report: Report, job: FilmJob) -> Opened:
         if old != folder:
             shutil.rmtree(old, ignore_errors=True)
     prepared = prepare(job.request, subject)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_plan(prepared.plan, plan)
-    sound = write_sound(prepared, job.encoding, folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_plan(prepared.plan, plan)
+        sound = write_sound(prepared, job.encoding, folder)
+    except OSError as error:
+        if not any(folder.glob("segment_*")):  # of an earlier run: they are worth something
+            shutil.rmtree(folder, ignore_errors=True)
+        raise FileError(job.output, f"cannot be written: {error.strerror or error}") from error
     parts = tuple(segments(frames, job.encoding, folder))
     missing = tuple(part for part in parts if job.encoding.target == "png" or not part.path.exists())
     return Opened(key, folder, plan, parts, missing, sound, frames, (*subject.warnings, *prepared.warnings))

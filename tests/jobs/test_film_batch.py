@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
 from dancetutor_cli.jobs.film_request import Request
@@ -132,6 +134,22 @@ def test_an_interrupted_film_goes_on_with_its_segments(tmp_path: Path) -> None:
     videos.mkdir()
     run(jobs)
     assert (videos / "long-dance-single-hard.mp4").read_bytes() == resumed
+
+
+def test_a_full_disk_is_one_line_and_leaves_nothing(
+    pack: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(plan: object, path: Path) -> None:
+        path.write_bytes(b"half of a")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(film_work, "write_plan", full)
+    jobs, _ = film_list(batch_request((pack,), tmp_path / "videos"))
+    outcomes = run(jobs)
+    assert {o.status for o in outcomes.values()} == {"failed"}
+    for name, outcome in outcomes.items():
+        assert outcome.error == f"{tmp_path / 'videos' / name}: cannot be written: No space left on device"
+    assert not [p for p in (tmp_path / "videos").rglob("*") if p.is_file()]
 
 
 def test_shards_take_every_film_once(pack: Path, tmp_path: Path) -> None:
