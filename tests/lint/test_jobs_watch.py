@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 
+import pytest
+from click.testing import CliRunner
+
+from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.jobs.watch import changes
 
@@ -102,3 +107,21 @@ def test_a_configuration_names_what_else_is_watched(tmp_path: Path) -> None:
 def test_a_broken_configuration_does_not_end_the_watch(tmp_path: Path) -> None:
     (tmp_path / "dancetutor.yaml").write_text("rules: {nonsense: off}\n")
     assert tmp_path / "dancetutor.yaml" in set(LintRun(Request()).needs(tmp_path / "a.sm"))
+
+
+def test_the_command_lints_again_with_the_new_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = "11111111\n00000000\n00000000\n00000000\n"
+    (tmp_path / "x.sm").write_text(f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-double:C:Hard:9::\n{rows};\n")
+    nothing = Sleeper.__name__.upper
+    settings = tmp_path / "dancetutor.yaml"
+    steps = [
+        *(nothing, write(settings, "rules: {unplayable: nonsense}\n", 2_000), nothing),
+        *(nothing, write(settings, "rules: {unplayable: warning}\n", 3_000), nothing),
+    ]
+    monkeypatch.setattr("dancetutor_cli.jobs.watch.changes", partial(changes, wait=Sleeper(*steps)))
+    words = [str(tmp_path), "--watch", "--select", "unplayable", "--no-cache"]
+    result = CliRunner().invoke(command, words, standalone_mode=False)
+    assert [line for line in result.stdout.splitlines() if line.startswith("1 file")] == [
+        "1 file, 1 chart: 1 error", "1 file, 1 chart: 1 warning",
+    ]  # fmt: skip
+    assert "'nonsense' is no severity" in result.stderr
