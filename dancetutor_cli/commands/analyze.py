@@ -14,6 +14,7 @@ from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, selection_options
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.reports.formats import FORMATS
+from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.lint_run import LintRun, Request
@@ -160,6 +161,12 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     from dancetutor_cli.reports.formats import open_report
     from dancetutor_cli.reports.tally import Tally
 
+    if options["sheet"] is not None:
+        from dancetutor_cli.commands.chart_sheet import check_sheet
+
+        check_sheet(options["sheet"], len(sources))
+    if options["update_baseline"] and options["baseline"] is not None:
+        check_file(options["baseline"])
     first = sources[0][0]
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)

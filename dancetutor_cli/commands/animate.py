@@ -11,7 +11,8 @@ import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, character_option, gait_option, preset_option, selection_options
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import Report
@@ -66,9 +67,11 @@ def command(
     from dancetutor_cli.library import one_song
 
     if output is not None:
-        _check_target(output, SUFFIXES)
+        check_file(output, SUFFIXES)
     if plot is not None:
-        _check_target(plot, (".svg", ".png"))
+        check_file(plot, (".svg", ".png"))
+    if report_to not in (None, _TABLE):
+        check_file(Path(report_to))
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
@@ -76,7 +79,7 @@ def command(
     tell_of_compiling(preset)
     asked = ask(task)
     target = output or Path(default_name(asked.song, asked.chart))
-    _check_target(target, SUFFIXES)
+    check_file(target, SUFFIXES)
     _bake_and_write(asked, task, target, dances, report_to, plot)
 
 
@@ -127,16 +130,6 @@ def write_motion(path: Path, motion: Motion, character: Character) -> None:
         from dancetutor_cli.formats.glb import write_glb
 
         write_glb(path, character, motion)
-
-
-def _check_target(path: Path, suffixes: tuple[str, ...]) -> None:
-    """Refuse before the work what could not be written after it."""
-    if path.suffix.lower() not in suffixes:
-        raise UsageError(f"{path}: the name must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}")
-    if path.is_dir():
-        raise FileError(path, "is a folder; give a file name")
-    if not path.parent.is_dir():
-        raise FileError(path, "its folder does not exist")
 
 
 def _report(report: Report, target: str | None, plot: Path | None) -> None:

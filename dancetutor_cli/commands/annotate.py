@@ -13,6 +13,7 @@ import click
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, selection_options
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.targets import check_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.annotate import Item, Order, Outcome
@@ -114,8 +115,7 @@ def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) ->
 
     if output is None:
         return [Item(path, path) for path in files]
-    if output.exists() and not output.is_dir():
-        raise UsageError(f"{output}: -o wants a folder")
+    check_folder(output)
     items: dict[Path, Item] = {}
     for path in files:
         folder = next((p for p in paths if p != path and path.is_relative_to(p)), path.parent)

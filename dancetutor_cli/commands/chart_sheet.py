@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.files import write_atomic
-from dancetutor_cli.jobs.analyze import Task
-from dancetutor_cli.jobs.sheet import Drawable, drawable_charts
+from dancetutor_cli.targets import check_file
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.analyze import Task
+    from dancetutor_cli.jobs.sheet import Drawable
 
 SUFFIXES = (".html", ".htm", ".svg")
 
 
+def check_sheet(path: Path, files: int) -> None:
+    """Refuse before the work what could not be written after it. files : of how many files charts are asked for."""
+    check_file(path, SUFFIXES)
+    if files != 1:
+        raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
+
+
 def write_sheet(path: Path, tasks: list[Task]) -> str:
     """Draw the charts of one file, and return a line about it. An .svg holds one chart, a page any number of them."""
+    from dancetutor_cli.jobs.sheet import drawable_charts
     from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
 
-    if path.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"{path}: a sheet is .html or .svg")
-    if len(tasks) != 1:
-        raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
     charts = list(drawable_charts(tasks[0]))
     if not charts:
         raise UsageError(f"{tasks[0].path}: no chart with notes is selected, so there is nothing to draw")

@@ -13,7 +13,8 @@ import click
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import preset_option, selection_options
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.targets import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -103,14 +104,22 @@ def _render_one(
     from dancetutor_cli.video.encoder import target_of
 
     kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
+    for file in (output, options["poster"]):
+        if file is not None:
+            check_file(file)
+    if folder is not None:
+        check_folder(folder)
     request = film_request(path, options, kind)
     if not quiet:
         tell_of_compiling(request.preset)
     subject = look_up(request)
     target = folder or output or Path(default_name(subject.song, subject.chart))
-    _check_target(target, folder is not None)
+    if folder is None:
+        check_file(target)
     if not options["poses"]:
         _allow_long(subject, path, yes)
+    if folder is not None:
+        make_folder(target)
     _make(request, subject, target, kind, quiet, options)
 
 
@@ -119,16 +128,6 @@ def default_name(song: Song, chart: Chart) -> str:
     from dancetutor_cli.jobs.film_list import plain_name
 
     return f"{plain_name(f'{song.title or song.path.stem}-{chart.difficulty}') or 'film'}.mp4"
-
-
-def _check_target(target: Path, folder: bool) -> None:
-    """Refuse before the work what could not be written after it."""
-    if not target.parent.is_dir():
-        raise FileError(target, "its folder does not exist")
-    if folder and target.exists() and not target.is_dir():
-        raise FileError(target, "is a file; --frames needs a folder")
-    if not folder and target.is_dir():
-        raise FileError(target, "is a folder; give a file name, or --frames for pictures")
 
 
 def _allow_long(subject: Subject, file: Path, yes: bool) -> None:

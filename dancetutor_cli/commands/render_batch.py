@@ -13,6 +13,7 @@ import click
 
 from dancetutor_cli.commands.film_options import film_request
 from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.targets import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import Outcome
@@ -34,10 +35,13 @@ def render_batch(
         path, output = path.absolute(), (output or Path("videos")).absolute()
         frames = None if frames is None else frames.absolute()
     batch = _batch(path, output, frames, longest, options)
-    films, unreadable = film_list(batch)
+    check_folder(batch.folder)
+    if options["results"] is not None and str(options["results"]) != "-":
+        check_file(options["results"])
+    films, unreadable, without = film_list(batch)
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches, so there is nothing to render")
-    _make_folder(batch.folder)
+    make_folder(batch.folder)
     outcomes: list[Outcome] = []
     jobs = options["jobs"] or default_jobs()
     with ExitStack() as stack:
@@ -52,7 +56,7 @@ def render_batch(
             outcomes.append(outcome)
             _write(results, outcome.as_json())
             _tell(outcome, progress, quiet, len(outcomes), len(films))
-    _sum_up(outcomes, unreadable, quiet)
+    _sum_up(outcomes, unreadable, without, quiet)
 
 
 def _batch(
@@ -88,13 +92,6 @@ def _workers(scheduler: str | None, jobs: int, progress: FilmProgress) -> Worker
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
 
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(folder, f"cannot be used as a folder: {error.strerror}") from error
-
-
 def _open_results(path: Path | None, stack: ExitStack) -> TextIO | None:
     if path is None:
         return None
@@ -123,13 +120,15 @@ def _tell(outcome: Outcome, progress: FilmProgress, quiet: bool, number: int, co
         progress.say(safe(f"  warning: {warning}"))
 
 
-def _sum_up(outcomes: list[Outcome], unreadable: list[Unreadable], quiet: bool) -> None:
-    """The table of what failed, and the exit status."""
+def _sum_up(outcomes: list[Outcome], unreadable: list[Unreadable], without: list[Path], quiet: bool) -> None:
+    """The sum, the table of what failed, and the exit status."""
     counts = Counter(outcome.status for outcome in outcomes)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]
     if not quiet:
         parts = [f"{counts[name]} {name}" for name in ("done", "skipped", "failed") if counts[name]]
         parts += [f"{len(unreadable)} unreadable"] if unreadable else []
+        if without:
+            parts.append(f"{len(without)} {'songs have' if len(without) > 1 else 'song has'} no such chart")
         click.echo(", ".join(parts), err=True)
     if failed or unreadable:
         from dancetutor_cli.reports.failures import failures_table

@@ -7,7 +7,7 @@ import string
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.jobs.film_request import Request
@@ -47,6 +47,14 @@ class Unreadable:
     error: str
 
 
+class FilmList(NamedTuple):
+    """The films of a batch, the files that could not be read, and those that have no chart that is wanted."""
+
+    films: list[FilmJob]
+    unreadable: list[Unreadable]
+    without: list[Path]
+
+
 def parse_meters(text: str) -> tuple[int, int]:
     """ "8", "8-12", "8-" or "-12"; UsageError for anything else."""
     match = re.fullmatch(r"\s*(\d*)\s*(-?)\s*(\d*)\s*", text)
@@ -79,11 +87,12 @@ def check_name(template: str) -> None:
         raise UsageError(f"name '{template}': the films of a batch lie in one folder; leave slashes out")
 
 
-def film_list(batch: BatchRequest) -> tuple[list[FilmJob], list[Unreadable]]:
-    """The films of the batch (of this shard), sorted by path, and the files that could not be read."""
+def film_list(batch: BatchRequest) -> FilmList:
+    """The films of the batch (of this shard), sorted by path. Of what is no film only the first shard tells."""
     check_name(batch.name)
     jobs: list[FilmJob] = []
     bad: list[Unreadable] = []
+    without: list[Path] = []
     taken: set[str] = set()
     for path in _files(batch.paths):
         try:
@@ -93,9 +102,11 @@ def film_list(batch: BatchRequest) -> tuple[list[FilmJob], list[Unreadable]]:
         except (DancetutorError, OSError) as error:
             bad.append(Unreadable(path, str(error)))
             continue
-        jobs += (_job(batch, song, chart, taken) for chart in _charts(batch, song))
+        found = [_job(batch, song, chart, taken) for chart in _charts(batch, song)]
+        jobs += found
+        without += [] if found else [path]
     number, count = batch.shard
-    return jobs[number - 1 :: count], bad if number == 1 else []
+    return FilmList(jobs[number - 1 :: count], *((bad, without) if number == 1 else ([], [])))
 
 
 def _files(paths: Sequence[Path]) -> Iterator[Path]:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
 EVERY = 30.0  # seconds between lines where there is no terminal
+ENOUGH = 0.03  # share of a film, and at least a second of it, whose drawing tells the speed
 
 
 class FilmProgress:
@@ -21,6 +22,7 @@ class FilmProgress:
         self.terminal = sys.stderr.isatty() and not quiet
         self.frames = self.fps = self.done = 0
         self.began = self.told = 0.0
+        self.early = 0  # frames that were drawn before the clock of the speed began
         self.bar: Progress | None = None
         self.task: TaskID | None = None
 
@@ -71,14 +73,24 @@ class FilmProgress:
 
     def advance(self, frames: int) -> None:
         """That many more frames are drawn."""
-        self.done += frames
         now = time.monotonic()
-        speed = self.done / self.fps / max(1e-6, now - self.began) if self.fps else 0.0
+        if not self.done:  # until now workers have started and compiled, which tells nothing about the rest
+            self.began, self.early = now, frames
+        self.done += frames
+        speed = self._speed(now)
         if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, advance=frames, speed=f"{speed:.2f}x")
+            self.bar.update(self.task, advance=frames, speed="" if speed is None else f"{speed:.2f}x")
         elif not self.quiet and self.fps and self.done and now - self.told >= EVERY:
             self.told = now
-            left = (self.frames - self.done) / self.fps / max(speed, 1e-6)
-            seconds = f"{self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s"
-            sys.stderr.write(f"{self.name}: {seconds} done, {speed:.2f}x, {left:.0f} s left\n")
+            line = f"{self.name}: {self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s done"
+            if speed is not None:
+                line += f", {speed:.2f}x, {(self.frames - self.done) / self.fps / speed:.0f} s left"
+            sys.stderr.write(f"{line}\n")
             sys.stderr.flush()
+
+    def _speed(self, now: float) -> float | None:
+        """Seconds of film per second; None until enough is drawn to tell."""
+        drawn = self.done - self.early
+        if not self.fps or drawn < max(self.fps, ENOUGH * self.frames) or now <= self.began:
+            return None
+        return drawn / self.fps / (now - self.began)

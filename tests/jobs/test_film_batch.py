@@ -59,7 +59,7 @@ def pack(tmp_path: Path) -> Path:
 
 def test_every_chart_becomes_a_film_once(pack: Path, tmp_path: Path) -> None:
     videos = tmp_path / "videos"
-    jobs, bad = film_list(batch_request((pack,), videos))
+    jobs, bad, _ = film_list(batch_request((pack,), videos))
     assert not bad
     outcomes = run(jobs)
     names = ["one-dance-single-easy.mp4", "one-dance-single-hard.mp4", "two-dance-single-hard.mp4"]
@@ -73,7 +73,7 @@ def test_every_chart_becomes_a_film_once(pack: Path, tmp_path: Path) -> None:
 
 def test_a_changed_chart_or_wish_is_made_again(pack: Path, tmp_path: Path) -> None:
     batch = batch_request((pack / "two",), tmp_path / "videos")
-    jobs, _ = film_list(batch)
+    jobs, _, _ = film_list(batch)
     run(jobs)
     song = pack / "two" / "two.sm"
     song.write_text(song.read_text().replace("0=120", "0=121"))
@@ -89,7 +89,7 @@ def test_one_bad_chart_does_not_stop_the_rest(pack: Path, tmp_path: Path) -> Non
     (pack / "bad" / "bad.sm").write_text("nothing")
     sly = write_song(pack / "sly", [("Hard", 9)])
     sly.write_text(sly.read_text().replace("#MUSIC:;", "#MUSIC:../../x.ogg;"))
-    jobs, bad = film_list(batch_request((pack,), tmp_path / "videos"))
+    jobs, bad, _ = film_list(batch_request((pack,), tmp_path / "videos"))
     assert [b.path.name for b in bad] == ["bad.sm"]
     outcomes = run(jobs)
     assert outcomes["sly-dance-single-hard.mp4"].status == "failed"
@@ -117,7 +117,7 @@ def test_an_interrupted_film_goes_on_with_its_segments(tmp_path: Path) -> None:
     write_song(tmp_path / "pack" / "long", [("Hard", 9)], NOTES + f",\n{NOTES}" * 3)
     videos = tmp_path / "videos"
     videos.mkdir()
-    jobs, _ = film_list(batch_request((tmp_path / "pack",), videos))
+    jobs, _, _ = film_list(batch_request((tmp_path / "pack",), videos))
     with pytest.raises(KeyboardInterrupt):
         run(jobs, Stopping(2))
     (work,) = (p for p in (videos / STATE).iterdir() if p.is_dir())
@@ -144,7 +144,7 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(film_work, "write_plan", full)
-    jobs, _ = film_list(batch_request((pack,), tmp_path / "videos"))
+    jobs, _, _ = film_list(batch_request((pack,), tmp_path / "videos"))
     outcomes = run(jobs)
     assert {o.status for o in outcomes.values()} == {"failed"}
     for name, outcome in outcomes.items():

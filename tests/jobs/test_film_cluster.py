@@ -31,10 +31,10 @@ def test_a_killed_worker_loses_nothing(tmp_path: Path) -> None:
     films: dict[str, dict[str, bytes]] = {}
     for place in ("here", "there"):
         (tmp_path / place).mkdir()
-    jobs, _ = film_list(batch_request((tmp_path / "pack",), tmp_path / "here"))
+    jobs, _, _ = film_list(batch_request((tmp_path / "pack",), tmp_path / "here"))
     assert all(o.status == "done" for o in Batch(jobs, SerialWorkers(lambda key, n: None)).run())
 
-    jobs, _ = film_list(batch_request((tmp_path / "pack",), tmp_path / "there"))
+    jobs, _, _ = film_list(batch_request((tmp_path / "pack",), tmp_path / "there"))
     drawn: list[Any] = []
     with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         victims = [worker.process.process.pid for worker in list(cluster.workers.values())[:1]]

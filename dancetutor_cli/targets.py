@@ -1,0 +1,40 @@
+"""Where results go, asked before the work: a file wants its folder to be there, a folder is made with those above."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from dancetutor_cli.errors import FileError, UsageError
+
+
+def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
+    """Raise what in the end would keep a file from being written here; nothing is made.
+
+    suffixes : how its name may end, in lower case; none: anyhow
+    """
+    if suffixes and path.suffix.lower() not in suffixes:
+        known = f"{', '.join(suffixes[:-1])} or {suffixes[-1]}" if len(suffixes) > 1 else suffixes[0]
+        raise UsageError(f"{path}: the name must end in {known}")
+    if path.is_dir():
+        raise FileError(path, "is a folder; give a file name")
+    if not path.parent.is_dir():
+        raise FileError(path, f"its folder '{path.parent}' does not exist; make it first")
+
+
+def check_folder(path: Path) -> None:
+    """Raise if no folder can be here, because a file is in its place or above it; nothing is made."""
+    for one in (path, *path.parents):
+        if one.exists():
+            if not one.is_dir():
+                raise FileError(path, "is a file; give a folder" if one == path else f"'{one}' is a file, not a folder")
+            return
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder and those above it, as far as they are not there."""
+    check_folder(path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(path, f"cannot be used as a folder: {error.strerror}") from error

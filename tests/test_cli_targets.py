@@ -1,0 +1,113 @@
+"""Where results go, the same for every command: asked before the work, folders are made, files want theirs."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.resources import charts_path
+from dancetutor_cli.targets import check_file, check_folder, make_folder
+
+FILM = ("--size", "64x64", "--layout", "highway", "--fps", "10", "--jobs", "1", "--mute", "--section", "4:5")
+ONE = ("--index", "3")
+
+
+@pytest.fixture
+def demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "work" / "song"
+    folder.mkdir(parents=True)
+    shutil.copy(charts_path() / "two_left_feet" / "two_left_feet.ssc", folder / "song.ssc")
+    monkeypatch.chdir(tmp_path / "work")
+    return Path("song/song.ssc")
+
+
+def run(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as stop:
+        main([str(a) for a in arguments])
+    assert isinstance(stop.value.code, int)
+    return stop.value.code
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "name"),
+    [
+        ("animate", "-o", "none/dance.glb"),
+        ("animate", "--plot", "none/dance.svg"),
+        ("animate", "--report", "none/report.json"),
+        ("render", "-o", "none/film.mp4"),
+        ("render", "--poster", "none/film.png"),
+        ("analyze", "--sheet", "none/sheet.html"),
+        ("analyze", "--update-baseline --baseline", "none/known.json"),
+    ],
+)
+def test_a_file_wants_its_folder_before_the_work(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str, name: str
+) -> None:
+    assert run(command, demo, *ONE, *option.split(), name) == 2
+    said = capsys.readouterr()
+    assert said.out == "", "the work was done, and then there was no place for it"
+    lines = [line for line in said.err.splitlines() if line.startswith("dancetutor:")]
+    assert lines == [f"dancetutor: {Path(name)}: its folder 'none' does not exist; make it first"]
+    assert sorted(p.name for p in Path().rglob("*")) == ["song", "song.ssc"]
+
+
+def test_a_sheet_of_another_kind_is_refused_before_the_work(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("analyze", demo, "--sheet", "sheet.pdf") == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == "dancetutor: sheet.pdf: the name must end in .html, .htm or .svg\n"
+    shutil.copy(demo, demo.with_name("other.ssc"))
+    assert run("analyze", demo.parent, "--sheet", "sheet.html") == 2
+    assert capsys.readouterr().out == ""
+
+
+def test_folders_are_made_with_those_above(demo: Path) -> None:
+    assert run("annotate", demo, *ONE, "-o", "a/b/marked") == 0
+    assert b"{dt1 " in Path("a/b/marked/song.ssc").read_bytes()
+    assert run("render", demo, *ONE, *FILM, "--frames", "a/c/frames") == 0
+    assert len(list(Path("a/c/frames").glob("*.png"))) == 10
+    assert run("render", demo, *ONE, *FILM, "--poses", "a/d/poses") == 0
+    assert Path("a/d/poses/poses.json").is_file()
+    assert run("render", demo.parent, *ONE, *FILM, "-o", "a/e/videos") == 0
+    assert len(list(Path("a/e/videos").glob("*.mp4"))) == 1
+
+
+@pytest.mark.parametrize(
+    ("command", "option"), [("annotate", "-o"), ("render", "--frames"), ("render", "--poses"), ("render", "-o")]
+)
+def test_a_file_in_the_place_of_a_folder_is_told(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str
+) -> None:
+    Path("taken").write_text("mine")
+    path = demo.parent if option == "-o" else demo
+    assert run(command, path, *ONE, option, "taken/below") == 2
+    assert "'taken' is a file, not a folder" in capsys.readouterr().err
+    assert Path("taken").read_text() == "mine"
+
+
+def test_the_rule_itself(tmp_path: Path) -> None:
+    check_file(tmp_path / "new.html", (".html",))
+    check_folder(tmp_path / "a" / "b")
+    assert list(tmp_path.iterdir()) == []
+    make_folder(tmp_path / "a" / "b")
+    make_folder(tmp_path / "a" / "b")
+    with pytest.raises(FileError, match="is a folder; give a file name"):
+        check_file(tmp_path / "a")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="is a file; give a folder"):
+        make_folder(tmp_path / "file")
+
+
+def test_a_batch_says_which_songs_have_no_such_chart(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = Path("song2/song2.ssc")
+    other.parent.mkdir()
+    other.write_bytes(demo.read_bytes().replace(b"#DIFFICULTY:Hard;", b"#DIFFICULTY:Edit;"))
+    options = ("--difficulty", "hard", "--steps-type", "dance-single", *FILM, "-o", "videos")
+    assert run("render", Path(), *options) == 0
+    assert capsys.readouterr().err.splitlines()[-1] == "1 done, 1 song has no such chart"
+    assert run("render", Path(), *options, "--shard", "2/2") in (0, 2)
+    assert "no such chart" not in capsys.readouterr().err
