@@ -159,11 +159,6 @@ def bake_piece(piece: Piece) -> Keys:
         if len(middles):
             keys = refined(skeleton, keys, (middles, *_posed(plan, body, middles, skeleton, settings)))
     at, rotations, root = keys
-    look(skeleton, rotations, root, body, at, settings)
-    ends = (foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop))
-    free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
-    free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
-    add_layers(skeleton, at, rotations, stepping(ends, settings), free, settings.layers)
     add_hair(skeleton, at, rotations, root, settings.hair)
     return keys
 
@@ -212,14 +207,21 @@ def _targets(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings
 
 
 def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
-    """Solve the body at times `at` (f,), and move it so that its centre of mass is where it shall be."""
+    """Solve the body at times `at` (f,), and move it so that its centre of mass, head and all, is where it shall be."""
     targets = _targets(plan, body, at, skeleton, settings)
     rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
-    for _ in range(CORRECTIONS):
-        targets = moved(targets, goal - _mass(skeleton, rotations, root))
-        rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
+    drop = settings.step.heel_drop
+    side = stepping((foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop)), settings)
+    free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
+    free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
+    for turn in range(CORRECTIONS + 1):
+        look(skeleton, rotations, root, body, at, settings)
+        add_layers(skeleton, at, rotations, side, free, settings.layers)
+        if turn < CORRECTIONS:
+            targets = moved(targets, goal - _mass(skeleton, rotations, root))
+            rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
     return rotations, root
 
 

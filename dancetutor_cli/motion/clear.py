@@ -10,8 +10,9 @@ from dancetutor_cli.motion.stage import BALL_AHEAD
 
 Array = NDArray[np.float64]
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
-_ASIDE = np.arange(-9, 10) * 0.03  # metres
-_ASIDE = _ASIDE[np.argsort(np.abs(_ASIDE), kind="stable")]
+_ASIDE, _AHEAD = np.meshgrid(np.arange(-9, 10) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
+_WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
+_WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
 _SHARE = np.linspace(0.05, 0.95, 13)
 
 
@@ -31,20 +32,22 @@ def detour(
     length = float(np.linalg.norm(path))
     if length < 0.03:
         return 0.0, 0.0
-    aside = np.array([path[1], -path[0]]) / length
+    axes = np.array([[path[1], -path[0]], path]) / length
     s = smooth(_SHARE)
-    middle = start + s[:, None] * path
-    bend = np.sin(np.pi * s) ** 2
     along = HALF_SHOE * headings(start_yaw + s * (end_yaw - start_yaw))
     ahead = headings(other_yaw + s * ((other_yaw if turned is None else turned) - other_yaw))
     still = other + BALL_AHEAD * (headings(np.array(other_yaw)) - ahead)
-    places = middle + (_ASIDE[:, None] * bend)[..., None] * aside
+    places = start + s[:, None] * path + bend(s)[:, None] * (_WAYS @ axes)[:, None]
     gaps = segment_gaps(places - along, places + along, still - HALF_SHOE * ahead, still + HALF_SHOE * ahead)
     # at its ends the path is given: no detour can do better there than the worse of both ends
     least = gaps.min(axis=1)
-    enough = np.flatnonzero(least >= min(apart, least.max()) - 1e-6)
-    chosen = enough[np.argmin(np.abs(_ASIDE[enough]))]
-    return float(aside[0] * _ASIDE[chosen]), float(aside[1] * _ASIDE[chosen])
+    chosen = _WAYS[np.argmax(least >= min(apart, least.max()) - 1e-6)] @ axes
+    return float(chosen[0]), float(chosen[1])
+
+
+def bend(share: Array) -> Array:
+    """How much of a detour there is (...) at each share (...) of the way: it starts at once, for shoes are long."""
+    return np.asarray(np.sin(np.pi * share))
 
 
 def headings(yaw: Array) -> Array:

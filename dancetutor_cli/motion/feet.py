@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.clear import bend
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.track import FootTrack
 
@@ -86,7 +87,7 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> A
     free = np.clip((s - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
     e = ((1.0 - np.cos(np.pi * free)) / 2)[:, None]
     straight = place[i] + e * (place[i + 1] - place[i])
-    bulge = np.array([w.bulge for w in track.swings])[i] * (np.sin(np.pi * e) ** 2)
+    bulge = np.array([w.bulge for w in track.swings])[i] * bend(e)
     turn = np.array([w.turn for w in track.swings])
     share = np.where(np.array([w.kind == "jump" for w in track.swings]), TURNING, 0.0)
     m0 = np.array([w.middle0 for w in track.swings])

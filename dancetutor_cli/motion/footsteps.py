@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour, shoes_apart
+from dancetutor_cli.motion.clear import bend, detour, shoes_apart
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.gait import blended, gaits_of
 from dancetutor_cli.motion.model import Ground
@@ -170,7 +170,7 @@ def _room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float]
     standing = stage.middle_of(*other)
     for s in np.linspace(0.1, 1.0, 10):
         share = smooth(s)
-        ball = start[0] + share * (step.ball - start[0]) + np.sin(np.pi * share) ** 2 * np.array(bulge)
+        ball = start[0] + share * (step.ball - start[0]) + bend(share) * np.array(bulge)
         yaw = start[1] + float(share) * (step.yaw - start[1])
         least = min(least, shoes_apart(stage.middle_of(ball, yaw), yaw, standing, other[1]))
     return float(least)

@@ -37,6 +37,8 @@ class StepSettings:
     ankle_limit: float
     crossover_turn: float
     apart: float
+    leap: float
+    leap_stance: float
     pivot_from: float
     pivot_to: float
     pivot_pitch: float

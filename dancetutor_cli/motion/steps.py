@@ -52,6 +52,8 @@ class Steps:
             if other.side in self.take_off and self.take_off[other.side][0] > i:  # the first of the two
                 kind, height, tuck = "jump", GRAVITY * (time - lift) ** 2 / 8, self.settings.jump.tuck
                 middles = (pair(foot.ball), pair(target))
+        if kind == "step" and self._leap(time, duration, foot, (target, yaw), columns):
+            return
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
         toes = stance.toes(foot, yaw)
         turned = other.yaw
@@ -93,19 +95,46 @@ class Steps:
         jump, step, stance = self.settings.jump, self.settings.step, self.stance
         for foot in stance.feet:
             land_early(foot, time)
-        cut = float(reduction(duration, step.fast, step.longest))
-        goals = self._jump_goals(i, pressed, cut)
-        old = [f.ball for f in stance.feet]
-        far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
+        goals = self._jump_goals(i, pressed, float(reduction(duration, step.fast, step.longest)))
+        far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, stance.feet, strict=True))
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
             apex = jump.apex_hands
         take_off = self._take_off(time, min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration))
+        self._fly(take_off, time, duration, goals, [pressed[0], pressed[1]], turned)
+
+    def _leap(self, time: float, duration: float, foot: Foot, goal: tuple[Array, float], columns: list[int]) -> bool:
+        """A step too far for a straddle: both feet leave the ground, and the other one lands beside. False if none."""
+        step, jump, stance = self.settings.step, self.settings.jump, self.stance
+        other = stance.feet[1 - foot.side]
+        away = goal[0] - other.ball
+        far = float(np.linalg.norm(away))
+        if far <= step.leap:
+            return False
+        flight = min(float(np.sqrt(8 * jump.apex_far / GRAVITY)), jump.flight_share * duration)
+        take_off = self._take_off(time, flight)
+        if time - take_off < SHORTEST_FLIGHT or max(f.free for f in stance.feet) > take_off:
+            return False
+        yaw = stance.limited(other.yaw + step.yaw_to_normal * (stance.body_yaw() - other.yaw), stance.body_yaw())
+        goals = [goal, goal]
+        goals[other.side] = (goal[0] - step.leap_stance * away / far, yaw)
+        self._fly(take_off, time, duration, goals, [columns, columns], 0.0)
+        return True
+
+    def _fly(
+        self, take_off: float, time: float, duration: float, goals: list[tuple[Array, float]],
+        columns: list[list[int]], turned: float,
+    ) -> None:  # fmt: skip
+        """Both feet in the air from `take_off` to `time`; goals : ball and yaw of each."""
+        jump, step, stance = self.settings.jump, self.settings.step, self.stance
+        cut = float(reduction(duration, step.fast, step.longest))
+        old = [f.ball for f in stance.feet]
+        far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
         height = GRAVITY * (time - take_off) ** 2 / 8
         tuck = jump.tuck * (1.0 + 1.5 * min(far / jump.far, 1.5) ** 2)  # legs that reach far must not lock
         middles = pair((old[0] + old[1]) / 2), pair((goals[0][0] + goals[1][0]) / 2)
         for foot, (target, yaw) in zip(stance.feet, goals, strict=True):
-            pitches = heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, pressed[foot.side])
+            pitches = heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, columns[foot.side])
             toes = stance.toes(foot, yaw)
             swing = Swing(
                 take_off, time, pair(target), toes, height, pitches, (0.0, 0.0), "jump", tuck,

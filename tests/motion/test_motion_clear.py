@@ -47,7 +47,7 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     least = np.inf
     pivot = stage.ball_of(other, yaw)
     for share in smooth(np.linspace(0.05, 0.95, 60)):
-        middle = start + share * (end - start) + np.sin(np.pi * share) ** 2 * np.array(bulge)
+        middle = start + share * (end - start) + np.sin(np.pi * share) * np.array(bulge)
         now = yaw if turned is None else yaw + share * (turned - yaw)
         least = min(least, gap(line_points(middle, share * 0.2), line_points(stage.middle_of(pivot, now), now)))
     assert least >= APART - 0.006

@@ -35,17 +35,18 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
     contacts, errors = contact_figures(motion)
     body = body_of(motion)
     ground, notes = ground_figures(motion, body, mines)
+    smoothness, jump_notes = smoothness_figures(body, motion.skeleton, motion.contacts)
     shape, shape_notes = shape_figures(body, motion.skeleton)
     figures = (
         *contacts,
         *bar_figures(motion),
         *ground,
         *flight_figures(body),
-        *smoothness_figures(body, motion.skeleton),
+        *smoothness,
         *balance_figures(body, motion.bar is not None),
         *shape,
     )
-    return Report(figures, errors, (*notes, *shape_notes), _curves(motion, body, errors))
+    return Report(figures, errors, (*notes, *jump_notes, *shape_notes), _curves(motion, body, errors))
 
 
 def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str, Curve]:
