@@ -208,17 +208,21 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
         pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
         store.fill_pairs(t.pair, pair)
         return t._replace(pair=pair)
+    if wanted == store.MORE_TERMS:
+        table = np.full(2 * len(t.terms_hash), -1, dtype=np.int32)
+        store.fill_terms(t.terms, t.counts[store.TERMS_KNOWN], table)
+        return t._replace(terms=_longer(t.terms), terms_hash=table)
     if wanted == store.MORE_FACTS:
         return t._replace(timed_key=_longer(t.timed_key))
     if wanted == store.MORE_TIMED:
         cost = np.full((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), store.UNKNOWN, dtype=np.int32)
         cost[:, : t.timed_cost.shape[1]] = t.timed_cost
         return t._replace(timed_cost=cost)
-    return t._replace(move=_longer(t.move), wide=_longer(t.wide), terms=_longer(t.terms))
+    return t._replace(move=_longer(t.move), wide=_longer(t.wide))
 
 
 def _empty_tables(terms: int) -> Tables:
-    states, patterns, many, pairs = 1 << 14, 1 << 12, 1 << 16, 1 << 15
+    states, patterns, many, pairs, costs = 1 << 14, 1 << 12, 1 << 16, 1 << 15, 1 << 13
     whole, small = np.int64, np.int32
     return Tables(
         counts=np.zeros(8, dtype=whole),
@@ -229,7 +233,8 @@ def _empty_tables(terms: int) -> Tables:
         pair=np.full((pairs, 2), -1, dtype=whole),
         move=np.zeros((many, 4), dtype=small),
         wide=np.zeros((many, 2), dtype=whole),
-        terms=np.zeros((many, terms), dtype=small),
+        terms=np.zeros((costs, terms), dtype=small),
+        terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
         timed_cost=np.full((store.MOST_MS + 1, 64), store.UNKNOWN, dtype=small),
     )

@@ -29,6 +29,7 @@ from dancetutor_cli.play.store import (
     MORE_MOVES,
     MORE_PAIRS,
     MORE_STATES,
+    MORE_TERMS,
     MOVE,
     MOVES,
     NEXT,
@@ -36,8 +37,11 @@ from dancetutor_cli.play.store import (
     PART_SHIFT,
     SOURCE,
     STATES,
+    TERMS_KNOWN,
+    TERMS_SHIFT,
     number_of_facts,
     number_of_state,
+    number_of_terms,
     slot_of,
 )  # fmt: skip
 from dancetutor_cli.play.tables import MOST_MOVES
@@ -55,18 +59,20 @@ def source_stamp() -> str:
 @njit
 def _keep(state, count, out, t):  # type: ignore[no-untyped-def]
     """Number and keep the moves of a state in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
-    counts, moves, wide, terms, known = t.counts, t.move, t.wide, t.terms, t.timed_key
-    keys, numbers, given, given_terms = t.state_key, t.state_hash, out.wide, out.terms
+    counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
+    keys, numbers, terms, terms_hash = t.state_key, t.state_hash, t.terms, t.terms_hash
+    given, given_terms = out.wide, out.terms
     first = counts[MOVES]
     for i in range(count):
         move = first + i
         moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
-        moves[move, FACTS] = number_of_facts(given[i, _TIMED], known, counts)
+        moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, counts)
         moves[move, SOURCE] = state
-        wide[move, ACTION], wide[move, EVENTS] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT, given[i, _EVENTS]
+        wide[move, ACTION] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT
+        number = number_of_terms(given_terms[i], terms, terms_hash, counts)
+        wide[move, EVENTS] = given[i, _EVENTS] | number << TERMS_SHIFT
         cost = 0
-        for term in range(terms.shape[1]):
-            terms[move, term] = given_terms[i, term]
+        for term in range(given_terms.shape[1]):
             cost += given_terms[i, term]
         moves[move, COST] = cost
     counts[MOVES] += count
@@ -85,6 +91,8 @@ def _room(t):  # type: ignore[no-untyped-def]
         return MORE_PAIRS
     if counts[FACTS_KNOWN] + MOST_MOVES > len(t.timed_key):
         return MORE_FACTS
+    if counts[TERMS_KNOWN] + MOST_MOVES > len(t.terms):
+        return MORE_TERMS
     return DONE
 
 

@@ -22,6 +22,7 @@ from dancetutor_cli.play.store import (
     BASE,
     COST,
     DONE,
+    EVENTS,
     FACTS,
     FACTS_KNOWN,
     FIRST,
@@ -37,6 +38,7 @@ from dancetutor_cli.play.store import (
     PATTERNS,
     REACHED,
     SOURCE,
+    TERMS_SHIFT,
     UNEXPLORED,
     UNKNOWN,
     number_of_state,
@@ -215,11 +217,12 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term."""
-    moves, terms, timed_key, elapsed = t.move, t.terms, t.timed_key, rows.elapsed
+    moves, wide, terms, timed_key, elapsed = t.move, t.wide, t.terms, t.timed_key, rows.elapsed
     weights, times = rules.weights, rules.times
     for r in range(len(path)):
+        number = wide[path[r], EVENTS] >> TERMS_SHIFT
         for term in range(cost.shape[1]):
-            cost[r, term] = terms[path[r], term]
+            cost[r, term] = terms[number, term]
         if moves[path[r], FACTS]:
             charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], weights, times, cost[r])
 
@@ -283,7 +286,7 @@ def _compile(stamp: str) -> Any:
         if t.counts[MOVES] == 0:  # move 0 leads to the start of every play
             key = start_thesis(g) if model == 0 else start_itg(rules.home)
             t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
-            t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1
+            t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
         if start_row == 0:
             if not _number_rows(rows, model > 0, t):
                 return 0, MORE_PATTERNS

@@ -14,7 +14,7 @@ from dancetutor_cli.play.moves import name_moves
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
 from dancetutor_cli.play.state import PLACE_BITS
-from dancetutor_cli.play.store import EVENTS, NEXT, Found
+from dancetutor_cli.play.store import EVENT_BITS, EVENTS, NEXT, Found
 
 _PLACE = (1 << PLACE_BITS) - 1
 
@@ -64,7 +64,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
     """The play that a way through the rows is."""
     t, g = engine.tables, engine.geometry
-    moves = name_moves(rows, found.limb, engine.pad, t.wide[found.move, EVENTS])
+    moves = name_moves(rows, found.limb, engine.pad, t.wide[found.move, EVENTS] & EVENT_BITS)
     state = t.state_key[t.move[found.move, NEXT]].astype(np.int32)
     left, right = state & _PLACE, state >> PLACE_BITS & _PLACE
     facing = g.angle[left, right]

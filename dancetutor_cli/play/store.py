@@ -8,16 +8,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN = range(5)  # places in `counts`
+STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN = range(6)  # places in `counts`
 NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`
 ACTION, EVENTS = range(2)  # columns of `Tables.wide`
 FIRST, BASE = range(2)  # columns of `Nodes.row`
 REACHED, MOVE = range(2)  # columns of `Nodes.node`
 # what a kernel wants before it can go on
-DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TIMED, UNEXPLORED = range(9)
+(
+    DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
+    UNEXPLORED,
+) = range(10)  # fmt: skip
 UNKNOWN = -1
 PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
 LIMBS = (1 << PART_SHIFT) - 1
+TERMS_SHIFT = 32  # in `EVENTS`: bits of events below, number of the costs by term from here on
+EVENT_BITS = (1 << TERMS_SHIFT) - 1
 MOST_MS = 2047  # longer times cost like this one
 GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 
@@ -30,7 +35,8 @@ class Tables(NamedTuple):
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
     move : int32 (, 4), state it leads to, cost without time, number of its facts about time, state it comes from
-    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`, and events; terms : int32 (, t)
+    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
+    terms : int32 (, t), costs without time by term: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
     """
 
@@ -43,6 +49,7 @@ class Tables(NamedTuple):
     move: NDArray[np.int32]
     wide: NDArray[np.int64]
     terms: NDArray[np.int32]
+    terms_hash: NDArray[np.int32]
     timed_key: NDArray[np.int64]
     timed_cost: NDArray[np.int32]
 
@@ -133,6 +140,35 @@ def number_of_facts(facts, known, counts):  # type: ignore[no-untyped-def]
     return number
 
 
+@njit
+def _mixed(terms):  # type: ignore[no-untyped-def]
+    """One number from the costs by term."""
+    mixed = np.int64(0)
+    for term in range(len(terms)):
+        mixed = mixed * 1000003 + terms[term]
+    return mixed
+
+
+@njit
+def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of costs by term (t,); new ones are entered."""
+    at = slot_of(_mixed(terms), len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        term = 0
+        while term < len(terms) and known[number, term] == terms[term]:
+            term += 1
+        if term == len(terms):
+            return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[TERMS_KNOWN]
+    counts[TERMS_KNOWN] += 1
+    numbers[at] = number
+    for term in range(len(terms)):
+        known[number, term] = terms[term]
+    return number
+
+
 @njit(cache=True)
 def fill_states(keys, count, table):  # type: ignore[no-untyped-def]
     """Enter the first `count` keys into an empty hash table of their numbers."""
@@ -148,6 +184,16 @@ def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
     """The same for row patterns."""
     for number in range(count):
         at = slot_of(patterns[number, 0] ^ patterns[number, 1] * 31, len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@njit(cache=True)
+def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
+    """The same for costs by term."""
+    for number in range(count):
+        at = slot_of(_mixed(terms[number]), len(table))
         while table[at] >= 0:
             at = (at + 1) & (len(table) - 1)
         table[at] = number
