@@ -26,7 +26,7 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
 
     Parameters
     ----------
-    text : `START:END`; a plain number is seconds, `b16` or `16b` a beat, `m4` or `4m` a measure of 4 beats
+    text : `START:END`; a plain number is seconds, `b16` a beat, `m4` a measure of 4 beats; `16b`, `4m`, `10s` will do
     end_second : where the song ends; an end left out means there, a start left out second 0
 
     Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.

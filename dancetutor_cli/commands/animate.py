@@ -10,8 +10,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.selection import Selection, character_option, gait_option, preset_option, selection_options
+from dancetutor_cli.commands.selection import (
+    Selection,
+    character_option,
+    gait_option,
+    preset_option,
+    section_option,
+    selection_options,
+)
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.part import FASTEST, SLOWEST
 from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
@@ -30,9 +38,13 @@ _FILE = click.Path(path_type=Path)
 @click.argument("file", type=_FILE)
 @click.option("-o", "--output", type=_FILE, help="A .glb, .npz, .bvh or .json file; default: SONG-difficulty.glb.")
 @click.option("--fps", type=click.FloatRange(1, 1000), default=60.0, show_default=True, help="Frames per second.")
-@click.option("--section", metavar="START:END", help="Only this part: seconds, or beats (16b:32b) or measures (4m:8m).")
+@section_option
 @click.option(
-    "--rate", type=click.FloatRange(0.5, 1.5), default=1.0, show_default=True, help="Speed of the music she dances to."
+    "--rate",
+    type=click.FloatRange(SLOWEST, FASTEST),
+    default=1.0,
+    show_default=True,
+    help="Speed of the music she dances to.",
 )
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option(

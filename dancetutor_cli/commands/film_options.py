@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, character_option, gait_option
+from dancetutor_cli.commands.selection import Selection, character_option, gait_option, section_option
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Practice, Request
@@ -40,12 +40,7 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 _OPTIONS = (
     click.option("--size", type=_Size(), help="Default: the layout's, 1280x720; a GIF's is smaller."),
     click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
-    click.option(
-        "--section",
-        metavar="START:END",
-        help="Only this part: seconds, beats (b16:b32), measures (m4:m8), or the "
-        "third finding of a rule and what is around it (DT201:3).",
-    ),
+    section_option,
     click.option(
         "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."
     ),
@@ -84,7 +79,7 @@ _OPTIONS = (
         metavar="FILE.json",
         help="Feet from this JSON of analyze instead of the solver's.",
     ),
-    click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, as 0.5,0.75,1; the pitch stays."),
+    click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, 0.25 to 2, as 0.5,0.75,1; the pitch stays."),
     click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate]."),
     click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run."),
     click.option("--assist-tick", is_flag=True, help="A clap on each step."),

@@ -9,7 +9,7 @@ import click
 
 from dancetutor_cli.jobs.selection import Selection
 
-__all__ = ["Selection", "character_option", "preset_option", "selection_options"]
+__all__ = ["Selection", "character_option", "preset_option", "section_option", "selection_options"]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -38,6 +38,17 @@ def _default_preset() -> str:
     from dancetutor_cli.play import DEFAULT_PRESET
 
     return DEFAULT_PRESET
+
+
+def section_option(command: _Command) -> _Command:
+    """Add --section; the function gets keyword argument `section`, to be given to `jobs.part`."""
+    option = click.option(
+        "--section",
+        metavar="START:END",
+        help="Only this part: seconds (10:25), beats (b16:b48), measures (m4:m12), or what is around the third "
+        "finding of a rule (DT201:3).",
+    )
+    return option(command)
 
 
 def character_option(command: _Command) -> _Command:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.jobs.part import check_part, part_of
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
@@ -61,9 +62,7 @@ def ask(task: BakeTask) -> Asked:
     from dancetutor_cli import chart as charts
 
     if task.section is not None:
-        from dancetutor_cli.chart.section import check_section
-
-        check_section(task.section)
+        check_part(task.section)
     song = charts.load(task.path)
     chart = task.selection.one(song)
     play, pad = _play(task, song, chart)
@@ -71,9 +70,7 @@ def ask(task: BakeTask) -> Asked:
         raise DancetutorError(f"{task.path}: {chart.label}: the chart has no steps, so there is nothing to dance")
     section = None
     if task.section is not None:
-        from dancetutor_cli.chart.section import parse_section
-
-        start, end = parse_section(task.section, chart.timing, float(play.rows.second[-1]) + AFTER)
+        start, end = part_of(task.section, song, chart, task.preset, float(play.rows.second[-1]) + AFTER)
         section = (start / task.rate, end / task.rate)
     rows = replace(play.rows, second=play.rows.second / task.rate)
     return Asked(song, chart, replace(play, rows=rows), pad, section)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
+from dancetutor_cli.jobs.part import FASTEST, SLOWEST, check_part, part_of
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film_look import FilmLook
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
-_FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)  # a section around a finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +89,9 @@ class Subject:
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     from dancetutor_cli import chart as charts
-    from dancetutor_cli.chart.section import check_section
 
-    if request.section is not None and not _FINDING.fullmatch(request.section):
-        check_section(request.section)
+    if request.section is not None:
+        check_part(request.section)
     song = charts.load(request.path)
     chart = request.selection.one(song)
     music, warnings = (None, ()) if request.mute else find_music(song, chart)
@@ -103,13 +101,15 @@ def look_up(request: Request) -> Subject:
 
 
 def parse_rates(text: str) -> tuple[float, ...]:
-    """ "0.5,0.75,1.0" to numbers; UsageError outside 0.25 to 2."""
+    """ "0.5,0.75,1.0" to numbers; UsageError outside `part.SLOWEST` to `part.FASTEST`."""
     try:
         rates = tuple(float(part) for part in text.split(","))
     except ValueError:
         rates = ()
-    if not rates or not all(0.25 <= rate <= 2 for rate in rates):
-        raise UsageError(f"rate '{text}': give speeds from 0.25 to 2, separated by commas, as 0.5,0.75,1")
+    if not rates or not all(SLOWEST <= rate <= FASTEST for rate in rates):
+        raise UsageError(
+            f"rate '{text}': give speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, as 0.5,0.75,1"
+        )
     return rates
 
 
@@ -134,36 +134,11 @@ def whole_song(chart: Chart) -> tuple[float, float]:
     return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
 
 
-def _around_finding(
-    request: Request, song: Song, chart: Chart, rule: str, number: int, whole: tuple[float, float]
-) -> tuple[float, float]:
-    """Four measures around the number-th finding of a rule, counted from 1."""
-    from dancetutor_cli.jobs.callouts import findings_of
-    from dancetutor_cli.jobs.feet import solve_with_feet
-    from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset
-
-    play, ignores = solve_with_feet(song, chart, load_preset(request.preset))
-    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores=ignores))
-    found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
-    if not 1 <= number <= len(found):
-        has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
-        raise UsageError(f"section {rule}:{number}: the chart has {len(found)} findings of {rule}; it has: {has}")
-    beat = found[number - 1]
-    ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - 8), beat + 8]))
-    return max(whole[0], float(ends[0])), min(whole[1], float(ends[1]))
-
-
 def _section(request: Request, song: Song, chart: Chart) -> tuple[float, float]:
     whole = whole_song(chart)
     if request.section is None:
         return whole
-    from dancetutor_cli.chart.section import parse_section
-
-    if match := _FINDING.fullmatch(request.section):
-        return _around_finding(request, song, chart, match[1].upper(), int(match[2]), whole)
-    return parse_section(request.section, chart.timing, whole[1])
+    return part_of(request.section, song, chart, request.preset, whole[1])
 
 
 def find_music(song: Song, chart: Chart) -> tuple[Path | None, tuple[str, ...]]:

@@ -1,0 +1,61 @@
+"""Which part of a chart a motion or a film is about, and at which speeds: the same for `animate` and `render`."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
+AROUND = 8  # beats before and after a finding
+_FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
+
+
+def check_part(text: str) -> None:
+    """UsageError for what is no part of any chart: so that a slip is told before a chart is read."""
+    from dancetutor_cli.chart.section import check_section
+
+    if not _FINDING.fullmatch(text):
+        check_section(text)
+
+
+def part_of(text: str, song: Song, chart: Chart, preset: str, end: float) -> tuple[float, float]:
+    """First and last second of a part.
+
+    Parameters
+    ----------
+    text : START:END in seconds, beats or measures (`chart.section`), or RULE:N, four measures around the N-th finding
+    preset : with which the feet are found that the finding is about
+    end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
+    """
+    from dancetutor_cli.chart.section import parse_section
+
+    if match := _FINDING.fullmatch(text):
+        first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
+        return max(0.0, first), min(end, last)
+    return parse_section(text, chart.timing, end)
+
+
+def _around_finding(song: Song, chart: Chart, preset: str, rule: str, number: int) -> tuple[float, float]:
+    import numpy as np
+
+    from dancetutor_cli.jobs.callouts import findings_of
+    from dancetutor_cli.jobs.feet import solve_with_feet
+    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.play import load_preset
+
+    play, ignores = solve_with_feet(song, chart, load_preset(preset))
+    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores=ignores))
+    found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
+    if not 1 <= number <= len(found):
+        has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
+        many = f"{len(found)} finding{'' if len(found) == 1 else 's'}"
+        raise UsageError(f"section {rule}:{number}: the chart has {many} of {rule}; it has: {has}")
+    beat = found[number - 1]
+    ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))
+    return float(ends[0]), float(ends[1])
