@@ -137,7 +137,7 @@ def _interior_point(
         dual = _times_band(bands, x) - right
         _add_transposed(start, rows, z, dual)
         primal = _times_rows(start, rows, x) + s - give * z - high
-        mu = np.dot(s, z) / m
+        mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, turn
         system = bands.copy()
@@ -149,7 +149,7 @@ def _interior_point(
         factor = _factor(system)
         dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
-        after = np.dot(s + ap * ds, z + ad * dz) / m
+        after = ((s + ap * ds) * (z + ad * dz)).sum() / m
         centre = (after / mu) ** 3
         dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
