@@ -1,8 +1,12 @@
-"""`dancetutor doctor`: what this machine can render with, one line each, with the mend where something is missing."""
+"""`dancetutor doctor`: what this machine can render with, a line each, and below it the mend of what is missing."""
 
 from __future__ import annotations
 
+import textwrap
+
 import click
+
+WIDTH = 80  # columns
 
 
 @click.command()
@@ -25,7 +29,15 @@ def command(as_json: bool) -> None:
     else:
         width = max(len(c.name) for c in checks)
         for check in checks:
-            message = f"{check.message.rstrip('.')}. Mend: {check.mend}" if check.mend else check.message
-            click.echo(f"{check.state:<7} {check.name:<{width}}  {message}")
+            _tell(f"{check.state:<7} {check.name:<{width}}  ", check.message.rstrip("."))
+            if check.mend:
+                _tell(" " * (width + 10), f"mend: {check.mend}")
     if any(check.state == "broken" for check in checks):
         sys.exit(2)
+
+
+def _tell(head: str, text: str) -> None:
+    """One line, and more below its text where it is long; paths are never broken."""
+    lines = textwrap.wrap(text, WIDTH - len(head), break_long_words=False, break_on_hyphens=False)
+    for number, line in enumerate(lines):
+        click.echo(f"{head if number == 0 else ' ' * len(head)}{line}")

@@ -37,8 +37,8 @@ def examine() -> list[Check]:
 ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac", "webp": "libwebp_anim"}
 _NEEDED = ("x264", "aac")
 _OPTIONAL = {
-    "nvenc": "needs an NVIDIA GPU that encodes, and its driver; x264 does without",
-    "vaapi": "needs a GPU at /dev/dri/renderD128 and its VA driver; x264 does without",
+    "nvenc": "an NVIDIA GPU and its driver; x264 does without",
+    "vaapi": "a GPU with a VA driver; x264 does without",
     "webp": "write .mp4 or .gif, or pip install --force-reinstall imageio-ffmpeg",
 }
 # Scripts in which titles come, with letters that tell whether a font has them.
@@ -71,7 +71,7 @@ def _gl() -> Check:
         return Check("gl renderer", "without", message, mend)
     device = gpu_device()
     if device is None:
-        return Check("gl renderer", "ok", "OpenGL without a GPU: --renderer auto takes cpu, which is faster")
+        return Check("gl renderer", "ok", "OpenGL without a GPU; auto takes cpu, which is faster")
     return Check("gl renderer", "ok", f"OpenGL on GPU {device} through EGL")
 
 
@@ -82,7 +82,8 @@ def _ffmpeg() -> Check:
 
     path = executable()
     said = subprocess.run([path, "-version"], capture_output=True, text=True, check=True, timeout=20).stdout
-    return Check("ffmpeg", "ok", " ".join(said.splitlines()[0].split()[:3]) + f" ({path})")
+    version = said.splitlines()[0].removeprefix("ffmpeg version ").split()[0]
+    return Check("ffmpeg", "ok", f"{version}, {'of imageio-ffmpeg' if 'imageio_ffmpeg' in str(path) else path}")
 
 
 def _encoder(name: str) -> Check:
@@ -117,7 +118,7 @@ def _cache() -> Check:
     except OSError:
         writable = False
     if files:
-        return Check("numba cache", "ok", f"{len(files)} kernels compiled in {folder}")
+        return Check("numba cache", "ok", f"{len(files)} kernels compiled")
     mend = (
         "dancetutor warmup"
         if writable
@@ -131,13 +132,12 @@ def _font() -> Check:
     from dancetutor_cli.video.text import Typeface
 
     missing = Typeface().missing("".join(SCRIPTS.values()))
-    others = [Path(path).name for path in system_fonts()]
-    message = "Pillow's built-in one" + (f", and for other letters {', '.join(others[:6])}" if others else "")
     if not missing:
-        return Check("font", "ok", message)
+        others = [Path(path).stem for path in system_fonts()]
+        return Check("font", "ok", "Pillow's" + (f", for other letters {', '.join(others[:3])}" if others else ""))
     lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
-    mend = "install Noto Sans CJK or DejaVu Sans (Debian: fonts-noto-cjk, fonts-dejavu-core), or give --font FILE"
-    return Check("font", "without", f"{message}; no letters for {lost}", mend)
+    mend = "install Noto Sans CJK and DejaVu Sans, or --font FILE"
+    return Check("font", "without", f"no letters for {lost}", mend)
 
 
 def _disk() -> Check:

@@ -43,7 +43,7 @@ def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.Monkey
         "encoder nvenc",
         "without",
         "no such device",
-        "needs an NVIDIA GPU that encodes, and its driver; x264 does without",
+        "an NVIDIA GPU and its driver; x264 does without",
     )
     monkeypatch.setattr(probe, "_has_cuda", lambda: True)
     assert probe.choose("auto") == "x264"
@@ -61,6 +61,20 @@ def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, caps
     checks = {check["name"]: check for check in json.loads(capsys.readouterr().out)["checks"]}
     assert checks["ffmpeg"]["state"] == "broken" and checks["cpu renderer"]["state"] == "ok"
     assert "encoder x264" not in checks
+
+
+def test_lines_are_short_and_the_mend_stands_below(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(probe, "works", lambda encoder: None if encoder in ("libx264", "aac") else "no device")
+    with pytest.raises(SystemExit) as stop:
+        main(["doctor"])
+    assert stop.value.code == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    at = lines.index("without encoder nvenc  no device")
+    assert lines[at + 1].startswith(" " * 23 + "mend: an NVIDIA GPU")
+    assert sum(line[0] != " " for line in lines) == len(examine())
 
 
 def test_no_opengl_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
