@@ -117,30 +117,63 @@ def gl() -> list[Row]:
 
 
 def pack() -> list[Row]:
-    """Share of the cores' time that a pack of 20 small films keeps busy."""
+    """How busy a pack of 20 small films keeps the cores, and the workers.
+
+    Other programs take cores away, but not work: a worker has some or it waits.
+    """
     with tempfile.TemporaryDirectory() as folder:
         for number in range(4):
             song = Path(folder) / "pack" / f"song{number}"
             song.mkdir(parents=True)
             for file in DEMO.parent.iterdir():
                 (song / file.name).write_bytes(file.read_bytes())
-        videos = Path(folder) / "videos"
-        command = [
-            sys.executable,
-            "-m",
-            "dancetutor_cli",
-            "render",
-            str(Path(folder) / "pack"),
-            "-o",
-            str(videos),
-            "-q",
-        ]
-        wanted = ["--steps-type", "dance-single", "--section", "4:9", "--size", "640x360", "--renderer", "cpu"]
         before, began = _used(), time.monotonic()
-        subprocess.run([*command, *wanted], check=True, cwd=ROOT)
-        wall, films = time.monotonic() - began, len(list(videos.glob("*.mp4")))
+        said = subprocess.run(
+            [sys.executable, __file__, "pack-child", folder], check=True, capture_output=True, text=True
+        )
+        wall = time.monotonic() - began
+    run = json.loads(said.stdout.splitlines()[-1])
     busy = (_used() - before) / wall / (os.cpu_count() or 1)
-    return [(f"cores busy, {films} films of 5 s", 100 * busy, "%", "90", "")]
+    name = f"{run['films']} films of 5 s"
+    return [
+        (f"{name}, cores busy", 100 * busy, "%", "90", ""),
+        (f"{name}, workers with work", 100 * run["working"], "%", "90", ""),
+    ]
+
+
+def pack_child(folder: str) -> None:
+    """Make the films of a folder's pack with workers of this process and print for how long they had work, as JSON."""
+    from dancetutor_cli.jobs.batch import Batch
+    from dancetutor_cli.jobs.film_list import BatchRequest, film_list
+    from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
+    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.video.encoder import Encoding
+    from dancetutor_cli.video.film_look import FilmLook
+    from dancetutor_cli.video.layout import load_layout
+
+    class Watched(ProcessWorkers):
+        """Adds up the time of all workers in which they had work."""
+
+        worked, since, working = 0.0, time.monotonic(), 0
+
+        def _feed(self) -> None:
+            now = time.monotonic()
+            self.worked += (now - self.since) * self.working
+            super()._feed()
+            self.since, self.working = now, sum(worker.task is not None for worker in self._workers)
+
+    look = FilmLook(load_layout("side-by-side"), (640, 360), "good", "cpu")
+    request = Request(Path(), Selection(steps_type="dance-single"), look, preset="itg", section="4:9")
+    encoding = Encoding("mp4", look.size, request.fps)
+    videos = Path(folder) / "videos"
+    videos.mkdir()
+    jobs = film_list(BatchRequest((Path(folder) / "pack",), request, encoding, videos))[0]
+    began, workers = time.monotonic(), Watched(default_jobs(), lambda _key, _frames: None)
+    done = sum(outcome.status == "done" for outcome in Batch(jobs, workers).run())
+    share = workers.worked / (time.monotonic() - began) / workers.jobs
+    workers.close()
+    print(json.dumps({"films": done, "working": share}))
 
 
 ROWS: dict[str, Callable[[], list[Row]]] = {
@@ -160,6 +193,8 @@ def measure(names: tuple[str, ...] = tuple(ROWS)) -> list[Row]:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["child"]:
         child(*sys.argv[2:])
+    elif sys.argv[1:2] == ["pack-child"]:
+        pack_child(*sys.argv[2:])
     elif unknown := [name for name in sys.argv[1:] if name not in ROWS]:
         sys.exit(f"no row named {', '.join(unknown)}; there are: {', '.join(ROWS)}")
     else:
