@@ -60,6 +60,12 @@ class PadMap:
         """Pixels of a place in panel widths."""
         return self.origin[0] + x * self.unit, self.origin[1] - y * self.unit
 
+    def nearness(self, x: float, y: float) -> float:
+        """1 for a place on the pad, 0 for one more than half a panel beside it."""
+        low, high = self.panels.min(0) - 0.5, self.panels.max(0) + 0.5
+        beside = max(low[0] - x, x - high[0], low[1] - y, y - high[1], 0.0)
+        return float(max(0.0, 1.0 - 2.0 * beside))
+
     def draw(self, frame: Frame, lit: list[tuple[float, int]]) -> None:
         """Draw the panels; `lit` gives brightness and limb of each."""
         size = max(4, round(0.95 * self.unit))
@@ -121,8 +127,10 @@ class FeetDiagram:
             degrees = round(np.degrees(np.arctan2(dx, dy)) / 3) * 3 % 360
             size = max(8, 2 * round(0.5 * self.pads.unit * (1.12 + 0.6 * min(foot.height, 0.3))))
             shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035)
-            x, y = self.pads.place((foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2)
-            blit(frame, shoe, round(x - size / 2), y - size / 2)
+            middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
+            x, y = self.pads.place(*middle)
+            if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
+                blit(frame, shoe, round(x - size / 2), y - size / 2, seen)
 
 
 def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
