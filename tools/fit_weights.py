@@ -5,8 +5,11 @@ usage: tools/fit_weights.py LABELS_DIR [--preset NAME|FILE] [--only WEIGHT ...] 
                             [--out FILE]
 e.g.   tools/fit_weights.py ../shared/data/feet --preset tools/peer_weights.yaml --leave-one-out
 
-LABELS_DIR holds labels.json and the charts, in the form that tools/score_feet.py of the shared data reads. One weight
-at a time is made smaller and larger; what lowers the loss stays. The loss of a row is 1 where a labelled foot is
+LABELS_DIR holds the charts and labels.json, a list of
+  {"name": "mine", "kind": "song", "chart": "song.sm", "steps_type": "dance-single", "difficulty": "Hard",
+   "rows": [{"beat": 4.0, "feet": {"0": "L", "3": "R"}}, ...]}
+with the foot of each column, `?` where nobody knows; kinds are counted apart. One weight at a time is made smaller and
+larger; what lowers the loss stays. The loss of a row is 1 where a labelled foot is
 wrong; where all are right it is up to 0.1 if the row's margin is small, so that weights settle where nothing is close.
 A pull towards the preset's own weights keeps those that no label speaks about. The result is a preset that extends the
 first one. With --leave-one-out each chart in turn is left out of the fit and then scored with what the others gave;
@@ -64,6 +67,8 @@ def one_label(folder: Path, label: dict) -> Labelled:  # type: ignore[type-arg]
         sys.exit(f"{label['chart']}: no pad for {chart.steps_type}")
     rows = play.prepare(chart, pad)
     row_of = {tick: row for row, tick in enumerate(rows.tick.tolist())}
+    if missing := [e["beat"] for e in label["rows"] if round(e["beat"] * TICKS_PER_BEAT) not in row_of]:
+        sys.exit(f"{label['chart']}: nothing is stepped at beat {missing[0]}")
     cells = [
         (row_of[round(entry["beat"] * TICKS_PER_BEAT)], int(column), "LR".index(foot))
         for entry in label["rows"]
