@@ -21,6 +21,7 @@ from dancetutor_cli.reports.text import clock, moment
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are
 _GAP = 22.0
+_LONG_LIST = 24  # more findings than these are listed in two columns
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -145,7 +146,8 @@ def _list(findings: Sequence[Finding]) -> str:
         f"<td>{escape(moment(finding).strip())}</td><td>line {finding.line}</td></tr>\n"
         for finding in findings
     )
-    return f"<h2>Findings</h2>\n<table>\n{rows}</table>\n"
+    layout = "two" if len(findings) > _LONG_LIST else "one"
+    return f'<h2>Findings</h2>\n<div class="{layout}"><table>\n{rows}</table></div>\n'
 
 
 def _svg(style: Style, inside: str, height: float, *, outer: bool = False) -> str:
@@ -180,6 +182,8 @@ def _page_css(style: Style) -> str:
         "h2 { font-size: 15px; margin: 14px 12px 4px; break-after: avoid; }\n"
         "table { border-collapse: collapse; font-size: 12px; margin: 4px 12px 32px; }\ntr { break-inside: avoid; }\n"
         f"td {{ padding: 2px 14px 2px 0; border-bottom: 1px solid {colours['line']}; vertical-align: top; }}\n"
+        "div.two { columns: 2; column-gap: 24px; }\ndiv.two table { font-size: 10px; }\n"
+        "td + td + td { white-space: nowrap; }\n"
         f"td:first-child {{ font-weight: 600; }}\n{severities}"
         "@page { size: A4 landscape; margin: 8mm; }\n"
         "@media print { body { margin: 0; padding: 0; max-width: none; -webkit-print-color-adjust: exact; "
