@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 
@@ -47,3 +48,12 @@ class ChartError(FileError):
 
 class UnavailableError(DancetutorError):
     """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to mend it."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """To be put behind a wrong word in a message: " (did you mean NAME?)" with the nearest name, "" if none is near."""
+    from difflib import get_close_matches
+
+    names = {name.lower(): name for name in known}
+    near = get_close_matches(word.strip().lower(), names, n=1)
+    return f" (did you mean {names[near[0]]}?)" if near else ""

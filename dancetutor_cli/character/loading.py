@@ -8,7 +8,7 @@ from pathlib import Path
 from dancetutor_cli.character.model import Character, Material, Mesh
 from dancetutor_cli.character.reader import read_character
 from dancetutor_cli.colours import LimbColours, limb_colours
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.resources import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
@@ -33,8 +33,8 @@ def load_character(name_or_path: str) -> Character:
         return _built_in(name_or_path)
     path = Path(name_or_path)
     if path.suffix.lower() not in SUFFIXES:
-        names = ", ".join(BUILT_IN)
-        raise UsageError(f"no character {name_or_path!r}; there are: {names}, or give a .glb or .vrm file")
+        near, names = did_you_mean(name_or_path, BUILT_IN), ", ".join(BUILT_IN)
+        raise UsageError(f"no character {name_or_path!r}{near}; there are: {names}, or give a .glb or .vrm file")
     from dancetutor_cli.character.fitting import fit_character
 
     return fit_character(path)

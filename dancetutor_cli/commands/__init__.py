@@ -7,6 +7,7 @@ import importlib
 import click
 
 import dancetutor_cli
+from dancetutor_cli.errors import did_you_mean
 
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
@@ -32,6 +33,14 @@ class _LazyGroup(click.Group):
         command = module.command
         assert isinstance(command, click.Command)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            ctx.fail(f"there is no command '{name}'{did_you_mean(name, COMMANDS)}; there are: {', '.join(COMMANDS)}")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):

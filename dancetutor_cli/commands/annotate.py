@@ -12,7 +12,7 @@ import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.selection import Selection, selection_options
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.targets import check_folder
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
         if name not in STYLES:
-            raise UsageError(f"there is no style '{name}'; there are {', '.join(STYLES)}")
+            raise UsageError(f"there is no style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}")
     if not names:
         raise UsageError(f"--style: name one or more of {', '.join(STYLES)}")
     return tuple(name for name in STYLES if name in names)

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.play.vocabulary import MODELS, Model
 from dancetutor_cli.resources import config_path
@@ -72,7 +72,8 @@ def load_preset(name_or_path: str | Path) -> Preset:
     path = Path(name_or_path)
     if path.suffix.lower() in (".yaml", ".yml") or path.is_file():
         return _load(path, ())
-    raise UsageError(f"there is no preset '{text}'; there are: {', '.join(preset_names())}, or give a .yaml file")
+    near = did_you_mean(text, preset_names())
+    raise UsageError(f"there is no preset '{text}'{near}; there are: {', '.join(preset_names())}, or give a .yaml file")
 
 
 @cache

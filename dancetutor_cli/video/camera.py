@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.video.look import CameraLook, Look
 
 Array = NDArray[np.float64]
@@ -109,7 +109,9 @@ def preset(
     tall : height of who dances, metres, where it is more than the configured `height` of a camera that shows all of her
     """
     if name not in look.cameras:
-        raise UsageError(f"no camera '{name}'; there are: {', '.join(look.cameras)}, or POSITION/TARGET as x,y,z/x,y,z")
+        meant = did_you_mean(name, look.cameras)
+        names = ", ".join(look.cameras)
+        raise UsageError(f"no camera '{name}'{meant}; there are: {names}, or POSITION/TARGET as x,y,z/x,y,z")
     settings = look.cameras[name]
     if region == WHOLE:
         region = settings.region

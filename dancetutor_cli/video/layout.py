@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.errors import FileError, UsageError, did_you_mean
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.settings import Box, load
 
@@ -141,7 +141,8 @@ def load_layout(name: str) -> Layout:
         return _checked(config_path("layouts") / f"{name}.yaml")
     if name.endswith((".yaml", ".yml")):
         return _checked(Path(name))
-    raise UsageError(f"unknown layout '{name}'; there are: {', '.join(layout_names())}, or give a .yaml file")
+    near = did_you_mean(name, layout_names())
+    raise UsageError(f"unknown layout '{name}'{near}; there are: {', '.join(layout_names())}, or give a .yaml file")
 
 
 def _checked(path: Path) -> Layout:
