@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, FileResult
+from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, Figures, FileResult
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.settings import Settings
@@ -29,6 +29,7 @@ class Task:
     data : the bytes to read in place of the file's, for standard input
     suggest : whether findings shall tell which moved note would remove them
     alternatives : how many other plays shall be told of
+    want_figures : whether the result shall carry densities and technical steps, for CSV
     """
 
     path: Path
@@ -39,6 +40,7 @@ class Task:
     data: bytes | None = None
     suggest: bool = False
     alternatives: int = 0
+    want_figures: bool = False
 
 
 def analyze_file(task: Task) -> FileResult:
@@ -93,14 +95,11 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
 
 
 def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
-    from dancetutor_cli.jobs.density import density
     from dancetutor_cli.jobs.excerpt import arrows, with_excerpts
     from dancetutor_cli.jobs.rows import json_rows
-    from dancetutor_cli.jobs.tech_counts import tech_counts
 
     chart, play = subject.chart, subject.play
     findings, causes = _findings(subject, task)
-    dense = density(chart, task.settings.stream_rows)
     return ChartResult(
         index=chart.index,
         steps_type=chart.steps_type,
@@ -113,12 +112,8 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         counts=Counter(name for names in (play.moves if play else ()) for name in names),
         findings=findings if play is None else with_excerpts(findings, play),
         rows=tuple(json_rows(subject)) if task.want_rows else None,
-        nps_mean=dense.mean,
-        nps_peak=dense.peak,
-        breakdown=dense.breakdown,
-        stream_measures=dense.stream_measures,
         arrows="" if subject.pad is None else arrows(subject.pad),
-        tech=tech_counts(subject),
+        figures=_figures(subject, task) if task.want_figures else None,
         alternatives=_alternatives(subject, task) if task.alternatives else None,
         causes=causes,
         ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
@@ -146,6 +141,14 @@ def _alternatives(subject: ChartSubject, task: Task) -> tuple[AlternativeResult,
     from dancetutor_cli.jobs.alternatives import alternatives_of
 
     return alternatives_of(subject, task.preset, task.alternatives)
+
+
+def _figures(subject: ChartSubject, task: Task) -> Figures:
+    from dancetutor_cli.jobs.density import density
+    from dancetutor_cli.jobs.tech_counts import tech_counts
+
+    dense = density(subject.chart, task.settings.stream_rows)
+    return Figures(dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject))
 
 
 def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:

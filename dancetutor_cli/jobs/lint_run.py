@@ -42,6 +42,7 @@ class Request:
     baseline: Path | None = None
     update_baseline: bool = False
     want_rows: bool = False
+    want_figures: bool = False
     suggest: bool = False
     alternatives: int = 0
 
@@ -107,7 +108,7 @@ class LintRun:
         request = self.request
         return Task(
             path, self.preset(path), request.selection, settings, request.want_rows, data, request.suggest,
-            request.alternatives,
+            request.alternatives, request.want_figures,
         )  # fmt: skip
 
     def fail_on(self, path: Path) -> str:

@@ -6,7 +6,7 @@ Imports neither numpy nor numba, so that results can be read back quickly.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from dancetutor_cli.lint.model import Finding
@@ -54,13 +54,27 @@ class Cause:
 
 
 @dataclass(frozen=True, slots=True)
+class Figures:
+    """What `--format csv` tells of a chart.
+
+    nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
+    tech : how often each of `TECH_COUNTS` happens
+    """
+
+    nps_mean: float
+    nps_peak: float
+    breakdown: str
+    stream_measures: int
+    tech: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
 class ChartResult:
     """One analysed chart. `rows` are the JSON rows of analysis-json.md, None where nobody asked for them.
 
-    counts : name of the move -> rows in which it happens; tech : how often each of `TECH_COUNTS` happens
+    counts : name of the move -> rows in which it happens
     playable : False if the steps type has no pad; then there are no rows and no cost
-    nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
-    arrows : a sign for each panel, to draw rows with; alternatives, causes : None where nobody asked for them
+    arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
     ambiguous : beat of each row with ties, and "resolved" or "open", see `play.model.Ambiguity`; None likewise
     """
 
@@ -75,12 +89,8 @@ class ChartResult:
     counts: Mapping[str, int]
     findings: tuple[Finding, ...]
     rows: tuple[Mapping[str, Any], ...] | None = None
-    nps_mean: float = 0.0
-    nps_peak: float = 0.0
-    breakdown: str = ""
-    stream_measures: int = 0
     arrows: str = ""
-    tech: Mapping[str, int] = field(default_factory=dict)
+    figures: Figures | None = None
     alternatives: tuple[AlternativeResult, ...] | None = None
     causes: tuple[Cause, ...] | None = None
     ambiguous: tuple[tuple[float, str], ...] | None = None

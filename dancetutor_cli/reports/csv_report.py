@@ -49,6 +49,7 @@ class CsvReport:
 
 def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapping[str, Any]:
     counts: Mapping[str, int] = chart.counts if chart else {}
+    figures = chart.figures if chart else None
     return {
         "file": path,
         "title": title,
@@ -60,11 +61,11 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         "description": safe(chart.description) if chart else "",
         "rows": chart.row_count if chart else 0,
         "cost": chart.cost if chart else 0,
-        "nps_mean": round(chart.nps_mean, 3) if chart else 0,
-        "nps_peak": round(chart.nps_peak, 3) if chart else 0,
-        "stream_measures": chart.stream_measures if chart else 0,
-        "breakdown": chart.breakdown if chart else "",
-        **{name: chart.tech.get(name, 0) if chart else 0 for name in TECH_COUNTS},
+        "nps_mean": round(figures.nps_mean, 3) if figures else 0,
+        "nps_peak": round(figures.nps_peak, 3) if figures else 0,
+        "stream_measures": figures.stream_measures if figures else 0,
+        "breakdown": figures.breakdown if figures else "",
+        **{name: figures.tech.get(name, 0) if figures else 0 for name in TECH_COUNTS},
         **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
         "findings": len(chart.findings) if chart else 0,
     }

@@ -120,13 +120,18 @@ def test_real_charts_are_counted_the_same_from_their_json(corpus: Path) -> None:
     sums: Counter[str] = Counter()
     breakdowns = 0
     for path in sorted(corpus.rglob("*.sm"))[::9]:
-        result = analyze_file(Task(path, preset, Selection("dance-single,dance-double"), settings, want_rows=True))
+        result = analyze_file(
+            Task(path, preset, Selection("dance-single,dance-double"), settings, want_rows=True, want_figures=True)
+        )
         for chart in result.charts:
             assert chart.rows is not None
             expected = counted(chart.rows, chart.steps_type)
-            assert dict(chart.tech) == {name: expected[name] for name in TECH_COUNTS}, (path.name, chart.label)
+            assert chart.figures is not None and dict(chart.figures.tech) == {
+                name: expected[name] for name in TECH_COUNTS
+            }, (path.name, chart.label)
             mean, breakdown = nps_and_breakdown(path, chart.index)
-            assert chart.nps_mean == pytest.approx(mean, abs=1e-6) and chart.breakdown == breakdown
+            assert chart.figures.nps_mean == pytest.approx(mean, abs=1e-6)
+            assert chart.figures.breakdown == breakdown
             sums.update(expected)
             breakdowns += "(" in breakdown
     assert all(sums[name] for name in TECH_COUNTS) and breakdowns, sums  # every column was put to the test
@@ -187,7 +192,9 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
     path.write_text(
         "#TITLE:T;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n;\n"
     )
-    result = analyze_file(Task(path, load_preset("itg"), Selection(), load_configuration(None).settings))
+    result = analyze_file(
+        Task(path, load_preset("itg"), Selection(), load_configuration(None).settings, want_figures=True)
+    )
     stream = io.StringIO()
     report = CsvReport(stream, io.StringIO())
     report.begin()
