@@ -22,6 +22,7 @@ import argparse
 import json
 import math
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -154,17 +155,19 @@ def show(title: str, scores: dict[str, tuple[int, int]]) -> None:
     print(title, ", ".join(f"{kind} {a}/{b} = {100 * a / max(b, 1):.2f} %" for kind, (a, b) in sorted(scores.items())))
 
 
-def leave_one_out(losses: Losses, names: list[str], rounds: int) -> None:
-    """Score each chart with a fit on the others."""
+def leave_one_out(
+    losses: Losses, names: list[str], rounds: int, tell: Callable[[str, dict[str, tuple[int, int]]], None]
+) -> dict[str, tuple[int, int]]:
+    """Score each chart with a fit on the others: right rows and rows by kind."""
     total: dict[str, tuple[int, int]] = {}
     for number, label in enumerate(losses.labels):
         others = [other for other in range(len(losses.labels)) if other != number]
         found = score([label], fit(losses, others, names, rounds))
-        show(f"  without {label.name}:", found)
+        tell(f"  without {label.name}:", found)
         for kind, (a, b) in found.items():
             good, count = total.get(kind, (0, 0))
             total[kind] = (good + a, count + b)
-    show("left out in turn:", total)
+    return total
 
 
 def written(preset: Preset, home: Preset, source: str) -> str:
@@ -196,7 +199,7 @@ def main() -> None:
     if arguments.out:
         arguments.out.write_text(written(best, home, arguments.preset), encoding="utf-8")
     if arguments.leave_one_out:
-        leave_one_out(losses, names, arguments.rounds)
+        show("left out in turn:", leave_one_out(losses, names, arguments.rounds, show))
 
 
 if __name__ == "__main__":
