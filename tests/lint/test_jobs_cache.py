@@ -45,8 +45,13 @@ def test_the_key_changes_with_all_that_counts(song: Path, tmp_path: Path) -> Non
     cache = tmp_path / "cache"
     first = key(song, cache)
     assert key(song, cache) == first
-    changed = [key(song, cache, ignore=["spin"]), key(song, cache, assignments=["DT205.max_rows=3"]),
-               key(song, cache, suggest=True), key(song, cache, alternatives=2), key(song, cache, want_figures=True)]  # fmt: skip
+    changed = [
+        key(song, cache, ignore=["spin"]),
+        key(song, cache, assignments=["DT205.max_rows=3"]),
+        key(song, cache, suggest=True),
+        key(song, cache, alternatives=2),
+        key(song, cache, want_figures=True),
+    ]
     (song.parent / "x.ogg").write_bytes(b"music")
     changed.append(key(song, cache))
     song.with_suffix(".ssc").write_text("#NOTEDATA:;")
