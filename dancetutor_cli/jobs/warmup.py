@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from dancetutor_cli.jobs.film_request import Practice, Request, look_up
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.resources import charts_path
@@ -23,16 +25,28 @@ def steps() -> Iterator[tuple[str, Callable[[], None]]]:
     prepared: dict[str, Prepared] = {}
     for steps_type in _TYPES:
         yield f"solve and bake {steps_type}", lambda kind=steps_type: _prepare(prepared, kind)  # type: ignore[misc]
+    yield "solve with the other model of moves", _solve
     for quality in QUALITIES:
         yield f"draw at quality {quality}", lambda value=quality: _draw(prepared[_TYPES[0]], value)  # type: ignore[misc]
 
 
+def _solve() -> None:
+    """Presets by name or file are of one of two models, which have kernels of their own; the default one is done."""
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.play import load_preset, solve_chart
+
+    song = charts.load(charts_path() / _SONG)
+    solve_chart(song.charts[0], load_preset("thesis"))
+
+
 def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
     from dancetutor_cli.jobs.film_plan import prepare
+    from dancetutor_cli.play import DEFAULT_PRESET
 
     look = FilmLook(load_layout("television"), (320, 180), renderer="cpu")
     selection = Selection(steps_type=steps_type, difficulty="hard")
-    request = Request(charts_path() / _SONG, selection, look, section="m3:m5", practice=Practice(metronome=True))
+    practice = Practice(metronome=True)
+    request = Request(charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice)
     prepared[steps_type] = prepare(request, look_up(request))
 
 
@@ -40,8 +54,10 @@ def _draw(prepared: Prepared, quality: Quality) -> None:
     from dataclasses import replace
 
     from dancetutor_cli.video.film import Film
+    from dancetutor_cli.video.yuv import yuv420
 
     look = replace(prepared.plan.look, quality=quality)
     film = Film(replace(prepared.plan, look=look))
+    width, height = look.size
     for number in (0, 1):
-        film.frame(number)
+        yuv420(film.frame(number), np.empty(width * height * 3 // 2, dtype=np.uint8))
