@@ -155,9 +155,10 @@ def bake_piece(piece: Piece) -> Keys:
     rotations, root = _posed(plan, body, at, skeleton, settings)
     keys = (at, rotations, root)
     for _ in range(REFINEMENTS):
-        middles = doubtful(skeleton, keys)
+        middles = doubtful(skeleton, keys, plan.grips)
         if len(middles):
-            keys = refined(skeleton, keys, (middles, *_posed(plan, body, middles, skeleton, settings)))
+            between = (middles, *_posed(plan, body, middles, skeleton, settings))
+            keys = refined(skeleton, keys, between, plan.grips)
     at, rotations, root = keys
     add_hair(skeleton, at, rotations, root, settings.hair)
     return keys

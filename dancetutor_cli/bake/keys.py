@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -15,6 +16,7 @@ Array = NDArray[np.float64]
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
 SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
+SWAYING = 0.006  # metres between keys that a root goes at least where a hand might leave the bar between them
 KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 
 
@@ -42,7 +44,7 @@ def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
     return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
 
 
-def doubtful(skeleton: Skeleton, keys: Keys) -> Array:
+def doubtful(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Array:
     """Times half-way between keys that have a foot or palm near the ground which moves between them."""
     times, rotations, root = keys
     transforms = world_transforms(skeleton, rotations, root)
@@ -53,14 +55,24 @@ def doubtful(skeleton: Skeleton, keys: Keys) -> Array:
         moves = np.abs(np.diff(places, axis=0)).max(axis=(1, 2)) > KEY_TOLERANCE
         doubt |= (near[1:] | near[:-1]) & moves
     doubt |= np.abs(np.diff(root[:, 1], n=1)) > 0.004
+    held = np.asarray(_on_bar(grips, times).any(axis=1))
+    doubt |= held[1:] & held[:-1] & (np.linalg.norm(np.diff(root, axis=0), axis=1) > SWAYING)
     return ((times[1:] + times[:-1]) / 2)[doubt & (np.diff(times) > SHORTEST_GAP)]
 
 
-def refined(skeleton: Skeleton, keys: Keys, between: Keys) -> Keys:
+def _on_bar(grips: tuple[Grip, ...], times: Array) -> NDArray[np.bool_]:
+    """Whether each hand (f, 2) is at rest on the bar."""
+    out = np.zeros((len(times), 2), dtype=bool)
+    for grip in grips:
+        out[np.searchsorted(times, grip.start) : np.searchsorted(times, grip.end, "right"), grip.side] = True
+    return out
+
+
+def refined(skeleton: Skeleton, keys: Keys, between: Keys, grips: tuple[Grip, ...] = ()) -> Keys:
     """Keys plus those of the frames `between` them that interpolation would miss.
 
     A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
-    it, a landing for example, the frame between becomes a key.
+    it, a landing for example, or move a hand off the bar, the frame between becomes a key.
     """
     times, rotations, root = keys
     after = np.searchsorted(times, between[0])
@@ -69,9 +81,12 @@ def refined(skeleton: Skeleton, keys: Keys, between: Keys) -> Keys:
     seen = world_transforms(skeleton, guess, root[after - 1] + share * (root[after] - root[after - 1]))
     true = world_transforms(skeleton, between[1], between[2])
     wanted = np.zeros(len(between[0]), dtype=bool)
-    for points in _limb_points(skeleton):
+    held = _on_bar(grips, between[0])
+    for limb, points in enumerate(_limb_points(skeleton)):
         right, drawn = place(points, *true), place(points, *seen)
         low = np.minimum(right[..., 1], drawn[..., 1]).min(axis=1) < NEAR_GROUND
+        if limb >= 2:
+            low |= held[:, limb - 2]
         wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
     order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
     merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]

@@ -26,6 +26,7 @@ AHEAD = 1.0  # seconds over which the place of a grip is a mean
 ASIDE, UP, BACK = 0.160, 1.29, 0.05  # of a shoulder, roughly: beside the body, over the pad, behind the pelvis
 EARLY = 0.12  # seconds that a hand leaves before its shoulder gets out of reach
 AROUND = 0.18  # metres by which a hand goes around the body on its way
+LATE = 0.2  # seconds that a body may be behind where its feet are
 LIFT = 0.05  # metres that a hand rises on its way to the rail
 ELBOWS = np.array([[0.0, 0.4, -1.0], [0.0, 0.4, -1.0]])  # where they point while the hands are on the bar
 REST = 1.2  # seconds; the body leaves the bar only if no hand is on it for longer
@@ -65,10 +66,17 @@ def grips_of(plan: Plan, bar: Bar, span: tuple[float, float], settings: MotionSe
         for turned in turns:
             # the chest keeps to the screen as far as it can, so only what is left turns the shoulder away
             shoulder = root + np.column_stack((out * ASIDE * np.cos(turned), -out * ASIDE * np.sin(turned) - BACK))
-            far = np.hypot(np.hypot(*(shoulder - np.column_stack((place, held))).T), UP - bar.height)
-            free &= (far <= settings.bar.let_go) & (np.abs(turned) < np.pi / 3)
+            for body in (shoulder, _shifted(shoulder, LATE)):  # bodies come later than their feet
+                far = np.hypot(np.hypot(*(body - np.column_stack((place, held))).T), UP - bar.height)
+                free &= (far <= settings.bar.let_go) & (np.abs(turned) < np.pi / 3)
         found += list(_pieces(times, _firm(free), place, side, settings.bar))
     return tuple(sorted(found, key=lambda g: (g.start, g.side)))
+
+
+def _shifted(path: Array, seconds: float) -> Array:
+    """A path (n, 2) so much later."""
+    count = round(seconds * RATE)
+    return np.concatenate((np.repeat(path[:1], count, axis=0), path[:-count]))[: len(path)]
 
 
 def _firm(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
