@@ -19,49 +19,51 @@ CALL_STAYS = 0.35  # seconds that a call stays after its note
 
 
 class Runs:
-    """Which run of a practice film this is and how fast; and the count-in, large in the middle of the picture.
+    """Which run of a practice film this is and how fast; and the count-in.
 
     box : what the label stands in, in its middle; or only its top left corner, (left, top)
+    count : what the numbers of the count-in stand in
     """
 
-    def __init__(
-        self, clock: Clock, size: tuple[int, int], box: tuple[float, ...], scale: float, face: Typeface
-    ) -> None:
-        self.clock, self.size, self.box = clock, size, box
+    def __init__(self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface) -> None:
+        self.clock, self.box, self.count = clock, box, count
         several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
         texts = [self._text(number) for number in range(len(clock.passes))] if several else []
         self.labels = [pill(text, 20 * scale, WHITE, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
-        big = 150 * scale
-        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=3 * scale, shadow=5 * scale) for n in counts}
+        big = min(150 * scale, 0.8 * (count[3] - count[1]))
+        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
 
     def _text(self, number: int) -> str:
         one, count = self.clock.passes[number], len(self.clock.passes)
         speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
         return f"{speed} · {number + 1} of {count}" if count > 1 else speed
 
-    def _place(self, label: Sprite) -> tuple[float, float]:
-        if len(self.box) == 2:
-            return self.box[0], self.box[1]
-        left, top, right, bottom = self.box
-        return (left + right - label.shape[1]) / 2, (top + bottom - label.shape[0]) / 2
-
     def draw(self, frame: Frame, second: float, run: int) -> None:
         """Draw at `second` of the music in pass `run`."""
         if self.labels:
-            x, y = self._place(self.labels[run])
-            blit(frame, self.labels[run], x, round(y))
+            label = self.labels[run]
+            x, y = (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
+            blit(frame, label, x, round(y))
         one = self.clock.passes[run]
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
             number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
             fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
-            x, y = (self.size[0] - number.shape[1]) / 2, (self.size[1] - number.shape[0]) / 2
+            x, y = _middle(number, self.count)
             blit(frame, number, x, round(y), fade)
 
 
+def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
+    left, top, right, bottom = box
+    return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
+
+
 class Calls:
-    """Moves called out before they come, at the top right of `box`, with the time left as a bar."""
+    """Moves called out before they come, at the top right of `box`, with the time left as a bar.
+
+    The same words stand there once: for the move that comes next, and until a moment after it.
+    """
 
     SHOWN = 2  # at a time, the nearest on top
 
@@ -77,14 +79,19 @@ class Calls:
         text, size = self.face.shrink(text, size, self.box[2] - self.box[0] - 0.8 * size)
         return pill(text, size, self.style.callout[severity], self.face)
 
+    def _shown(self, second: float) -> list[Callout]:
+        first, last = np.searchsorted(self.seconds, (second - CALL_STAYS, second + self.style.callout_seconds))
+        by_text: dict[str, Callout] = {}
+        for one in self.callouts[int(first) : int(last)]:
+            if one.text not in by_text or by_text[one.text].second < second:
+                by_text[one.text] = one
+        return sorted(by_text.values(), key=lambda one: one.second)[: self.SHOWN]
+
     def draw(self, frame: Frame, second: float) -> None:
         """Draw what comes within the next `callout_seconds` after `second`."""
-        first = int(np.searchsorted(self.seconds, second - CALL_STAYS))
         y = float(self.box[1])
-        for one in self.callouts[first : first + self.SHOWN]:
+        for one in self._shown(second):
             left = one.second - second
-            if left > self.style.callout_seconds:
-                break
             label = self._sprite(one.text, one.severity)
             x = self.box[2] - label.shape[1]
             fade = min(1.0, (self.style.callout_seconds - left) / 0.15, 1.0 + left / CALL_STAYS)

@@ -136,7 +136,8 @@ class Film:
         elif self._header is not None and self.layout.header is not None:
             scale = self.scale * self.layout.header.text
             box = self._box("header")[0], self._header.bottom + 9 * scale
-        return Runs(self.plan.clock, self.size, box, scale, self.face)
+        count = (0, 0, *self.size) if self.layout.count is None else self._box("count")
+        return Runs(self.plan.clock, box, count, scale, self.face)
 
     @cached_property
     def _calls(self) -> Calls | None:

@@ -85,6 +85,7 @@ class WideBoxes:
     legend: Box | None = None
     calls: Box | None = None
     runs: Box | None = None
+    count: Box | None = None
     feet: Box | None = None
     next: Box | None = None
 
@@ -94,7 +95,7 @@ class Layout:
     """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for.
 
     calls : where moves are called out, in the dancer's box if not said; runs : which run this is, below the header if
-    not said
+    not said; count : the numbers of the count-in, in the middle of the picture if not said
     """
 
     size: tuple[int, int]
@@ -103,6 +104,7 @@ class Layout:
     header: HeaderPart | None = None
     calls: Part | None = None
     runs: Part | None = None
+    count: Part | None = None
     legend: Part | None = None
     progress: Part | None = None
     screen: ScreenPart | None = None
@@ -153,7 +155,7 @@ def _checked(path: Path) -> Layout:
         raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
     if layout.feet is not None and layout.dancer is None:
         raise FileError(path, "feet need a dancer, whose feet they are")
-    for name in ("dancer", "highway", "header", "calls", "runs", "legend", "progress", "feet", "next"):
+    for name in ("dancer", "highway", "header", "calls", "runs", "count", "legend", "progress", "feet", "next"):
         part, other = getattr(layout, name), getattr(layout.wide, name, None)
         inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
         for where, box in ((f"{name}.region", inner), (f"{name}.box", part and part.box), (f"wide.{name}", other)):
