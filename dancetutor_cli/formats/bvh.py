@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ Array = NDArray[np.float64]
 
 MAX_FILE = 100_000_000  # bytes
 MAX_JOINTS = 1024
+PIECE = 4000  # frames written at once
 UNITS = (1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45)  # metres: metre, centimetre, inch, millimetre, CMU's unit
 _HUMAN = 1.65  # metres from toe to crown joint, to tell the unit by
 _CHANNELS = {f"{axis}{kind}": (kind, "XYZ".index(axis)) for axis in "XYZ" for kind in ("position", "rotation")}
@@ -94,16 +96,26 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
     """
     fps = motion.fps if fps is None else fps
     count = max(1, math.floor((motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
-    rotations, root = sample(motion, motion.times[0] + np.arange(count) / fps) if len(motion.times) > 1 else (
-        motion.rotations, motion.root)  # fmt: skip
-    skeleton = motion.skeleton
-    order = _depth_first(skeleton)
-    text = ["HIERARCHY", *_written(skeleton, order[0], 0, units_per_metre), "MOTION"]
+    order = _depth_first(motion.skeleton)
+    text = ["HIERARCHY", *_written(motion.skeleton, order[0], 0, units_per_metre), "MOTION"]
     text += [f"Frames: {count}", f"Frame Time: {1 / fps:.9f}"]
+
+    def write(file: BinaryIO) -> None:
+        file.write(("\n".join(text) + "\n").encode("utf-8"))
+        for first in range(0, count, PIECE):  # an hour as text would need gigabytes at once
+            times = motion.times[0] + np.arange(first, min(first + PIECE, count)) / fps
+            file.write(_frame_lines(motion, times, order, units_per_metre))
+
+    write_atomic(path, write)
+
+
+def _frame_lines(motion: Motion, times: Array, order: list[int], units_per_metre: float) -> bytes:
+    """The lines of the frames at `times`, seconds."""
+    still = len(motion.times) == 1
+    rotations, root = (motion.rotations, motion.root) if still else sample(motion, times)
     angles = _zxy(rotations[:, order])
-    table = np.concatenate([root * units_per_metre, angles.reshape(count, -1)], axis=1)
-    text += [" ".join(f"{x:.6f}" for x in row) for row in (table + 0.0).tolist()]
-    write_atomic(path, ("\n".join(text) + "\n").encode("utf-8"))
+    table = np.concatenate([root * units_per_metre, angles.reshape(len(times), -1)], axis=1)
+    return "".join(" ".join(f"{x:.6f}" for x in row) + "\n" for row in (table + 0.0).tolist()).encode("utf-8")
 
 
 def _lines(path: Path) -> list[str]:
