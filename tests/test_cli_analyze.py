@@ -240,5 +240,19 @@ def test_the_baseline_hides_what_was_there(faulty: Path, monkeypatch: pytest.Mon
     assert "no longer needed: held.sm dance-double Hard C DT301 beat 0" in result.stderr
 
 
+def test_quiet_leaves_infos_and_clean_charts_out(faulty: Path) -> None:
+    loud, quiet = run(faulty), run("--quiet", faulty)
+    data = [json.loads(run(*q, "--format", "json", faulty).stdout)["files"][0] for q in ((), ("--quiet",))]
+    found = [[f["severity"] for f in d["findings"] + [f for c in d["charts"] for f in c["findings"]]] for d in data]
+    assert "info" in found[0]
+    assert found[1] == [severity for severity in found[0] if severity != "info"]
+    assert all(chart["findings"] for chart in data[1]["charts"])
+    assert quiet.stdout.splitlines()[-1] == loud.stdout.splitlines()[-1]  # what is left out still counts
+
+
+def test_suggest_says_so_when_it_finds_nothing(faulty: Path) -> None:
+    assert "no finding would go away" in run("--suggest", "--select", "DT1", faulty).stderr
+
+
 def test_statistics_count_the_rules(faulty: Path) -> None:
     assert "      1 DT301 unplayable" in run(faulty, "--statistics").stderr.splitlines()

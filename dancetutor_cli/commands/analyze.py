@@ -69,6 +69,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
+@click.option("-q", "--quiet", is_flag=True, help="Leave out infos, and charts without errors and warnings.")
 @click.option("--statistics", is_flag=True, help="Print how often each rule was found.")
 @click.option(
     "--sheet",
@@ -178,20 +179,25 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.preset)):
         result = run.without_known(raw)
         tally.add(result)
-        report.add(result)
+        if options["quiet"]:
+            result = result.without_infos()
+        if not options["quiet"] or result.error or result.findings or result.charts:
+            report.add(result)
     report.end(tally)
     if options["sheet"] is not None and not tally.unreadable:
         from dancetutor_cli.commands.chart_sheet import write_sheet
 
         click.echo(write_sheet(options["sheet"], tasks), err=True)
-    _finish(run, tally, options["statistics"])
+    _finish(run, tally, options)
     return tally.exit_status
 
 
-def _finish(run: LintRun, tally: Tally, statistics: bool) -> None:
+def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
     """What is said after the results, to standard error: so that the results stay one document."""
-    if statistics:
+    if options["statistics"]:
         click.echo(tally.statistics(), err=True, nl=False)
+    if options["suggest"]:
+        click.echo(tally.suggestions(), err=True)
     for line in run.close_baseline():
         click.echo(line, err=True)
     if not tally.charts and not tally.unreadable:

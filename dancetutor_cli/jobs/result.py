@@ -6,7 +6,7 @@ Imports neither numpy nor numba, so that results can be read back quickly.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from dancetutor_cli.lint.model import Finding
@@ -114,6 +114,11 @@ class FileResult:
     charts: tuple[ChartResult, ...]
     unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
 
+    def without_infos(self) -> FileResult:
+        """The same without findings that only inform, and without charts of which nothing is left to tell."""
+        charts = (replace(c, findings=_no_infos(c.findings)) for c in self.charts)
+        return replace(self, findings=_no_infos(self.findings), charts=tuple(c for c in charts if c.findings))
+
     def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
         """Every finding with the chart it is about."""
         for finding in self.findings:
@@ -121,3 +126,7 @@ class FileResult:
         for chart in self.charts:
             for finding in chart.findings:
                 yield finding, chart
+
+
+def _no_infos(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    return tuple(finding for finding in findings if finding.severity != "info")

@@ -88,6 +88,26 @@ def default_rules() -> Mapping[str, Options]:
     return dict(read(config_path("lint/default.yaml")).data["rules"])
 
 
+@cache
+def default_severity(code: str) -> str:
+    """The severity of a rule by default, for people: "off", or "off; warning for Beginner of meter 6 or less"."""
+    data = read(config_path("lint/default.yaml")).data
+    severity = str(data["rules"][code]["severity"])
+    for entry in data.get("overrides", ()):
+        for name, options in entry["rules"].items():
+            if matching(str(name)) == {code} and not isinstance(options, Mapping):
+                severity += f"; {options} for {' of '.join(map(_worded, entry['when'].values()))}"
+    return severity
+
+
+def _worded(value: object) -> str:
+    """A value of a condition: a list as "A, B", a range of meters as "meter 6 or less"."""
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    low, _, high = str(value).partition("-")
+    return f"meter {value}" if low and high else f"meter {high} or less" if high else f"meter {low} or more"
+
+
 def _located(source: str | Path) -> Path:
     path = Path(source)
     if path.exists() or path.suffix:

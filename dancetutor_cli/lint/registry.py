@@ -7,7 +7,7 @@ import pkgutil
 from collections.abc import Iterable, Mapping
 from functools import cache
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.lint import rules
 from dancetutor_cli.lint.rule import Rule
 
@@ -28,7 +28,8 @@ def rule_named(name: str) -> type[Rule]:
     for code, rule in all_rules().items():
         if name.upper() == code or name.lower() == rule.name:
             return rule
-    raise UsageError(f"there is no rule '{name}'; the rules are {described(all_rules().values())}")
+    near = did_you_mean(name, [word for code, rule in all_rules().items() for word in (code, rule.name)])
+    raise UsageError(f"there is no rule '{name}'{near}; the rules are {described(all_rules().values())}")
 
 
 def matching(selector: str) -> set[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 
-from dancetutor_cli.lint.configuration import default_rules
+from dancetutor_cli.lint.configuration import default_rules, default_severity
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import FAMILIES, Rule
 
@@ -12,8 +12,12 @@ from dancetutor_cli.lint.rule import FAMILIES, Rule
 def explain(rule: type[Rule]) -> str:
     """What a rule finds, how its bad and its better pattern look, and how it is set."""
     settings = dict(default_rules()[rule.code])
-    severity = settings.pop("severity")
-    lines = [f"{rule.code} {rule.name} ({FAMILIES[int(rule.code[2])]}, {severity})", "", inspect.getdoc(rule) or ""]
+    del settings["severity"]
+    lines = [
+        f"{rule.code} {rule.name} ({FAMILIES[int(rule.code[2])]}, {default_severity(rule.code)})",
+        "",
+        inspect.getdoc(rule) or "",
+    ]
     if settings:
         lines += ["", "Options: " + ", ".join(f"{name} = {value}" for name, value in settings.items())]
     return "\n".join(lines) + "\n"
@@ -28,5 +32,7 @@ def explain_all() -> str:
             family = FAMILIES[int(code[2])]
             lines.append(f"{'' if not lines else chr(10)}{family}")
         summary = (inspect.getdoc(rule) or "").splitlines()[0]
-        lines.append(f"  {code} {rule.name:22} {default_rules()[code]['severity']:8} {summary}")
+        severity, more, _ = default_severity(code).partition(";")
+        lines.append(f"  {code} {rule.name:22} {severity + '*' * len(more):8} {summary}")
+    lines += ["", "* otherwise for some charts; --explain RULE tells which"]
     return "\n".join(lines) + "\n"

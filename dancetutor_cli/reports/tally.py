@@ -26,6 +26,7 @@ class Tally:
     severities: Counter[str] = field(default_factory=Counter)
     rules: Counter[str] = field(default_factory=Counter)
     unselected: list[str] = field(default_factory=list)
+    suggested: int = 0
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
@@ -36,6 +37,7 @@ class Tally:
         for finding, _ in result.all_findings():
             self.rules[f"{finding.rule} {finding.name}"] += 1
             self.severities[finding.severity] += result.error is None
+            self.suggested += finding.suggestion is not None
 
     @property
     def exit_status(self) -> int:
@@ -50,6 +52,12 @@ class Tally:
         """How often each rule was found, one line each, most frequent first."""
         ordered = sorted(self.rules.items(), key=lambda item: (-item[1], item[0]))
         return "".join(f"{count:7} {rule}\n" for rule, count in ordered)
+
+    def suggestions(self) -> str:
+        """What --suggest has found, also when that is nothing."""
+        if not self.suggested:
+            return "no finding would go away with one note on another panel"
+        return f"{_plural(self.suggested, 'finding')} would go away with one note on another panel"
 
     def summary(self) -> str:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
