@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
-CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
+CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
@@ -217,12 +217,15 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     side = stepping((foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop)), settings)
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
     free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
-    for turn in range(CORRECTIONS + 1):
-        look(skeleton, rotations, root, body, at, settings)
-        add_layers(skeleton, at, rotations, side, free, settings.layers)
-        if turn < CORRECTIONS:
-            targets = moved(targets, goal - _mass(skeleton, rotations, root))
-            rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
+    dressed = rotations.copy()
+    look(skeleton, dressed, root, body, at, settings)
+    add_layers(skeleton, at, dressed, side, free, settings.layers)
+    head = _mass(skeleton, dressed, root) - _mass(skeleton, rotations, root)  # hardly changes as the body is moved
+    for _ in range(CORRECTIONS):
+        targets = moved(targets, goal - head - _mass(skeleton, rotations, root))
+        rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
+    look(skeleton, rotations, root, body, at, settings)
+    add_layers(skeleton, at, rotations, side, free, settings.layers)
     return rotations, root
 
 

@@ -21,10 +21,10 @@ from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSe
 Array = NDArray[np.float64]
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.03  # metres; scales the programme
-HALF_WIDTH = 0.030  # of the part of a sole that may carry the whole weight
+HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
 FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
 HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
-FARTHEST = 0.44  # metres over the ground, along each axis, from the pelvis to an ankle
+FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
 ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 

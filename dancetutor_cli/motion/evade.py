@@ -33,7 +33,7 @@ def evade_mines(play: Play, i: int, time: float, panels: Array, stance: Stance, 
         if len(threatened) == 2:
             _hop(stance, foot, time)
         else:
-            _lift(stance, foot, time, panels[before[foot.side]])
+            _lift(stance, foot, time, panels, before[foot.side])
 
 
 def _hop(stance: Stance, foot: Foot, time: float) -> None:
@@ -47,12 +47,13 @@ def _hop(stance: Stance, foot: Foot, time: float) -> None:
     _up(stance, foot, time, target, half, height, "jump", stance.settings.jump.tuck)
 
 
-def _lift(stance: Stance, foot: Foot, time: float, panel: Array) -> None:
+def _lift(stance: Stance, foot: Foot, time: float, panels: Array, column: int) -> None:
     """One foot goes up while the other stands, and comes down on the inner edge of its panel."""
     mines, step = stance.settings.mines, stance.settings.step
     other = pose(stance, stance.feet[1 - foot.side])
-    target = stage.landing_ball(panel, stance.toes(foot), other.middle, 1.0, step.edge_margin)
-    target, _ = beside(stance, panel, foot, target, foot.yaw, other)
+    panel, room = panels[column], stage.room_on(panels, column)
+    target = stage.landing_ball(panel, stance.toes(foot), other.middle, 1.0, step.edge_margin, room)
+    target, _ = beside(stance, panel, room, foot, target, foot.yaw, other)
     back = (foot.ball, foot.yaw)
     _up(stance, foot, time, target, mines.before + mines.rise, mines.height, "evade", 0.0)
     foot.evading = (time, back)

@@ -15,9 +15,8 @@ from dancetutor_cli.play.model import Part
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
-ROOM = stage.HALF_PANEL - stage.BALL_MARGIN
-_ACROSS = np.linspace(-ROOM, ROOM, 11)
-PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball on its panel
+_ACROSS = np.linspace(-1.0, 1.0, 11)
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
@@ -52,16 +51,19 @@ def landing(
     if len(columns) > 1:
         return _bracket(stance, panels, parts, columns, foot, yaw)
     toes = stance.toes(foot, yaw)
-    ball = stage.landing_ball(panels[columns[0]], toes, other.middle, cut, step.edge_margin)
-    return beside(stance, panels[columns[0]], foot, ball, yaw, other)
+    panel, room = panels[columns[0]], stage.room_on(panels, columns[0])
+    ball = stage.landing_ball(panel, toes, other.middle, cut, step.edge_margin, room)
+    return beside(stance, panel, room, foot, ball, yaw, other)
 
 
-def beside(stance: Stance, panel: Array, foot: Foot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
+def beside(
+    stance: Stance, panel: Array, room: Array, foot: Foot, ball: Array, yaw: float, other: Pose
+) -> tuple[Array, float]:
     """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
     apart = stance.settings.step.apart
     if gaps_at(ball[None], np.array([stance.toes(foot, yaw)]), other.ball, other.toes)[0] >= apart:
         return ball, yaw
-    balls = panel + PLACES
+    balls = panel + room * PLACES
     turned = np.array([stance.limited(yaw + turn, stance.body_yaw()) for turn in TURNS])
     grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
     gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)

@@ -15,6 +15,7 @@ PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
 BALL_AHEAD = 0.046  # the ball of the foot lies so far before the middle of the sole
 BALL_MARGIN = 0.024  # the middle of the ball stays so far inside the panel: more than half of it presses
+NEIGHBOUR_MARGIN = 0.044  # and so far from an edge behind which there is another panel, perhaps with a mine
 
 
 def panels_on_ground(pad: Pad) -> Array:
@@ -39,13 +40,21 @@ def middle_of(ball: Array, yaw: float) -> Array:
     return np.asarray(ball - BALL_AHEAD * heading(yaw))
 
 
-def landing_ball(panel: Array, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
+def room_on(panels: Array, column: int) -> Array:
+    """How far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
+    away = np.abs(panels - panels[column])
+    beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
+    return HALF_PANEL - np.where(beside, NEIGHBOUR_MARGIN, BALL_MARGIN)
+
+
+def landing_ball(panel: Array, yaw: float, other: Array, cut: float, edge_margin: float, room: Array) -> Array:
     """Where the ball of a foot would like to land on a panel.
 
     Parameters
     ----------
     panel : (2,) centre of the panel; yaw : of the foot; other : (2,) middle of the other foot
     cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
+    room : (2,) from `room_on`
     """
     middle = panel.copy()
     away = other - panel
@@ -54,5 +63,4 @@ def landing_ball(panel: Array, yaw: float, other: Array, cut: float, edge_margin
         direction = away / distance
         to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
         middle = panel + direction * min(cut * to_edge, distance)
-    room = HALF_PANEL - BALL_MARGIN
     return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))

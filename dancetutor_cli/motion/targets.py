@@ -20,6 +20,8 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
+KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
+KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 PELVIS_SHARE = 0.58  # the pelvis tilts this part of the chest's tilt
 
 
@@ -65,11 +67,11 @@ def moved(targets: Targets, by: Array) -> Targets:
 
 
 def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath]) -> Array:
-    """Knees point between the body's front and the toes, a little outward."""
-    front = np.column_stack((np.sin(yaw), np.zeros_like(yaw), np.cos(yaw)))
-    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
+    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn."""
     out = []
     for side, foot in enumerate(feet):
-        toes = np.column_stack((np.sin(foot.yaw), np.zeros_like(yaw), np.cos(foot.yaw)))
-        out.append(0.4 * front + 0.6 * toes + (0.08 if side == 0 else -0.08) * left)
+        aside = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        aside = np.arctan2(KNEE_TO_TOES * np.sin(aside), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(aside))
+        aside = np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + (KNEE_OUT if side == 0 else -KNEE_OUT)
+        out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
     return np.stack(out, axis=1)

@@ -31,7 +31,7 @@ def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
     panel = np.array([0.14, 0.0])
     left, right = stance.feet
     left.ball, left.yaw = stage.ball_of(panel, yaw), yaw
-    ball, turned = beside(stance, panel, right, left.ball, yaw, pose(stance, left))
+    ball, turned = beside(stance, panel, np.full(2, 0.116), right, left.ball, yaw, pose(stance, left))
     shoes = [
         line_points(stage.middle_of(b, stance.toes(f, y)), stance.toes(f, y))
         for f, b, y in ((left, left.ball, left.yaw), (right, ball, turned))
