@@ -1,0 +1,69 @@
+"""Steps that no straddle reaches, feet on one panel, heels beside a hold: by forward kinematics from the rotations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bake_plays import L, R, chart, pad, play
+
+from dancetutor_cli.bake import bake, report
+from dancetutor_cli.bake.quality.body import body_of
+from dancetutor_cli.bake.quality.smoothness import in_fast_jumps, jerk
+from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.play.model import Part
+
+ALL_GOALS = ("contacts missed", "foot in foot", "frames past joint limits", "ground force, largest", "penetration")
+
+
+def check(motion: Motion) -> None:
+    measured = report(motion)
+    assert [f for f in measured.figures if f.name in ALL_GOALS and not f.met] == [], measured.notes
+    assert np.abs(measured.contact_errors).max() < 1.0
+
+
+def test_a_step_across_both_pads_is_a_leap() -> None:
+    """From the left pad's left panel and middle to the right pad's right one: 1.4 metres in one step."""
+    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {1: R}), (2.5, {7: R}), (3.5, {6: L})], double=True), pad(True))
+    check(motion)
+    body = body_of(motion)
+    before = (body.times > 2.1) & (body.times < 2.5)
+    flying = before & ~body.standing.any(axis=1)
+    assert flying.sum() >= 6  # both feet are off the ground, at 60 frames per second
+    landed = np.argmin(np.abs(body.times - 2.52))
+    middles = body.soles[landed].mean(axis=1)
+    assert np.linalg.norm(middles[0] - middles[1]) < 0.7  # and the left one came along
+
+
+@pytest.mark.parametrize("column", [1, 2, 3])
+def test_a_footswitch_finds_room_on_its_panel(column: int) -> None:
+    other = {1: 0, 2: 0, 3: 0}[column]
+    events = [(1.0, {other: L}), (1.5, {column: R}), (2.0, {column: L}), (2.5, {other: R}), (3.0, {column: L})]
+    check(bake(chart(), play(events), pad()))
+
+
+def test_a_heel_taps_beside_the_hold_of_its_toes() -> None:
+    events = [(1.0, {3: R}), (1.5, {0: L}), (2.0, {1: L}), (2.5, {3: R})]
+    danced = play(events, holds={(1, 0): 2.25}, brackets={(2, 1): Part.HEEL})
+    motion = bake(chart(), danced, pad())
+    assert np.abs(report(motion).contact_errors).max() < 1.0  # nan, a miss, fails too
+
+
+def test_only_runs_of_fast_jumps_are_exempt_from_the_jerk() -> None:
+    def jumps(gap: float) -> tuple[Contact, ...]:
+        seconds = 5.0 + gap * np.arange(6)
+        return tuple(
+            Contact(s, s + 0.1, limb, limb, 1, 0, k, (0.0, 0.0)) for k, s in enumerate(seconds) for limb in (L, R)
+        )
+
+    times = np.arange(0.0, 10.0, 1 / 60)
+    assert not in_fast_jumps(times, jumps(0.26)).any()
+    fast = times[in_fast_jumps(times, jumps(0.2))]
+    assert 4.85 < fast.min() < 5.0 and 6.0 < fast.max() < 6.15
+
+
+def test_exempt_frames_are_left_out_and_noted() -> None:
+    run = [(3.0 + 0.18 * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(10)]
+    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), *run, (7.0, {0: L}), (8.0, {3: R})]), pad())
+    measured, body = report(motion), body_of(motion)
+    assert any("exempt" in note for note in measured.notes)
+    assert measured["jerk of the root"].value < jerk(body.joints[:, 0], body.rate).mean()
