@@ -15,6 +15,7 @@ from dancetutor_cli.play.model import Part, Play
 
 Array = NDArray[np.float64]
 LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
+LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together
 SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
@@ -70,7 +71,7 @@ class Steps:
         if len(columns) != 1 or self.play.part[i, columns[0]] == Part.WHOLE:
             return columns
         here = self.panels[columns[0]]
-        held = [c for c, end in foot.holds.items() if end > time and c != columns[0]]
+        held = [c for c, end in foot.holds.items() if end > time - LET_GO and c != columns[0]]
         near = [c for c in held if np.linalg.norm(self.panels[c] - here) < NEIGHBOURS]
         return columns + near[-1:]
 
@@ -95,13 +96,14 @@ class Steps:
         jump, step, stance = self.settings.jump, self.settings.step, self.stance
         for foot in stance.feet:
             land_early(foot, time)
-        goals = self._jump_goals(i, pressed, float(reduction(duration, step.fast, step.longest)))
+        columns = [self._with_held(i, f, pressed[f.side], time) for f in stance.feet]
+        goals = self._jump_goals(i, columns, float(reduction(duration, step.fast, step.longest)))
         far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, stance.feet, strict=True))
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
             apex = jump.apex_hands
         take_off = self._take_off(time, min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration))
-        self._fly(take_off, time, duration, goals, [pressed[0], pressed[1]], turned)
+        self._fly(take_off, time, duration, goals, columns, turned)
 
     def _leap(self, time: float, duration: float, foot: Foot, goal: tuple[Array, float], columns: list[int]) -> bool:
         """A step too far for a straddle: both feet leave the ground, and the other one lands beside. False if none."""
@@ -142,11 +144,10 @@ class Steps:
             )  # fmt: skip
             foot.move(swing, target, yaw)
 
-    def _jump_goals(self, i: int, pressed: dict[int, list[int]], cut: float) -> list[tuple[Array, float]]:
+    def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> list[tuple[Array, float]]:
         """Where both balls land, and the feet's yaws."""
         stance = self.stance
         body = stance.body_yaw()
-        columns = [self._with_held(i, f, pressed[f.side], float(self.play.rows.second[i])) for f in stance.feet]
         yaws = [stance.limited(f.yaw + self.settings.jump.yaw_to_normal * (body - f.yaw), body) for f in stance.feet]
         goals: dict[int, tuple[Array, float]] = {}
         for foot in sorted(stance.feet, key=lambda f: -len(columns[f.side])):  # brackets have no choice: they are first

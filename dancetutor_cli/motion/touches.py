@@ -32,7 +32,7 @@ class Touches:
             if limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
                 foot = self.stance.feet[limb]
                 foot.free = max(foot.free, end)
-                foot.holds = {c: e for c, e in foot.holds.items() if e > time} | {column: end}
+                foot.holds = {c: e for c, e in foot.holds.items() if e > time - 1.0} | {column: end}
         panel = pair(self.panels[column])
         if limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
             end = self._press(time, end, limb - Limb.LEFT_HAND, panel)

@@ -67,3 +67,9 @@ def test_exempt_frames_are_left_out_and_noted() -> None:
     measured, body = report(motion), body_of(motion)
     assert any("exempt" in note for note in measured.notes)
     assert measured["jerk of the root"].value < jerk(body.joints[:, 0], body.rate).mean()
+
+
+def test_a_heel_taps_beside_its_hold_while_the_other_foot_jumps_too() -> None:
+    events = [(1.0, {3: R}), (1.5, {0: L}), (2.0, {1: L, 2: R}), (2.5, {3: R})]
+    danced = play(events, holds={(1, 0): 2.0}, brackets={(2, 1): Part.HEEL})
+    assert np.abs(report(bake(chart(), danced, pad())).contact_errors).max() < 1.0
