@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour, gaps_at
+from dancetutor_cli.motion.clear import detour, gaps_at, headings
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.stance import Foot, Stance
 from dancetutor_cli.play.model import Part
@@ -18,6 +18,8 @@ Pitches = tuple[float, float, float, float]
 _ACROSS = np.linspace(-1.0, 1.0, 11)
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
+# corners of a sole from the ball, metres: ahead, aside
+SOLE = np.array([(-0.166, 0.032), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, -0.034)])
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
@@ -61,7 +63,9 @@ def beside(
 ) -> tuple[Array, float]:
     """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
     apart = stance.settings.step.apart
-    if gaps_at(ball[None], np.array([stance.toes(foot, yaw)]), other.ball, other.toes)[0] >= apart:
+    toes = np.array([stance.toes(foot, yaw)])
+    free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
+    if free and not over(stance.mined, ball[None], toes)[0]:
         return ball, yaw
     balls = panel + room * PLACES
     turned = np.array([stance.limited(yaw + turn, stance.body_yaw()) for turn in TURNS])
@@ -69,8 +73,18 @@ def beside(
     gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)
     price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
     price += np.maximum(apart - gaps, 0.0) * 1e6
+    price += over(stance.mined, grid, yaws + foot.outward * stance.toe_out) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
+
+
+def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
+    """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
+    ahead = headings(toes)
+    across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= stage.HALF_PANEL
+    return np.asarray(inside.any(axis=(1, 2)))
 
 
 def _bracket(

@@ -17,6 +17,7 @@ from dancetutor_cli.motion.track import Plan, Turn
 from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
+MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
 
 class Planner:
@@ -48,6 +49,8 @@ class Planner:
         for column in np.flatnonzero(self.play.limb[i] >= 0):
             pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
         evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
+        soon = self.play.rows.mines[i : int(np.searchsorted(self.play.rows.second, time + MINES_AHEAD))]
+        self.stance.mined = self.panels[soon.any(axis=0) & (self.play.limb[i] < 0)]
         feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
         if feet:
             self._feet(i, time, feet, pressed)

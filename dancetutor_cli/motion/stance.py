@@ -60,6 +60,7 @@ class Stance:
     def __init__(self, settings: MotionSettings) -> None:
         self.settings = settings
         self.normal = 0.0
+        self.mined: Array = np.empty((0, 2))  # panels beside which feet land that mines pass soon
         self.toe_out = float(np.radians(settings.step.toe_out))
         self.feet = tuple(
             Foot(side, stage.ball_of(np.array([x * HOME_OUT, 0.0]), x * self.toe_out), 0.0)

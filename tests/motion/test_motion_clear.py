@@ -52,3 +52,16 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
         least = min(least, gap(line_points(middle, share * 0.2), line_points(stage.middle_of(pivot, now), now)))
     assert least >= APART - 0.006
     assert np.linalg.norm(bulge) > 0.03  # straight through would hit it
+
+
+def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
+    stance = Stance(default_settings())
+    panel, neighbour = np.array([0.14, 0.0]), np.array([-0.14, 0.0])
+    stance.mined = neighbour[None]
+    left, right = stance.feet
+    right.ball = np.array([0.5, 0.3])
+    ball, yaw = beside(stance, panel, np.full(2, 0.1), left, np.array([0.05, 0.09]), 0.6, pose(stance, right))
+    toes = stance.toes(left, yaw)
+    heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
+    assert min(heel[0], ball[0]) > 0.03  # half a sole from the edge at x = 0
+    assert np.abs(ball - panel).max() <= 0.1 + 1e-9
