@@ -42,7 +42,7 @@ def density(chart: Chart, stream_rows: int) -> Density:
     lengths = np.diff(edges)
     rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > _SHORTEST)
     first, last = chart.timing.seconds(ticks[[0, -1]])
-    mean = len(ticks) / (last - first) if last > first else 0.0
+    mean = (len(ticks) - 1) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows
     return Density(
         float(mean), float(rates.max()), breakdown(stream.tolist()), int(stream.sum()), tuple(counts.tolist())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.settings import Settings
@@ -38,7 +38,7 @@ def with_suggestions(
     told: list[Finding] = []
     for finding in findings:
         best: tuple[int, str] | None = None
-        for edit in _edits(finding, subject.play) if finding.rule in MENDABLE else ():
+        for edit in _edits(finding, subject.play, subject.chart) if finding.rule in MENDABLE else ():
             play = solve(_edited(subject.play.rows, edit), subject.pad, preset, subject.overrides, margins=True)
             found = _places(check_chart(replace(subject, play=play), settings))
             mended = (finding.rule, finding.beat) not in found and found <= before
@@ -52,7 +52,7 @@ def _places(findings: Sequence[Finding]) -> set[tuple[str, float | None]]:
     return {(finding.rule, finding.beat) for finding in findings if finding.rule.startswith(_FAMILIES)}
 
 
-def _edits(finding: Finding, play: Play) -> Iterator[_Edit]:
+def _edits(finding: Finding, play: Play, chart: Chart) -> Iterator[_Edit]:
     """Every tap in and around the finding's row, to every panel that is free there."""
     if finding.beat is None:
         return
@@ -61,8 +61,9 @@ def _edits(finding: Finding, play: Play) -> Iterator[_Edit]:
     for row in (at + offset for offset in _AROUND):
         if not 0 <= row < len(rows):
             continue
-        held = ((rows.hold_end[:row] > rows.tick[row]) & (rows.hold_end[:row] >= 0)).any(axis=0)
-        free = (rows.steps[row] == StepKind.NONE) & ~rows.mines[row] & ~held
+        free = (rows.steps[row] == StepKind.NONE) & ~rows.mines[row]
+        notes, tick = chart.notes, int(rows.tick[row])
+        free[notes.column[(notes.tick <= tick) & (notes.end >= tick)]] = False  # nor where a hold or roll is or ends
         for column in np.flatnonzero(rows.steps[row] == StepKind.TAP).tolist():
             for to in np.flatnonzero(free).tolist():
                 yield _Edit(row, column, to)

@@ -18,7 +18,7 @@ from dancetutor_cli.jobs.result import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
-_JACK, _DOUBLESTEP, _FOOTSWITCH = 0.176, 0.235, 0.3  # seconds between two rows, the game's own limits
+_JACK, _DOUBLESTEP, _FOOTSWITCH = 176, 235, 300  # milliseconds between two rows, the game's own limits
 Flags = NDArray[np.bool_]
 
 
@@ -26,13 +26,13 @@ Flags = NDArray[np.bool_]
 class _Steps:
     """Rows with steps that a foot presses, n; columns c. -1: none.
 
-    row : of the play; second : their times; count : steps in the row
+    row : of the play; gap : (n - 1,) milliseconds from one to the next, free of float noise; count : steps in the row
     foot : (n, c) 0 left, 1 right; heel, toe : (n, 2) column that a foot presses
     x : (n, 2) place of the foot, NaN without; of a bracket between its panels; heel_x : that of the heel
     """
 
     row: NDArray[np.int64]
-    second: NDArray[np.float64]
+    gap: NDArray[np.int64]
     count: NDArray[np.int64]
     foot: NDArray[np.int8]
     heel: NDArray[np.int64]
@@ -66,7 +66,9 @@ def _steps_of(subject: ChartSubject) -> _Steps:
     toes = np.stack([_first((foot == f) & toe) for f in (0, 1)], axis=1)
     places = np.append(pad.panels[:, 0], np.nan)  # column -1: no place
     x = np.where(toes >= 0, (places[heels] + places[toes]) / 2, places[heels])
-    return _Steps(row, play.rows.second[row], written.sum(axis=1), foot, heels, toes, x, places[heels])
+    return _Steps(
+        row, np.diff(np.cumsum(play.rows.milliseconds)[row]), written.sum(axis=1), foot, heels, toes, x, places[heels]
+    )
 
 
 def _first(flags: Flags) -> NDArray[np.int64]:
@@ -76,7 +78,7 @@ def _first(flags: Flags) -> NDArray[np.int64]:
 
 def _switches(steps: _Steps, arrows: NDArray[np.float64]) -> dict[str, int]:
     """Panels taken over, by where their arrows point."""
-    soon = np.diff(steps.second) < _FOOTSWITCH
+    soon = steps.gap < _FOOTSWITCH
     now, before = steps.foot[1:], steps.foot[:-1]
     per_panel = ((now >= 0) & (before >= 0) & (now != before) & soon[:, None]).sum(axis=0)
     across, along = arrows[: len(per_panel)].T
@@ -92,13 +94,13 @@ def _switches(steps: _Steps, arrows: NDArray[np.float64]) -> dict[str, int]:
 def _repeats(steps: _Steps, subject: ChartSubject) -> dict[str, int]:
     """The same foot in two single rows one after the other: on its panel, or on another."""
     assert subject.play is not None
-    seconds = np.diff(steps.second)[:, None]
+    gap = steps.gap[:, None]
     now, before = steps.heel[1:], steps.heel[:-1]
     again = (now >= 0) & (before >= 0) & ((steps.count[1:] == 1) & (steps.count[:-1] == 1))[:, None]
-    moved = (again & (now != before) & (seconds < _DOUBLESTEP)).any(axis=1)
+    moved = (again & (now != before) & (gap < _DOUBLESTEP)).any(axis=1)
     forced = sum("forced-doublestep" in subject.play.moves[row] for row in steps.row[1:][moved].tolist())
     return {
-        "Jacks": int((again & (now == before) & (seconds < _JACK)).sum()),
+        "Jacks": int((again & (now == before) & (gap < _JACK)).sum()),
         "Doublesteps": int(moved.sum()),
         "ForcedDoublesteps": forced,
         "UnforcedDoublesteps": int(moved.sum()) - forced,

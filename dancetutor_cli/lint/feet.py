@@ -75,10 +75,12 @@ class Feet:
 
         A step while the other foot is held down does not count: there is no choice.
         """
-        presses, seconds = self.presses, self._play.rows.second
-        first = np.flatnonzero(np.diff(presses.row, prepend=-1))  # the first press of every row
-        alone = np.diff(np.append(first, len(presses.row))) == 1
-        row, column, limb = presses.row[first], presses.column[first], presses.limb[first]
+        rows, columns = np.nonzero(self._play.limb >= 0)  # a roll's taps are steps that come between, too
+        seconds = self._play.rows.second
+        first = np.flatnonzero(np.diff(rows, prepend=-1))  # the first press of every row
+        alone = np.diff(np.append(first, len(rows))) == 1
+        row, column = rows[first], columns[first]
+        limb = self._play.limb[row, column]
         follows = alone[1:] & alone[:-1] & (limb[1:] == limb[:-1]) & (limb[1:] <= Limb.RIGHT_FOOT)
         follows &= (column[1:] != column[:-1]) & (np.diff(seconds[row]) <= max_seconds + _EPSILON)
         count, last = 1, -1

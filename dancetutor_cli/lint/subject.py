@@ -15,7 +15,7 @@ from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
 from dancetutor_cli.lint.feet import Feet
 from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Ambiguity, Limb, Play
+from dancetutor_cli.play.model import Ambiguity, Limb, Play, StepKind
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class ChartSubject:
     def foot_name(self, row: int) -> str:
         """ "left" or "right": the foot that presses the first panel of a row which only one foot steps."""
         assert self.play is not None
-        limbs = self.play.limb[row]
+        limbs = self.play.limb[row][self.play.rows.steps[row] != StepKind.ROLL_TAP]
         return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
 
     def unplayed(self, row: int) -> int:

@@ -98,15 +98,13 @@ def _charge_step(before, foot, pressed, released, terms, g, w):  # type: ignore[
     if again and pressed & ~stands == 0:
         return _F_JACK, 0
     if pressed & other and not pressed & held_by(before, 1 - foot, g):
-        panel = 0
-        while not pressed & other & 1 << panel:
-            panel += 1
-        arrow = g.arrow[panel]
-        events |= _SWITCH[arrow]
         marked = before[LEFT_LIFTED + 1 - foot]
         terms[FOOTSWITCH] = w[MARKED_FOOTSWITCH] if marked else w[FOOTSWITCH]
-        if arrow in (LEFT, RIGHT):
-            terms[SIDESWITCH] = w[SIDESWITCH]
+        for panel in range(len(g.arrow)):  # a bracket may take over two
+            if pressed & other & 1 << panel:
+                events |= _SWITCH[g.arrow[panel]]
+                if g.arrow[panel] in (LEFT, RIGHT):
+                    terms[SIDESWITCH] = w[SIDESWITCH]
         if not marked:
             facts |= _F_SWITCH
     if again and pressed & ~stands:

@@ -63,7 +63,9 @@ class SarifReport:
         if finding.line is not None:
             physical["region"] = {"startLine": finding.line, "startColumn": finding.column or 1}
         location: dict[str, Any] = {"physicalLocation": physical}
-        if entry.place:
+        if not entry.place:
+            location["logicalLocations"] = [{"name": entry.path.rsplit("/", 1)[-1], "kind": "song"}]
+        else:
             name = entry.place.rsplit("/", 1)[-1]
             location["logicalLocations"] = [{"name": name, "fullyQualifiedName": entry.place, "kind": "chart"}]
         return {

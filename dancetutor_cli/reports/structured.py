@@ -23,8 +23,9 @@ class Entry:
 
     @property
     def message(self) -> str:
-        """The finding's message with the chart it is about."""
-        text = safe(self.finding.message)
+        """The finding's message with the edit that would mend it and the chart it is about."""
+        better = self.finding.suggestion
+        text = safe(self.finding.message) + (f"; better: {safe(better)}" if better else "")
         return f"{text} [{safe(self.chart.label)}]{self.moment}" if self.chart else text
 
     @property

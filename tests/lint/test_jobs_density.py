@@ -39,7 +39,7 @@ def test_density_of_a_chart() -> None:
     assert found.stream_measures == 3
     assert found.per_measure == (0, 16, 16, 1, 16)
     assert found.peak == pytest.approx(8.0)  # 16 rows in the 2 s of a measure at 120 BPM
-    assert found.mean == pytest.approx(49 / (4 * 2.0 - 0.125))
+    assert found.mean == pytest.approx(48 / (4 * 2.0 - 0.125))
 
 
 def test_the_peak_follows_the_tempo() -> None:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from dancetutor_cli.chart import parse
 from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.jobs.suggest import _edits
 from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.play import load_preset, solve_chart
 
 PANELS = ("left", "down", "up", "right")
 # Left, down, right crossed, and on round to up: a spin.
@@ -36,6 +39,18 @@ def test_the_suggested_edit_removes_the_finding_and_brings_no_other(tmp_path: Pa
     after = analysed([*SPIN[:row], "".join(cells), *SPIN[row + 1 :]], tmp_path).charts[0].findings
     assert "DT202" not in [finding.rule for finding in after]
     assert {f.rule for f in after} <= {f.rule for f in before}
+
+
+def test_no_note_goes_where_a_hold_or_roll_is_or_ends() -> None:
+    notes = "2010\n0100\n3001\n0010\n0400\n0010\n0300\n0001"
+    song = parse(f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n{notes}\n;\n".encode(), Path("x.sm"))
+    chart = song.charts[0]
+    play = solve_chart(chart, load_preset("thesis"))
+    for beat, taken in ((1.0, {0, 3}), (0.5, {0, 1}), (2.5, {1, 2}), (3.0, {1})):
+        finding = Finding("DT202", "spin", "warning", "", None, None, 0, beat)
+        edits = [edit for edit in _edits(finding, play, chart) if play.rows.tick[edit.row] == round(beat * 48)]
+        assert not {edit.to for edit in edits} & taken
+    assert edits == []  # no tap stands in the row of a tail
 
 
 def test_nothing_is_suggested_unless_asked(tmp_path: Path) -> None:

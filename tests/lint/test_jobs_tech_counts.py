@@ -61,16 +61,17 @@ def counted(json_rows: Sequence[Mapping[str, Any]], steps_type: str) -> Counter[
     for i, row in enumerate(rows):
         if i == 0:
             continue
-        before, elapsed = rows[i - 1], row.second - rows[i - 1].second
+        before = rows[i - 1]
+        elapsed = int((row.second - before.second) * 1000 + 0.5 + 1e-6)  # milliseconds, half up
         if row.count == before.count == 1 and set(row.heel) & set(before.heel):
             (now,), (then,) = row.heel.values(), before.heel.values()
-            if now == then and elapsed < 0.176:
+            if now == then and elapsed < 176:
                 found["Jacks"] += 1
-            if now != then and elapsed < 0.235:
+            if now != then and elapsed < 235:
                 found["Doublesteps"] += 1
                 found["ForcedDoublesteps" if "forced-doublestep" in row.moves else "UnforcedDoublesteps"] += 1
         for column, foot in row.foot.items():
-            if before.foot.get(column, foot) != foot and elapsed < 0.3:
+            if before.foot.get(column, foot) != foot and elapsed < 300:
                 way = pad[column][1]
                 total = "Footswitches" if way in "UD" else "Sideswitches"
                 found[total] += 1
@@ -112,7 +113,7 @@ def nps_and_breakdown(song_path: Path, index: int) -> tuple[float, str]:
         text = text.partition(") ")[2] if ") " in text else ""
     if text.endswith(")"):
         text = text.rpartition(" (")[0]
-    return len(ticks) / (last - first), text
+    return (len(ticks) - 1) / (last - first), text
 
 
 def test_real_charts_are_counted_the_same_from_their_json(corpus: Path) -> None:
@@ -137,13 +138,16 @@ def test_real_charts_are_counted_the_same_from_their_json(corpus: Path) -> None:
     assert all(sums[name] for name in TECH_COUNTS) and breakdowns, sums  # every column was put to the test
 
 
-def tech(rows: Sequence[str], feet: str, *, bpm: int = 150, quant: int = 8) -> dict[str, int]:
+def tech(rows: Sequence[str], feet: str, *, bpm: int = 150, quant: int = 8, offset: str = "0") -> dict[str, int]:
     """Counts of a chart whose rows are 8ths and whose feet are laid down; "(LR)" is one row."""
     measures = [
         [*rows[n : n + quant], *["0000"] * (quant - len(rows[n : n + quant]))] for n in range(0, len(rows), quant)
     ]
     notes = "\n,\n".join("\n".join(measure) for measure in measures)
-    song = parse(f"#TITLE:T;\n#BPMS:0={bpm};\n#NOTES:dance-single::Hard:9::\n{notes}\n;\n".encode(), Path("x.sm"))
+    song = parse(
+        f"#TITLE:T;\n#OFFSET:{offset};\n#BPMS:0={bpm};\n#NOTES:dance-single::Hard:9::\n{notes}\n;\n".encode(),
+        Path("x.sm"),
+    )
     chart, letters, cells = song.charts[0], iter(feet), {}
     for number, row in enumerate(rows):
         for column in (c for c, note in enumerate(row) if note != "0"):
@@ -183,6 +187,12 @@ def test_slow_steps_count_for_nothing() -> None:
     assert "Footswitches" not in tech([L, D, D], "LRL", bpm=90)
 
 
+@pytest.mark.parametrize("offset", ["0", "7.123", "-33.333", "0.009"])
+def test_the_offset_changes_no_count(offset: str) -> None:
+    """At 100 BPM 8ths are 0.3 s apart, exactly the limit of a footswitch."""
+    assert "Footswitches" not in tech([L, D, D, R, U, U, L], "LRLRLRL", bpm=100, offset=offset)
+
+
 def test_a_bracket_counts_for_its_foot() -> None:
     assert tech(["1100", R], "LlR") == {"Brackets": 1}
 
@@ -203,4 +213,4 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
     line = next(csv.DictReader(io.StringIO(stream.getvalue())))
     assert set(TECH_COUNTS) <= set(line)
     assert [line["Jacks"], line["Crossovers"], line["rows"]] == ["7", "0", "8"]
-    assert float(line["nps_mean"]) == pytest.approx(8 / (7 * 0.15), abs=1e-3)
+    assert float(line["nps_mean"]) == pytest.approx(1 / 0.15, abs=1e-3)

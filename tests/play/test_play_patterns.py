@@ -133,3 +133,13 @@ def test_nothing_is_switched_before_the_first_step() -> None:
     pad = pad_of("dance-double")
     solved = play.solve(rows_of("1..1.... 1....... ...1....", 48, 150.0), pad, ITG)
     assert solved.moves[0] == ("jump",)
+
+
+def test_a_bracket_that_takes_over_two_panels_costs_the_same_in_the_mirror() -> None:
+    """The foot takes over a side panel and a middle one: both ways a sideswitch."""
+    pad = pad_of("dance-single")
+    margins = [
+        play.solve(rows_of(picture, 12, 150.0), pad, ITG, margins=True).margin.tolist()
+        for picture in ("1111 11MM 1..1", "1111 MM11 1..1")
+    ]
+    assert margins[0] == margins[1]

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.rule import MoveRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Spin(MoveRule):
-    """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins.
+    """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins (in a jump: DT203).
 
     Bad: the crossover goes on in place of being unwound.
 
@@ -27,3 +34,9 @@ class Spin(MoveRule):
     name = "spin"
     move = "spin"
     said = "the body turns beyond 180 degrees: a spin"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each spin; DT203 tells of those in a jump."""
+        for row in subject.rows_with(self.move):
+            if not subject.is_jump(row):
+                yield self.finding(self.said, subject.at_row(row))
