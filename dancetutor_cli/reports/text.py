@@ -19,6 +19,7 @@ from dancetutor_cli.reports.tally import Tally
 _STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
 _WIDTH_WITHOUT_TERMINAL = 100
 _MOST_LETTERS = 16  # rows of another play that are written out
+_MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
 
 
 class TextReport:
@@ -59,6 +60,7 @@ class TextReport:
         if chart.playable:
             self._stream.write(chart_table(chart, self._console))
             self._alternatives(chart)
+            self._forced(chart)
         for finding in chart.findings:
             self._finding(result, chart, finding)
         if chart.findings:
@@ -79,6 +81,20 @@ class TextReport:
                 self._line(
                     f"      beat {beats}: ", _cut(run.other), self._paint(" in place of ", "dim"), _cut(run.best)
                 )
+
+    def _forced(self, chart: ChartResult) -> None:
+        """Doublesteps that are no fault of the feet, each with what forces it."""
+        forced = [cause for cause in chart.causes or () if cause.forced]
+        for cause in forced[:_MOST_FORCED]:
+            panel = (
+                f" {chart.arrows[cause.column]}"
+                if cause.column is not None and chart.arrows and not self._plain
+                else ""
+            )
+            since = "" if cause.at_beat is None else f" of beat {round(cause.at_beat, 3):g}"
+            self._line(f"forced doublestep on beat {round(cause.beat, 3):g}, by the {cause.cause}{since}{panel}")
+        if len(forced) > _MOST_FORCED:
+            self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json tells all")
 
     def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
         rule = self._paint(f"{finding.rule}", _STYLES[finding.severity])

@@ -87,6 +87,14 @@ def test_a_doublestep_is_told_with_what_makes_it() -> None:
     assert [one.message for one in told] == ["twice, because of the hold on beat 0 (left)", "round"]
 
 
+def test_what_forces_a_doublestep_is_told_in_text() -> None:
+    words = [str(DEMO), "--difficulty", "hard", "--steps-type", "dance-single", "--select", "DT201"]
+    told = [CliRunner().invoke(command, [*words, *more], standalone_mode=False).stdout for more in ((), ("--suggest",))]
+    forced = [line for line in told[1].splitlines() if line.startswith("forced doublestep")]
+    assert "forced doublestep on beat 21, by the hold of beat 20 ←" in forced
+    assert "forced doublestep on" not in told[0]
+
+
 @pytest.mark.parametrize(
     ("rows", "beat", "kind"),
     [(["1001", "0000", "0100", "1001"], 2.0, "resolved"), (["0100", "0010", "0100", "0010"], 0.0, "open")],
