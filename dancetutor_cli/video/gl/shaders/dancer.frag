@@ -21,13 +21,7 @@ float sunlit() {
     if (has_shadow <= 0.0 || any(lessThan(place_in_light, vec3(0.0))) || any(greaterThan(place_in_light, vec3(1.0)))) {
         return 1.0;
     }
-    vec2 texel = 0.5 / vec2(textureSize(shadow, 0));
-    float light = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        vec2 away = texel * vec2(float((i & 1) * 2 - 1), float((i & 2) - 1));
-        light += texture(shadow, vec3(place_in_light.xy + away, place_in_light.z));
-    }
-    return 0.25 * light;
+    return texture(shadow, place_in_light);
 }
 
 void main() {
