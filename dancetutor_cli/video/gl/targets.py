@@ -30,7 +30,7 @@ def pyramid(images: tuple[NDArray[np.uint8], ...]) -> int:
     """A smooth texture of an image and its halvings."""
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
-    _parameters(GL.GL_LINEAR_MIPMAP_LINEAR, GL.GL_LINEAR, GL.GL_REPEAT, len(images) - 1)
+    _parameters(GL.GL_LINEAR_MIPMAP_NEAREST, GL.GL_LINEAR, GL.GL_REPEAT, len(images) - 1)
     for level, image in enumerate(images):
         refill(number, image, level)
     return number
