@@ -19,13 +19,14 @@ from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.model import Character, Mesh
 from dancetutor_cli.character.reader import read_character
 from dancetutor_cli.files import write_atomic
+from dancetutor_cli.formats.thinning import clocks
 from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.rig import quaternion as quat
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
 _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _VERTICES, _INDICES = 34962, 34963
-_SETTLED = 1e-6  # a rotation or position that varies less than this is not animated
 
 
 def read_glb(path: Path) -> Character:
@@ -37,9 +38,9 @@ def write_glb(path: Path, character: Character, motion: Motion | None = None) ->
     """Write a character, and the motion as its animation, atomically.
 
     The motion must be of the character's skeleton. Rotations are normalised 16-bit quaternions (0.03 mm at the foot);
-    joints that never move have no channel; all channels share one array of times. glTF counts time from 0: the
-    animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is kept in the
-    animation's extras as `start_second`.
+    joints that never move have no channel, the others have the keys that they need (`thinning.clocks`). glTF counts
+    time from 0: the animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is
+    kept in the animation's extras as `start_second`.
 
     Raises FileError when the file cannot be written, ValueError when motion and character differ in joints.
     """
@@ -178,28 +179,18 @@ class _Writer:
     def animation(self, motion: Motion) -> None:
         start = min(0.0, float(motion.times[0]))
         times = np.asarray(motion.times - start, dtype="<f4")
-        keep = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
-        times = times[keep]
-        clock = self.accessor(times, min=[float(times[0])], max=[float(times[-1])])
-        once: list[int] = []  # the first time alone, for what is turned but never moves; made when it is needed
-        samplers: list[dict[str, Any]] = []
-        channels: list[dict[str, Any]] = []
-
-        def channel(node: int, path: str, values: NDArray[Any], moves: bool, **more: Any) -> None:
-            output = self.accessor(values if moves else values[:1], **more)
-            if not moves and not once:
-                once.append(self.accessor(times[:1], min=[float(times[0])], max=[float(times[0])]))
-            samplers.append({"input": clock if moves else once[0], "output": output, "interpolation": "LINEAR"})
-            channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
-
-        for j in range(len(motion.skeleton.names)):
-            q = _continuous(motion.rotations[keep, j])
-            moves = bool(np.ptp(q, axis=0).max() > _SETTLED)
-            if moves or abs(abs(q[0, 0]) - 1) > _SETTLED:
-                channel(j, "rotation", np.rint(q[:, [1, 2, 3, 0]] * 32767).astype("<i2"), moves, normalized=True)
-        root = np.asarray(motion.root[keep], dtype="<f4")
-        channel(0, "translation", root, bool(np.ptp(root, axis=0).max() > _SETTLED))
-        animation: dict[str, Any] = {"name": "dance", "samplers": samplers, "channels": channels}
+        apart = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
+        channels = _Channels(self)
+        groups = clocks(motion)
+        for clock in groups:
+            keep = apart & clock.keep
+            for j in clock.joints:
+                turned = np.rint(quat.continuous(motion.rotations[keep, j])[:, [1, 2, 3, 0]] * 32767).astype("<i2")
+                if (turned != turned[0]).any() or abs(int(turned[0, 3])) != 32767:
+                    channels.add(j, "rotation", times[keep], turned, normalized=True)
+        keep = apart & groups[0].keep
+        channels.add(0, "translation", times[keep], np.asarray(motion.root[keep], dtype="<f4"))
+        animation: dict[str, Any] = {"name": "dance", "samplers": channels.samplers, "channels": channels.channels}
         extras: dict[str, Any] = {} if start == 0 else {"start_second": start}
         if motion.bar is not None:
             bar, grips = asdict(motion.bar), [asdict(grip) for grip in motion.grips]
@@ -209,18 +200,42 @@ class _Writer:
         self.doc["animations"] = [animation]
 
 
+class _Channels:
+    """Samplers and channels of an animation; what has the same times shares them."""
+
+    def __init__(self, writer: _Writer) -> None:
+        self.writer = writer
+        self.inputs: dict[bytes, int] = {}
+        self.samplers: list[dict[str, Any]] = []
+        self.channels: list[dict[str, Any]] = []
+
+    def add(self, node: int, path: str, times: NDArray[Any], values: NDArray[Any], **more: Any) -> None:
+        """A channel; where its values stand still for a while only the keys at both ends are written, if that pays."""
+        changes = (values[1:] != values[:-1]).any(axis=1)
+        keep = np.concatenate([[True], changes]) | np.concatenate([changes, [changes.any()]])
+        own = keep.sum() * (times.itemsize + values[0].nbytes)
+        if own < len(times) * values[0].nbytes:
+            times, values = times[keep], values[keep]
+        sampler = {
+            "input": self.input(times),
+            "output": self.writer.accessor(values, **more),
+            "interpolation": "LINEAR",
+        }
+        self.samplers.append(sampler)
+        self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
+
+    def input(self, times: NDArray[Any]) -> int:
+        name = times.tobytes()
+        if name not in self.inputs:
+            self.inputs[name] = self.writer.accessor(times, min=[float(times[0])], max=[float(times[-1])])
+        return self.inputs[name]
+
+
 def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
     """Joints and weights as glTF wants them: no joint named where its weight is 0."""
     weights = np.asarray(mesh.weights, dtype="<f4")
     joints = np.where(weights > 0, mesh.joints, 0)
     return joints.astype("|u1" if joints.max(initial=0) < 256 else "<u2"), weights
-
-
-def _continuous(q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Flip quaternions so that each is on the short arc from the one before."""
-    flips = np.sign(np.sum(q[1:] * q[:-1], axis=1))
-    flips[flips == 0] = 1
-    return np.asarray(q * np.concatenate([[1.0], np.cumprod(flips)])[:, None])
 
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
