@@ -5,161 +5,47 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import yaml
 
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.motion.sections import (
+    ArmSettings,
+    BodySettings,
+    Gait,
+    HairSettings,
+    HandSettings,
+    InertiaSettings,
+    JumpSettings,
+    LayerSettings,
+    LookSettings,
+    MineSettings,
+    SamplingSettings,
+    StepSettings,
+    WalkSettings,
+)
 from dancetutor_cli.resources import config_path
 
-
-@dataclass(frozen=True, slots=True)
-class StepSettings:
-    """How a foot steps; metres, seconds, degrees. Each name is explained in `configs/motion.yaml`."""
-
-    longest: float
-    double_support: float
-    double_support_fast: float
-    height_slow: float
-    height_fast: float
-    fast: float
-    jack_height: float
-    edge_margin: float
-    lift_pitch: float
-    swing_pitch: float
-    land_pitch: float
-    stream_pitch: float
-    heel_drop: float
-    yaw_to_normal: float
-    toe_out: float
-    foot_turn: float
-    let_go: float
-    ankle_limit: float
-    crossover_turn: float
-    apart: float
-    leap: float
-    leap_stance: float
-    pivot_from: float
-    pivot_to: float
-    pivot_pitch: float
-
-
-@dataclass(frozen=True, slots=True)
-class JumpSettings:
-    """How she jumps."""
-
-    apex_near: float
-    apex_far: float
-    apex_hands: float
-    far: float
-    flight_share: float
-    tuck: float
-    lift_pitch: float
-    land_pitch: float
-    yaw_to_normal: float
-    gallop: float
-    gallop_wait: float
-
-
-@dataclass(frozen=True, slots=True)
-class BodySettings:
-    """How the body rides on the feet."""
-
-    stance: float
-    soft_reach: float
-    reach: float
-    turn_to_feet: float
-    step_rise: float
-    lean: float
-    smooth: float
-    foot_weight: float
-    middle_weight: float
-    height_smooth: float
-    least_force: float
-    most_force: float
-
-
-@dataclass(frozen=True, slots=True)
-class HandSettings:
-    """How a hand comes down on a panel."""
-
-    reach_down: float
-    press: float
-    pelvis: float
-    bend: float
-    bend_aside: float
-    turn_from: float
-    turn_most: float
-
-
-@dataclass(frozen=True, slots=True)
-class ArmSettings:
-    """Where free hands hang and how they swing."""
-
-    swing: float
-    out: float
-    forward: float
-    down: float
-
-
-@dataclass(frozen=True, slots=True)
-class MineSettings:
-    """How a foot gets out of the way of a mine."""
-
-    before: float
-    rise: float
-    hop: float
-    height: float
-
-
-@dataclass(frozen=True, slots=True)
-class LookSettings:
-    """Where she looks and how far each part may turn."""
-
-    torso_limit: float
-    head_limit: float
-    eyes_limit: float
-    torso_weight: float
-    head_weight: float
-    eyes_weight: float
-    distance: float
-    height: float
-
-
-@dataclass(frozen=True, slots=True)
-class InertiaSettings:
-    """How chest and hands overshoot."""
-
-    chest_frequency: float
-    chest_damping: float
-    hand_frequency: float
-    hand_damping: float
-
-
-@dataclass(frozen=True, slots=True)
-class LayerSettings:
-    """Small movements on top."""
-
-    breath_time: float
-    breath_shoulders: float
-    breath_nod: float
-    head_bob: float
-    shoulder_drop: float
-    sway: float
-    sway_time: float
-    blink_time: float
-
-
-@dataclass(frozen=True, slots=True)
-class HairSettings:
-    """The braid."""
-
-    rate: float
-    gravity: float
-    damping: float
-    stiffness: float
-    head_radius: float
-    back_radius: float
+__all__ = [
+    "ArmSettings",
+    "BarSettings",
+    "BodySettings",
+    "Gait",
+    "HairSettings",
+    "HandSettings",
+    "InertiaSettings",
+    "JumpSettings",
+    "LayerSettings",
+    "LookSettings",
+    "MineSettings",
+    "MotionSettings",
+    "SamplingSettings",
+    "StepSettings",
+    "WalkSettings",
+    "default_settings",
+    "load_settings",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,48 +66,6 @@ class BarSettings:
     slack: float
     reach_time: float
     shortest: float
-
-
-@dataclass(frozen=True, slots=True)
-class WalkSettings:
-    """When she walks, and from where to where."""
-
-    least: float
-    settle: float
-    pause: float
-    leave: float
-    beside: float
-    floor: float
-    width: float
-    turn: float
-    sideways: float
-    far: float
-    wait: float
-
-
-@dataclass(frozen=True, slots=True)
-class Gait:
-    """A way to walk: a cycle of two steps, from one landing of the left foot to the next."""
-
-    period: float
-    stride: float
-    height: float
-    push_pitch: float
-    heel_pitch: float
-    hip_drop: float
-    pelvis_yaw: float
-    chest_yaw: float
-    hips: float
-    arch: float
-    arms: float
-    plant: float
-
-
-@dataclass(frozen=True, slots=True)
-class SamplingSettings:
-    """Rates of the bake."""
-
-    work_rate: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,25 +91,7 @@ class MotionSettings:
     sampling: SamplingSettings
 
 
-_SECTIONS: dict[str, type[Any]] = {
-    "step": StepSettings,
-    "jump": JumpSettings,
-    "body": BodySettings,
-    "hands": HandSettings,
-    "arms": ArmSettings,
-    "mines": MineSettings,
-    "look": LookSettings,
-    "inertia": InertiaSettings,
-    "layers": LayerSettings,
-    "hair": HairSettings,
-    "bar": BarSettings,
-    "walk": WalkSettings,
-    "stroll": Gait,
-    "brisk": Gait,
-    "heels_stroll": Gait,
-    "heels_brisk": Gait,
-    "sampling": SamplingSettings,
-}
+_SECTIONS: dict[str, type[Any]] = get_type_hints(MotionSettings)
 
 
 def load_settings(path: Path) -> MotionSettings:
