@@ -14,9 +14,10 @@ from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
 from dancetutor_cli.bake.pieces import Each, Piece, in_turn, joined, piece_ends, trimmed
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.bar import bar_of, grips_of, hold_share, holding
+from dancetutor_cli.motion.bar import bar_of, hold_share, holding
 from dancetutor_cli.motion.body import BodyPath, body_path, stepping
 from dancetutor_cli.motion.feet import FootPath, foot_path
+from dancetutor_cli.motion.grips import grips_of
 from dancetutor_cli.motion.ik import Targets, solve
 from dancetutor_cli.motion.layers import add_layers
 from dancetutor_cli.motion.look import look
@@ -110,7 +111,7 @@ def plan_of(
     rail = bar_of(pad, settings.bar)
     arrived = max((w.end for w in plan.walks if w.end < first), default=first - LEAD_IN)
     leaves = min((w.start for w in plan.walks if w.start > last), default=last + LEAD_OUT)
-    grips = grips_of(plan, rail, (arrived, leaves), settings)
+    grips = grips_of(plan, rail, (arrived, leaves), dancer_skeleton(), settings)
     return replace(plan, bar=rail, grips=grips)
 
 

@@ -13,18 +13,18 @@ from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.inertia import Controller, follow
+from dancetutor_cli.motion.palms import palm_down
 from dancetutor_cli.motion.paths import UP, leaning, sample_path, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan, Press
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
-from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_points
+from dancetutor_cli.rig.soles import SIDES, palm_points
 
 Array = NDArray[np.float64]
 LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
 FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
 SLAP = 0.8  # metres per second with which a palm meets the floor at least
-BACKWARD = np.array([[0.39, 0.0, -0.921], [-0.39, 0.0, -0.921]])  # where the fingers of a hand on the bar point
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
@@ -35,6 +35,7 @@ class HandTargets:
     wrists: Array
     turn: Array
     pinned: Array
+    pull: Array
     elbows: Array
 
 
@@ -49,14 +50,11 @@ def arm_targets(
     out = np.array([[1.0], [-1.0]]) * np.array([0.7, 0.0, 0.0]) + np.array([0.0, -0.25, -0.75])
     elbows = quat.rotate(upright[:, None], out)
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
-    pinned = np.zeros((len(at), 2))
-    if plan.bar is not None:
-        down = [palm_down(skeleton, side, fingers) for side, fingers in enumerate(BACKWARD)]
-        palms = [point.offset for point in palm_points(skeleton)]
-        hold(plan, at, palms, down, wrists, turn, pinned, elbows, shoulders, settings)
+    pinned, pull = np.zeros((len(at), 2)), np.zeros((len(at), 2))
+    hold(plan, at, wrists, turn, pinned, elbows, shoulders, chest, skeleton, settings)
     for press in plan.presses:
-        _press(press, at, wrists, turn, pinned, elbows, shoulders, skeleton, settings)
-    return HandTargets(wrists, turn, pinned, elbows)
+        _press(press, at, wrists, turn, pinned, pull, elbows, shoulders, skeleton, settings)
+    return HandTargets(wrists, turn, pinned, pull, elbows)
 
 
 def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
@@ -98,30 +96,8 @@ def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
     return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)
 
 
-def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
-    """World rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
-    along, normal = hand_direction(skeleton, SIDES[side]), palm_normal(skeleton, SIDES[side])
-    down = np.array([0.0, -1.0, 0.0])
-    rest = np.column_stack((along, normal, np.cross(along, normal)))
-    goal = np.column_stack((fingers, down, np.cross(fingers, down)))
-    return _from_matrix(goal @ rest.T)
-
-
-def _from_matrix(m: Array) -> Array:
-    """Quaternion of a rotation matrix, by its largest component."""
-    k = np.array([
-        [m[0, 0] + m[1, 1] + m[2, 2], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
-        [0, m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
-        [0, 0, m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2]],
-        [0, 0, 0, m[2, 2] - m[0, 0] - m[1, 1]],
-    ])  # fmt: skip
-    values, vectors = np.linalg.eigh(k, UPLO="U")
-    q = vectors[:, np.argmax(values)]
-    return np.asarray(q if q[0] >= 0 else -q)
-
-
 def _press(
-    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, elbows: Array, shoulders: Array,
+    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, pull: Array, elbows: Array, shoulders: Array,
     skeleton: Skeleton, settings: MotionSettings,
 ) -> None:  # fmt: skip
     down, side = settings.hands.reach_down, press.side
@@ -154,3 +130,4 @@ def _press(
     turn[near, side] = hand
     pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
     pinned[near, side] = np.maximum(pinned[near, side], pin)
+    pull[near, side] = np.maximum(pull[near, side], pin)

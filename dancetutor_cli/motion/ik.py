@@ -48,6 +48,7 @@ class Targets:
     pinned : (f, 2), 0 for a free hand to 1 for a palm that must be where `wrists` says, with that rotation
     elbows : (f, 2, 3) directions; ankles : (f, 2, 3); feet_turn : (f, 2, 4); toes_turn : (f, 2, 4)
     knees : (f, 2, 3) directions
+    pull : (f, 2), 0 to 1, how much of a pinned hand's missing distance the body goes; None: as `pinned`
     """
 
     pelvis: Array
@@ -62,6 +63,7 @@ class Targets:
     feet_turn: Array
     toes_turn: Array
     knees: Array
+    pull: Array | None = None
 
 
 _NAMES = (
@@ -88,20 +90,40 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
     pinned by 1 is on its target if torso and pelvis could follow it within `PULL_ROUNDS`.
     """
     joints = np.array([skeleton.index(name) for name in _NAMES])
-    hinges = np.zeros((2, 3))
-    for side in (0, 1):  # an elbow bends forward: its axis is square to the arm and to the front
-        arm = skeleton.offsets[joints[_ARM + 4 * side + 2]]
-        hinges[side] = np.cross(arm, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(arm, [0.0, 0.0, 1.0]))
     frames = len(targets.pelvis)
     rotations = np.zeros((frames, len(skeleton.names), 4))
     rotations[..., 0] = 1.0
     root = np.array(targets.pelvis, dtype=np.float64)
     _solve(
-        skeleton.offsets, joints, hinges, reach, follow, root, targets.pelvis_turn, targets.chest_turn,
-        targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned, targets.elbows, targets.ankles,
+        skeleton.offsets, joints, _hinges(skeleton, joints), reach, follow, root, targets.pelvis_turn,
+        targets.chest_turn, targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned,
+        targets.pinned if targets.pull is None else targets.pull, targets.elbows, targets.ankles,
         targets.feet_turn, targets.toes_turn, targets.knees, rotations,
     )  # fmt: skip
     return rotations, root
+
+
+def arm_rotations(
+    skeleton: Skeleton, side: int, shoulders: Array, chest: Array, wrists: Array, hands: Array, elbows: Array
+) -> tuple[Array, Array, Array]:
+    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist.
+
+    shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
+    """
+    joints = np.array([skeleton.index(name) for name in _NAMES])
+    out = np.zeros((len(shoulders), len(skeleton.names), 4))
+    _one_arm(skeleton.offsets, joints, _hinges(skeleton, joints), side, shoulders, chest, wrists, hands, elbows, out)
+    first = _ARM + 4 * side
+    return out[:, joints[first + 1]], out[:, joints[first + 2]], out[:, joints[first + 3]]
+
+
+def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
+    """Axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
+    out = np.zeros((2, 3))
+    for side in (0, 1):
+        arm = skeleton.offsets[joints[_ARM + 4 * side + 2]]
+        out[side] = np.cross(arm, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(arm, [0.0, 0.0, 1.0]))
+    return out
 
 
 @njit(cache=True, inline="always")
@@ -192,8 +214,8 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 @njit(cache=True)
 def _solve(
     offsets: Array, joints: Array, hinges: Array, reach: float, follow: float, root: Array, pelvis_turn: Array,
-    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, ankles: Array,
-    feet_turn: Array, toes_turn: Array, knees: Array, rotations: Array,
+    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, pull: Array, elbows: Array,
+    ankles: Array, feet_turn: Array, toes_turn: Array, knees: Array, rotations: Array,
 ) -> None:  # fmt: skip
     hips = (_vec(offsets[joints[_LEG]]), _vec(offsets[joints[_LEG + 4]]))
     arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
@@ -204,10 +226,10 @@ def _solve(
         left, right = _vec(shoulders[f, 0]), _vec(shoulders[f, 1])
         place = _pull_root(place, turn, hips, goals, reach)
         q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
-        if pinned[f, 0] > 0.0 or pinned[f, 1] > 0.0:
+        if pull[f, 0] > 0.0 or pull[f, 1] > 0.0:
             for _ in range(PULL_ROUNDS):
-                gl = _excess(sl, _vec(wrists[f, 0]), arm * ARM_REACH, pinned[f, 0])
-                gr = _excess(sr, _vec(wrists[f, 1]), arm * ARM_REACH, pinned[f, 1])
+                gl = _excess(sl, _vec(wrists[f, 0]), arm * ARM_REACH, pull[f, 0])
+                gr = _excess(sr, _vec(wrists[f, 1]), arm * ARM_REACH, pull[f, 1])
                 if length(gl) + length(gr) < 1e-5:
                     break
                 both = add(gl, gr)
@@ -267,3 +289,19 @@ def _leg(
     _put(out[joints[base + 1]], bend)
     _put(out[joints[base + 2]], qmul(qconj(shank), foot))
     _put(out[joints[base + 3]], qmul(qconj(foot), _quat(toes_turn[f, side])))
+
+
+@njit(cache=True)
+def _one_arm(
+    offsets: Array, joints: Array, hinges: Array, side: int, shoulders: Array, chest: Array, wrists: Array,
+    hands: Array, elbows: Array, out: Array,
+) -> None:  # fmt: skip
+    arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
+    goals, turns = np.zeros((1, 2, 3)), np.zeros((1, 2, 4))
+    pinned, poles = np.ones((1, 2)), np.zeros((1, 2, 3))
+    for f in range(len(shoulders)):
+        goals[0, side], turns[0, side], poles[0, side] = wrists[f], hands[f], elbows[f]
+        _arm(
+            0, side, _vec(shoulders[f]), _quat(chest[f]), arm, offsets, joints, hinges, goals, turns, pinned, poles,
+            out[f],
+        )  # fmt: skip

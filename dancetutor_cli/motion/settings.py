@@ -62,6 +62,7 @@ class BarSettings:
     soft: float
     lean_back: float
     knees: float
+    square: float
     let_go: float
     slack: float
     reach_time: float

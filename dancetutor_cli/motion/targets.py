@@ -55,7 +55,7 @@ def ik_targets(
     ]
     return Targets(
         pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
-        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet),
+        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet), hands.pull,
     )  # fmt: skip
 
 

@@ -58,8 +58,16 @@ def excess(skeleton: Skeleton, rotations: Array) -> dict[str, Array]:
         mirrored = name.startswith("r_")
         limit = LIMITS.get(name.replace("r_", "l_", 1) if mirrored else name)
         if limit is not None:
-            out[name] = _past(limit, rotations[:, joint], _bone(skeleton, joint), -1.0 if mirrored else 1.0)
+            past = _past(limit, rotations[:, joint], _bone(skeleton, joint), -1.0 if mirrored else 1.0)
+            out[name] = np.maximum(past, 0.0)
     return out
+
+
+def beyond(skeleton: Skeleton, name: str, turns: Array) -> Array:
+    """Degrees (f,) by which one joint, turned locally by (f, 4), is past its nearest limit; negative within."""
+    mirrored = name.startswith("r_")
+    limit = LIMITS[name.replace("r_", "l_", 1) if mirrored else name]
+    return _past(limit, turns, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)
 
 
 def _bone(skeleton: Skeleton, joint: int) -> Array:
@@ -76,14 +84,14 @@ def _past(limit: Limit, q: Array, bone: Array, sign: float) -> Array:
     swing, twist = quat.swing_twist(q, bone)
     turned = np.degrees(_vector(twist) @ bone)
     swung = np.degrees(_vector(swing))
-    past = np.maximum(np.linalg.norm(swung, axis=1) - limit.cone, 0.0)
+    past = np.linalg.norm(swung, axis=1) - limit.cone
     for value, (low, high) in (
         (swung[:, 0], limit.x),
         (sign * swung[:, 2], limit.z),
         (sign * turned, limit.twist),
     ):
         past = np.maximum(past, np.maximum(low - value, value - high))
-    return np.asarray(np.maximum(past, 0.0))
+    return np.asarray(past)
 
 
 def _vector(q: Array) -> Array:

@@ -47,6 +47,38 @@ def test_hands_hold_it_most_of_the_time(held: Motion) -> None:
         assert sum(g.end - g.start for g in held.grips if g.side == side) > 0.55 * np.ptp(held.times)
 
 
+def test_elbows_hang_behind_her_a_little_bent(held: Motion) -> None:
+    """As players stand: upper arms down and back, elbows neither up in the air nor straight."""
+    at = np.arange(0.5, 5.5, 0.1)
+    places, _ = world_transforms(held.skeleton, *sample(held, at))
+    for side, name in enumerate("lr"):
+        resting = np.zeros(len(at), dtype=bool)
+        for grip in (g for g in held.grips if g.side == side):
+            resting |= (at >= grip.start) & (at <= grip.end)
+        assert resting.mean() > 0.8
+        shoulder, elbow, wrist = (
+            places[resting, held.skeleton.index(f"{name}_{joint}")] for joint in ("shoulder", "elbow", "radiocarpal")
+        )
+        assert (shoulder - elbow)[:, 1].mean() > 0.10 and (shoulder - elbow)[:, 1].min() > 0.05
+        assert (shoulder - elbow)[:, 2].mean() > 0.15
+        upper, lower = shoulder - elbow, wrist - elbow
+        cosine = np.sum(upper * lower, axis=1) / np.linalg.norm(upper, axis=1) / np.linalg.norm(lower, axis=1)
+        bend = np.degrees(np.arccos(cosine))
+        assert 90.0 < np.median(bend) < 150.0 and bend.max() < 172.0
+
+
+def test_a_hand_lets_go_in_time_when_she_turns() -> None:
+    """Crossovers behind and in front and a whole spin: arms stay within their joints' limits, out of the torso."""
+    turns = [(2.0, {0: L}), (2.6, {3: R}), (3.2, {1: R}), (3.8, {3: L}), (4.4, {2: R}), (5.0, {0: L})]
+    spin = [(5.5, {1: R}), (6.0, {3: L}), (6.5, {2: R}), (7.0, {0: L}), (7.5, {3: R}), *stream(8.5, 8, 0.3)]
+    motion = bake(chart(), play([*turns, *spin]), pad(), bar=True)
+    measured = report(motion)
+    arms = [n for n in measured.notes if "past its limit" in n and n[2:].startswith(("shoulder", "elbow", "radio"))]
+    assert arms == [] and measured["limb in torso"].met and measured["palm off the bar"].met
+    alone = [t for t in np.arange(2.0, 8.0, 0.05) if len({g.side for g in motion.grips if g.start <= t <= g.end}) == 1]
+    assert len(alone) > 10  # the other hand stays on the bar
+
+
 def test_a_hand_goes_to_its_panel_and_comes_back(held: Motion) -> None:
     press = next(c for c in held.contacts if c.limb == RH)
     assert all(g.end < press.start or g.start > press.start for g in held.grips)
