@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.clear import bend
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.track import FootTrack
+from dancetutor_cli.motion.ways import TURNED, travelled, turning
 
 Array = NDArray[np.float64]
 GRAVITY = 9.81
-TURNING = 0.5  # part of a jump's ground path that turns about the middle between the feet; the rest is straight
 EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
-OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
 HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
 WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
@@ -57,7 +56,7 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     level = np.array([track.start_level, *(w.level for w in swings)])
     up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
-    turned = yaw[i] + smooth(s / 0.95) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    turned = yaw[i] + smooth(s / TURNED) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
     pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
     turned = np.where(swinging, turned, yaw[done])
@@ -83,26 +82,17 @@ def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
-    """Ground path: straight, or for jumps half turning about the middle between the feet (thesis 5.6.2.2)."""
-    free = np.clip((s - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
-    e = ((1.0 - np.cos(np.pi * free)) / 2)[:, None]
-    straight = place[i] + e * (place[i + 1] - place[i])
-    bulge = np.array([w.bulge for w in track.swings])[i] * bend(e)
-    turn = np.array([w.turn for w in track.swings])
-    share = np.where(np.array([w.kind == "jump" for w in track.swings]), TURNING, 0.0)
-    m0 = np.array([w.middle0 for w in track.swings])
-    m1 = np.array([w.middle1 for w in track.swings])
-    a, b = place[:-1] - m0, place[1:] - m1
-    e1 = e[:, 0]
-    radius = (1 - e1) * np.linalg.norm(a, axis=1)[i] + e1 * np.linalg.norm(b, axis=1)[i]
-    # yaw turns +Z towards +X, so an angle in the ground plane is atan2(x, z)
-    first = np.arctan2(a[:, 0], a[:, 1])
-    gap = np.arctan2(b[:, 0], b[:, 1]) - first
-    gap = turn + (gap - turn + np.pi) % (2 * np.pi) - np.pi  # end exactly where the foot lands, turning as the feet do
-    angle = first[i] + e1 * gap[i]
-    round_ = m0[i] + e * (m1[i] - m0[i]) + radius[:, None] * np.column_stack((np.sin(angle), np.cos(angle)))
-    w = share[i][:, None]
-    return np.asarray((1 - w) * straight + w * round_ + bulge)
+    """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet."""
+    e = travelled(s)
+    start, end = place[i], place[i + 1]
+    straight = start + e[:, None] * (end - start)
+    bulge = np.array([w.bulge for w in track.swings])[i] * bend(e)[:, None]
+    jumps = np.array([w.kind == "jump" for w in track.swings])
+    share = np.where(jumps, [w.turning for w in track.swings], 0.0)[i][:, None]
+    middles = np.array([(w.middle0, w.middle1) for w in track.swings])[i]
+    turn = np.array([w.turn for w in track.swings])[i]
+    round_ = turning(start, end, (middles[:, 0], middles[:, 1]), turn, e)
+    return np.asarray((1 - share) * straight + share * round_ + bulge)
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:

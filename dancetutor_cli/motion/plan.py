@@ -17,6 +17,8 @@ from dancetutor_cli.motion.track import Plan, Turn
 from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
+LEAD = 25.0  # degrees that a turning body is at most ahead of a foot that turns with it
+STEEPEST = 1.875  # largest slope of `ease.smooth`
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
 
@@ -48,9 +50,10 @@ class Planner:
         pressed: dict[int, list[int]] = {}
         for column in np.flatnonzero(self.play.limb[i] >= 0):
             pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
+        soon = slice(int(np.searchsorted(self.play.rows.second, time + MINES_AHEAD)))
+        self.stance.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
         evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
-        soon = self.play.rows.mines[i : int(np.searchsorted(self.play.rows.second, time + MINES_AHEAD))]
-        self.stance.mined = self.panels[soon.any(axis=0) & (self.play.limb[i] < 0)]
+        self.stance.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
         feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
         if feet:
             self._feet(i, time, feet, pressed)
@@ -66,8 +69,17 @@ class Planner:
         self.stance.normal += turn
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
         if len(feet) == 2:
-            self.steps.jump(i, time, duration, pressed, self.stance.normal - before)
+            leaves = self.steps.jump(i, time, duration, pressed, self.stance.normal - before)
         else:
-            self.steps.step(i, time, duration, feet[0], pressed[feet[0]])
-        self.turns.append(Turn(time - duration, time, self.stance.turned_to()))
+            leaves = self.steps.step(i, time, duration, feet[0], pressed[feet[0]])
+        yaw = self.stance.turned_to()
+        far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
+        self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
         self.previous = time
+
+
+def _turn_start(time: float, duration: float, leaves: float, far: float) -> float:
+    """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
+    ground that body and foot would ever be turned much farther from each other than they are anyway."""
+    ahead = 2.0 * LEAD / (STEEPEST * max(far, LEAD)) * (time - leaves)
+    return max(time - duration, leaves - ahead)

@@ -17,7 +17,17 @@ SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
 SHORTEST_PIVOT = 0.04  # seconds
 STAND = 0.045  # seconds; a foot that has landed stays down so long, if its next note leaves it the time
-HOME_OUT = 0.098  # metres; a waiting foot stands so far beside the middle of the pad
+HOME_OUT = 0.080  # metres; a waiting foot stands so far beside the middle of the pad: on no panel
+
+
+@dataclass(frozen=True, slots=True)
+class Evading:
+    """A foot that goes up over mines: seconds of the first and the last one, and where it stood before."""
+
+    first: float
+    last: float
+    ball: Array
+    yaw: float
 
 
 @dataclass
@@ -31,7 +41,7 @@ class Foot:
     landed: float = -np.inf  # when it came down
     swings: list[Swing] = field(default_factory=list)
     holds: dict[int, float] = field(default_factory=dict)  # columns that it holds: until when
-    evading: tuple[float, tuple[Array, float]] | None = None  # time of a mine, and where the foot stood before it
+    evading: Evading | None = None  # until its next step
 
     @property
     def outward(self) -> float:
@@ -44,14 +54,23 @@ class Foot:
         self.ball, self.yaw, self.free = target, yaw, swing.land + FREE_WINDOW
         self.landed = swing.land
 
+    def holding(self, time: float) -> bool:
+        """Whether it is in the middle of a hold."""
+        return any(end > time + FREE_WINDOW for end in self.holds.values())
+
     def latest(self, time: float, let_go: float) -> float:
         """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
-        early = max(time - let_go, self.landed + FREE_WINDOW)
-        return min(early, time - SHORTEST) if self.free > early else time - SHORTEST
+        late = max(time - SHORTEST, self.rested(time))
+        early = max(time - let_go, self.rested(time))
+        return min(early, late) if self.free > early else late
 
     def earliest(self, time: float) -> float:
         """When the foot may leave for a note: it has come to rest, and no hold needs it."""
-        return max(self.free, self.landed + min(STAND, (time - self.landed) / 3))
+        return max(self.free, self.rested(time))
+
+    def rested(self, time: float) -> float:
+        """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
+        return self.landed + min(STAND, (time - self.landed) / 3)
 
 
 class Stance:

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.ease import reduction
-from dancetutor_cli.motion.evade import land_early, resumed
+from dancetutor_cli.motion.evade import land_early, left_standing, resumed
 from dancetutor_cli.motion.feet import GRAVITY
+from dancetutor_cli.motion.flight import Goals, fly, tuck_for
 from dancetutor_cli.motion.landing import Pose, around, heel_up, landing, pose
 from dancetutor_cli.motion.stance import Foot, Stance, pair
 from dancetutor_cli.motion.track import Swing
@@ -15,6 +16,7 @@ from dancetutor_cli.play.model import Part, Play
 
 Array = NDArray[np.float64]
 LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
+OVERLAP = 0.01  # seconds that it may leave before the other foot has landed: nobody sees so short a flight
 LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together
 SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
@@ -27,20 +29,21 @@ class Steps:
         self.play, self.panels, self.stance, self.settings = play, panels, stance, stance.settings
         self.take_off: dict[int, tuple[int, float]] = {}  # in a gallop: foot -> its row, and when it leaves the ground
 
-    def step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> None:
-        """One foot steps at row i, at `time`; `duration` seconds after the last move."""
-        step, stance = self.settings.step, self.stance
+    def step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> float:
+        """One foot steps at row i, at `time`; `duration` seconds after the last move. Returns when it leaves."""
+        step, jump, stance = self.settings.step, self.settings.jump, self.stance
         foot, other = stance.feet[side], stance.feet[1 - side]
         self._gallop(i, time, duration, side)
         cut = float(reduction(duration, step.fast, step.longest))
-        up = resumed(foot, time, step.longest)
+        up = resumed(foot, other, time, step.longest)
         body = stance.body_yaw()
         yaw = stance.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
         columns = self._with_held(i, foot, columns, time)
         target, yaw = landing(stance, self.panels, self.play.part[i], columns, foot, yaw, pose(stance, other), cut)
         galloping = self.take_off.get(side, (-1, 0.0))[0] == i
         both = step.double_support + cut * (step.double_support_fast - step.double_support)
-        lift = self.take_off[side][1] if galloping else time - max(duration * (1.0 - both), LEAST_SWING)
+        lift = time - max(duration * (1.0 - both), min(LEAST_SWING, duration + OVERLAP))
+        lift = self.take_off[side][1] if galloping else left_standing(other, self.settings, lift, time)
         lift = min(max(lift, foot.earliest(time)), foot.latest(time, step.let_go)) if up is None else up
         kind, tuck, middles = "step", 0.0, ((0.0, 0.0), (0.0, 0.0))
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
@@ -51,10 +54,11 @@ class Steps:
         if galloping:
             kind, height = "gallop", max(height, self.settings.mines.height)
             if other.side in self.take_off and self.take_off[other.side][0] > i:  # the first of the two
-                kind, height, tuck = "jump", GRAVITY * (time - lift) ** 2 / 8, self.settings.jump.tuck
+                kind, height = "jump", GRAVITY * (time - lift) ** 2 / 8
+                tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump.tuck, jump.far)
                 middles = (pair(foot.ball), pair(target))
         if kind == "step" and self._leap(time, duration, foot, (target, yaw), columns):
-            return
+            return foot.swings[-1].lift
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
         toes = stance.toes(foot, yaw)
         turned = other.yaw
@@ -65,6 +69,7 @@ class Steps:
         swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
         foot.move(swing, target, yaw)
         stance.pivot(other, turned, lift, time)
+        return lift
 
     def _with_held(self, i: int, foot: Foot, columns: list[int], time: float) -> list[int]:
         """A heel or toe that taps alone does so beside a panel that the rest of the foot holds: a bracket."""
@@ -91,11 +96,10 @@ class Steps:
             return
         self.take_off = {side: (i, take_off), 1 - side: (i + 1, take_off)}
 
-    def jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> None:
-        """Both feet land at row i; `turned` : degrees that the feet normal turns."""
+    def jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> float:
+        """Both feet land at row i; `turned` : degrees that the feet normal turns. Returns when they leave."""
         jump, step, stance = self.settings.jump, self.settings.step, self.stance
-        for foot in stance.feet:
-            land_early(foot, time)
+        latest = min(land_early(foot, self.settings, time) for foot in stance.feet)
         columns = [self._with_held(i, f, pressed[f.side], time) for f in stance.feet]
         goals = self._jump_goals(i, columns, float(reduction(duration, step.fast, step.longest)))
         far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, stance.feet, strict=True))
@@ -103,7 +107,10 @@ class Steps:
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
             apex = jump.apex_hands
         take_off = self._take_off(time, min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration))
+        if latest < take_off:  # over a mine
+            take_off = max(latest, *(f.rested(time) for f in stance.feet))
         self._fly(take_off, time, duration, goals, columns, turned)
+        return take_off
 
     def _leap(self, time: float, duration: float, foot: Foot, goal: tuple[Array, float], columns: list[int]) -> bool:
         """A step too far for a straddle: both feet leave the ground, and the other one lands beside. False if none."""
@@ -124,27 +131,15 @@ class Steps:
         return True
 
     def _fly(
-        self, take_off: float, time: float, duration: float, goals: list[tuple[Array, float]],
-        columns: list[list[int]], turned: float,
-    ) -> None:  # fmt: skip
-        """Both feet in the air from `take_off` to `time`; goals : ball and yaw of each."""
-        jump, step, stance = self.settings.jump, self.settings.step, self.stance
+        self, take_off: float, time: float, duration: float, goals: Goals, columns: list[list[int]], turned: float
+    ) -> None:
+        """Both feet in the air from `take_off` to `time`."""
+        jump, step = self.settings.jump, self.settings.step
         cut = float(reduction(duration, step.fast, step.longest))
-        old = [f.ball for f in stance.feet]
-        far = max(float(np.linalg.norm(g - o)) for (g, _), o in zip(goals, old, strict=True))
-        height = GRAVITY * (time - take_off) ** 2 / 8
-        tuck = jump.tuck * (1.0 + 1.5 * min(far / jump.far, 1.5) ** 2)  # legs that reach far must not lock
-        middles = pair((old[0] + old[1]) / 2), pair((goals[0][0] + goals[1][0]) / 2)
-        for foot, (target, yaw) in zip(stance.feet, goals, strict=True):
-            pitches = heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, columns[foot.side])
-            toes = stance.toes(foot, yaw)
-            swing = Swing(
-                take_off, time, pair(target), toes, height, pitches, (0.0, 0.0), "jump", tuck,
-                float(np.radians(turned)), *middles,
-            )  # fmt: skip
-            foot.move(swing, target, yaw)
+        pitches = [heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, c) for c in columns]
+        fly(self.stance, take_off, time, goals, pitches, turned)
 
-    def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> list[tuple[Array, float]]:
+    def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> Goals:
         """Where both balls land, and the feet's yaws."""
         stance = self.stance
         body = stance.body_yaw()

@@ -23,6 +23,7 @@ class Swing:
     kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one),
         "pivot" (turning on the ball, which stays down) or "walk"; level : height of the ground where it lands
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
+    turning : the part of a jump's way that goes round that middle; the rest is straight
     """
 
     lift: float
@@ -38,6 +39,7 @@ class Swing:
     middle0: tuple[float, float] = (0.0, 0.0)
     middle1: tuple[float, float] = (0.0, 0.0)
     level: float = 0.0
+    turning: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)

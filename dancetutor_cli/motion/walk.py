@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.clear import detour
 from dancetutor_cli.motion.footsteps import Stand, Steps, footsteps, stand_at, standing
 from dancetutor_cli.motion.model import Contact, Ground
 from dancetutor_cli.motion.settings import MotionSettings
@@ -40,7 +41,7 @@ def with_walks(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mo
     mines : (m,) seconds at which mines pass; gait : "flat" or "heels"
     """
     out = walk_over(plan, ground, mines, gait, settings)
-    out = _walk_off(_walk_on(out, ground, gait, settings), ground, gait, settings)
+    out = _walk_off(_walk_on(out, ground, mines, gait, settings), ground, mines, gait, settings)
     return replace(out, ground=ground, contacts=_released(out)) if out.walks else plan
 
 
@@ -56,10 +57,11 @@ def _released(plan: Plan) -> tuple[Contact, ...]:
     return tuple(out)
 
 
-def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -> Plan:
+def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
     """She comes from her left side as the song begins, if there is time before the first note."""
     walk = settings.walk
-    if plan.first < walk.least:
+    busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.swings[:1]))
+    if busy < walk.least or (mines < busy).any():
         return plan
     goal = standing(plan.feet, -np.inf)
     places, following = _centres(ground), [_next_step(track, -np.inf) for track in plan.feet]
@@ -67,7 +69,7 @@ def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) ->
         goal = stand_at(np.array([_nearest(places, following), 0.0]), 0.0, settings)
     away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
     begin = stand_at(away, -np.pi / 2, settings)
-    ready = plan.first - walk.settle
+    ready = busy - walk.settle
     steps = footsteps(begin, goal, -np.pi / 2, ground, gait, BEGIN, ready, settings)
     if steps is None:
         return plan
@@ -80,13 +82,14 @@ def _walk_on(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) ->
     )
     first = Turn(BEGIN - 1.0, BEGIN - 0.5, begin.heading)
     turns = (first, *steps.turns, *plan.turns)
-    return replace(plan, feet=(feet[0], feet[1]), turns=turns, walks=(steps.walk, *plan.walks))
+    around = _gone_around((feet[0], feet[1]), steps.walk.end, settings.step.apart)
+    return replace(plan, feet=around, turns=turns, walks=(steps.walk, *plan.walks))
 
 
-def _walk_off(plan: Plan, ground: Ground, gait: str, settings: MotionSettings) -> Plan:
+def _walk_off(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
     """After the last note she leaves to her right side, or to the left if her feet would be in each other's way."""
     walk = settings.walk
-    start = max(plan.last, *(s.land for track in plan.feet for s in track.swings[-1:])) + walk.pause
+    start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.swings[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
@@ -127,7 +130,7 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
         way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
         steps = footsteps(begin, goal, way, ground, gait, start + walk.pause, ready - REST, settings)
         if steps is not None and steps.room >= settings.step.apart - 0.01:
-            plan = _inserted(plan, steps, goal, ready)
+            plan = _inserted(plan, steps, goal, settings.step.apart)
     return plan
 
 
@@ -164,8 +167,8 @@ def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     return out
 
 
-def _inserted(plan: Plan, steps: Steps, goal: Stand, ready: float) -> Plan:
-    """The plan with a walk in a wait that ends at `ready`; what follows starts from where she has walked to."""
+def _inserted(plan: Plan, steps: Steps, goal: Stand, apart: float) -> Plan:
+    """The plan with a walk in a wait; what follows starts from where she has walked to."""
     tracks = []
     for side, track in enumerate(plan.feet):
         after = [s for s in track.swings if s.land > steps.walk.start]
@@ -174,7 +177,8 @@ def _inserted(plan: Plan, steps: Steps, goal: Stand, ready: float) -> Plan:
         tracks.append(replace(track, swings=(*before, *steps.swings[side], *moved)))
     turns = sorted([*plan.turns, *steps.turns], key=lambda t: t.start)
     walks = sorted([*plan.walks, steps.walk], key=lambda w: w.start)
-    return replace(plan, feet=(tracks[0], tracks[1]), turns=tuple(turns), walks=tuple(walks))
+    feet = _gone_around((tracks[0], tracks[1]), steps.walk.end, apart)
+    return replace(plan, feet=feet, turns=tuple(turns), walks=tuple(walks))
 
 
 def _from_there(swings: tuple[Swing, ...], goal: Stand, side: int) -> tuple[Swing, ...]:
@@ -189,3 +193,23 @@ def _from_there(swings: tuple[Swing, ...], goal: Stand, side: int) -> tuple[Swin
             first = replace(swing, turn=0.0, middle0=(float(middle[0]), float(middle[1])))
         return (*(replace(s, target=here) for s in swings[:k]), first, *swings[k + 1 :])
     return tuple(replace(s, target=here) for s in swings)
+
+
+def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float) -> tuple[FootTrack, FootTrack]:
+    """Both feet, the first step of each after a walk, which now comes from elsewhere, around the other foot."""
+    out = []
+    for side, track in enumerate(feet):
+        swings, stand = list(track.swings), feet[1 - side]
+        k = next((k for k, s in enumerate(swings) if s.lift >= walked - 1e-9 and s.kind != "pivot"), None)
+        if k is not None and swings[k].kind == "step":
+            step, before = swings[k], standing(feet, swings[k].lift)
+            after = standing((stand, stand), step.land)
+            shoes = [stage.middle_of(before.balls[s], float(before.yaws[s])) for s in (0, 1)]
+            end = stage.middle_of(np.array(step.target), step.yaw)
+            bulge = detour(
+                shoes[side], float(before.yaws[side]), end, step.yaw, shoes[1 - side], float(before.yaws[1 - side]),
+                apart, float(after.yaws[0]),
+            )  # fmt: skip
+            swings[k] = replace(step, bulge=bulge)
+        out.append(replace(track, swings=tuple(swings)))
+    return out[0], out[1]

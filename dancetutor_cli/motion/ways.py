@@ -1,0 +1,79 @@
+"""The ways of both feet over the ground in a jump: half straight, half round each other, never through each other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.clear import HALF_SHOE, bend, headings, segment_gaps
+from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.stage import BALL_AHEAD
+
+Array = NDArray[np.float64]
+TURNING = 0.5  # part of a jump's way that turns about the middle between the feet; the rest is straight
+OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
+TURNED = 0.95  # part of a swing after which the foot points where it lands
+_SHARE = np.linspace(0.05, 0.95, 19)
+_ROUND = (TURNING, 0.75, 1.0)
+_SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
+
+
+def travelled(s: Array) -> Array:
+    """How far over the ground a swing has come (...) at each part (...) of its time: slow at both ends."""
+    free = np.clip((s - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
+    return np.asarray((1.0 - np.cos(np.pi * free)) / 2)
+
+
+def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array, e: Array) -> Array:
+    """Places (..., 2) on the way round a middle that moves (thesis 5.6.2.2), all arrays of one shape (..., 2) or (...).
+
+    middles : before and after; turn : radians, the side on which the way goes round; e : 0 to 1, how far it has come
+    """
+    a, b = start - middles[0], end - middles[1]
+    radius = (1 - e) * np.linalg.norm(a, axis=-1) + e * np.linalg.norm(b, axis=-1)
+    # yaw turns +Z towards +X, so an angle in the ground plane is atan2(x, z)
+    first = np.arctan2(a[..., 0], a[..., 1])
+    gap = np.arctan2(b[..., 0], b[..., 1]) - first
+    gap = turn + (gap - turn + np.pi) % (2 * np.pi) - np.pi  # end exactly where the foot lands, turning as the feet do
+    moved = middles[0] + e[..., None] * (middles[1] - middles[0])
+    return np.asarray(moved + radius[..., None] * headings(first + e * gap))
+
+
+def jump_ways(
+    starts: Array, start_yaws: Array, ends: Array, end_yaws: Array, turn: float, apart: float
+) -> tuple[float, Array]:
+    """How much of a jump's way goes round, and (2, 2) x and z that each foot goes aside, so that shoes stay `apart`.
+
+    Parameters
+    ----------
+    starts, ends : (2, 2) balls of the left and the right foot before and after; yaws : (2,) of their toes, radians
+    turn : radians that the line between the feet turns
+    apart : metres between the middle lines of the shoes; where it cannot be had, the most that can
+    """
+    e, turned = travelled(_SHARE), smooth(_SHARE / TURNED)
+    aim = headings(start_yaws[:, None] + turned * (end_yaws - start_yaws)[:, None])
+    straight = starts[:, None] + e[:, None] * (ends - starts)[:, None]
+    middles = starts.mean(axis=0), ends.mean(axis=0)
+    round_ = np.stack([turning(a, b, middles, np.array(turn), e) for a, b in zip(starts, ends, strict=True)])
+    # at its ends the way is given, so between them no more room is asked for than there is at both
+    first, *_, last = _gaps(straight, aim)
+    need = np.minimum(apart, first + e * (last - first))
+    across = round_[0, len(e) // 2] - round_[1, len(e) // 2]
+    across = across / max(float(np.linalg.norm(across)), 1e-9)
+    best, found = -np.inf, (TURNING, np.zeros((2, 2)))
+    for spread in _SPREAD:
+        aside = np.outer((spread, -spread), across)
+        for share in _ROUND:
+            places = (1.0 - share) * straight + share * round_ + bend(e)[:, None] * aside[:, None]
+            room = float((_gaps(places, aim) - need).min())
+            if room > best + 1e-6:
+                best, found = room, (share, aside)
+            if room >= -1e-3:
+                return found
+    return found
+
+
+def _gaps(balls: Array, aim: Array) -> Array:
+    """Least distances (k,) between the middle lines of both shoes; balls and headings (2, k, 2)."""
+    middle, along = balls - BALL_AHEAD * aim, HALF_SHOE * aim
+    return segment_gaps(*(middle[side] + sign * along[side] for side in (0, 1) for sign in (-1.0, 1.0)))

@@ -1,0 +1,147 @@
+"""One foot stands as long as it can: around mines, in fast streams, after walks. Swings never overlap."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from bake_plays import Event, L, R, chart, pad, play, stream
+
+from dancetutor_cli.bake import bake, mines_of, plan_of, report
+from dancetutor_cli.motion.feet import foot_path
+from dancetutor_cli.motion.height import LEAST_PHASE
+from dancetutor_cli.motion.track import Plan, airborne
+from dancetutor_cli.play.model import Play
+
+CLEAR = ("feet on mines", "penetration", "flight gravity off by", "flight residual", "foot in foot", "contacts missed")
+ROWS: list[Event] = [(1.0, {0: L}), (1.5, {3: R})]
+
+
+def danced(events: list[Event], mines: dict[int, list[int]], double: bool = False, **more) -> Play:  # type: ignore[no-untyped-def]
+    return play(events, double, mines=mines, **more)
+
+
+def planned(steps: Play, double: bool = False) -> Plan:
+    plan = plan_of(chart(), steps, pad(double))
+    for track in plan.feet:
+        for before, after in pairwise(track.swings):
+            assert before.lift < before.land <= after.lift + 1e-9
+    return plan
+
+
+def flights(plan: Plan) -> np.ndarray:
+    air = airborne(plan.feet)
+    return air[air[:, 1] - air[:, 0] > LEAST_PHASE]
+
+
+def meets(steps: Play, double: bool = False) -> None:
+    measured = report(bake(chart(), steps, pad(double)), mines_of(steps, pad(double)))
+    assert [f for f in measured.figures if f.name in CLEAR and f.met is False] == []
+    assert np.abs(measured.contact_errors).max() < 1.0
+
+
+@pytest.mark.parametrize("after", [0.16, 0.2, 0.3, 0.45])
+def test_a_step_waits_until_the_other_foot_is_down_from_its_mine(after: float) -> None:
+    """A mine under the right foot, and soon after it a step of the left one."""
+    steps = danced([*ROWS, (2.5, {}), (2.5 + after, {2: L}), (3.5, {3: R})], {2: [3]})
+    plan = planned(steps)
+    assert len(flights(plan)) == 0
+    over = foot_path(plan.feet[1], np.linspace(2.431, 2.569, 30), 0.09)
+    assert over.ball[:, 1].min() >= 0.03
+    meets(steps)
+
+
+def test_a_mine_at_the_moment_of_the_other_foots_step_is_a_short_flight() -> None:
+    steps = danced([*ROWS, (2.5, {2: L}), (2.9, {3: R}), (3.5, {0: L})], {2: [3]})
+    air = flights(planned(steps))
+    assert len(air) == 1 and air[0, 1] == 2.5 and air[0, 1] - air[0, 0] < 0.1
+    meets(steps)
+
+
+def test_a_foot_comes_down_from_a_mine_if_the_other_one_steps_before_it() -> None:
+    """Not in the air from the mine until its own next step, with the other foot's step in between."""
+    steps = danced([*ROWS, (2.5, {}), (2.7, {2: L}), (2.95, {1: R}), (3.5, {0: L})], {2: [3]})
+    assert len(flights(planned(steps))) == 0
+    meets(steps)
+
+
+@pytest.mark.parametrize("gap", [0.06, 0.11, 0.19, 0.3])
+def test_mines_under_both_feet_again_and_again_are_one_hop_to_the_middle(gap: float) -> None:
+    rows = [*ROWS, *((2.5 + gap * k, {}) for k in range(6)), (5.0, {0: L}), (5.5, {3: R})]
+    steps = danced(rows, {2 + k: [0, 3] for k in range(6)})
+    assert len(flights(planned(steps))) == 1
+    meets(steps)
+
+
+@pytest.mark.parametrize("gap", [0.06, 0.11, 0.19, 0.3])
+def test_mines_under_one_foot_again_and_again_send_it_to_the_middle(gap: float) -> None:
+    rows = [*ROWS, *((2.5 + gap * k, {}) for k in range(6)), (5.0, {0: L}), (5.5, {3: R})]
+    steps = danced(rows, {2 + k: [0] for k in range(6)})
+    plan = planned(steps)
+    assert len(flights(plan)) == 0
+    assert len([s for s in plan.feet[0].swings if s.kind == "evade"]) <= 2
+    meets(steps)
+
+
+@pytest.mark.parametrize("apart", [0.05, 0.1, 0.15])
+def test_mines_under_one_foot_and_then_the_other(apart: float) -> None:
+    steps = danced([*ROWS, (2.5, {}), (2.5 + apart, {}), (4.0, {0: L}), (4.5, {3: R})], {2: [0], 3: [3]})
+    air = flights(planned(steps))
+    assert len(air) <= 1 and (air[:, 1] - air[:, 0] < 0.15).all()
+    meets(steps)
+
+
+@pytest.mark.parametrize("after", [0.08, 0.13, 0.18, 0.24, 0.3])
+def test_a_jump_soon_after_a_mine(after: float) -> None:
+    steps = danced([*ROWS, (2.5, {}), (2.5 + after, {1: L, 2: R}), (3.5, {0: L})], {2: [0]})
+    planned(steps)
+    meets(steps)
+
+
+def test_a_foot_that_holds_does_not_leave_for_a_mine() -> None:
+    events = [*ROWS, (2.0, {0: L}), (2.5, {}), (3.5, {3: R})]
+    plan = planned(danced(events, {3: [0]}, holds={(2, 0): 3.0}))
+    lifts = [s for s in plan.feet[0].swings if s.lift > 2.0 and s.land < 3.0 and s.kind != "pivot"]
+    assert lifts == []
+
+
+def test_mines_before_the_first_step_find_her_standing_on_no_panel() -> None:
+    steps = danced([(2.0, {}), (2.1, {}), (5.0, {0: L}), (5.5, {3: R})], {0: [0, 3], 1: [1, 2]})
+    assert not planned(steps).walks[:1] or planned(steps).walks[0].start > 5.0
+    meets(steps)
+
+
+@pytest.mark.parametrize("gap", [0.06, 0.068, 0.08, 0.1, 0.125])
+def test_in_the_fastest_streams_one_foot_is_on_the_ground(gap: float) -> None:
+    air = flights(planned(play(stream(1.0, 24, gap))))
+    assert (air[:, 0] < 1.0).all()  # but its first two notes, after a wait, are a gallop
+
+
+def test_notes_of_one_foot_a_few_milliseconds_apart_are_two_swings() -> None:
+    steps = play([*ROWS, (2.0, {2: L}), (2.0 + 1 / 96, {0: L}), (2.5, {3: R})])
+    planned(steps)
+    assert np.abs(report(bake(chart(), steps, pad())).contact_errors).max() < 1.0
+
+
+def test_jumps_after_long_holds_leave_the_ground_a_time_to_push() -> None:
+    """Holds that end after the next jump's take-off are let go early, but not at the moment of landing."""
+    rows: list[Event] = [(1.0, {0: L, 3: R}), (1.13, {1: L, 2: R}), (1.26, {0: L, 3: R}), (2.5, {0: L})]
+    steps = play(rows, holds={(0, 0): 1.1, (0, 3): 1.1, (1, 1): 1.24, (1, 2): 1.24})
+    air = airborne(planned(steps).feet)
+    assert (air[1:, 0] - air[:-1, 1] >= 0.03).all()
+    meets(steps)
+
+
+def test_the_first_step_after_a_walk_goes_around_the_other_foot() -> None:
+    """She walks on to the middle of the left pad; from there her left foot's first step goes past the right one."""
+    steps = play([(4.0, {3: L}), (5.0, {0: R}), (6.0, {3: L})], double=True)
+    assert any(w.end < 4.0 for w in planned(steps, True).walks)
+    meets(steps, True)
+
+
+@pytest.mark.parametrize("gap", [0.3, 0.4, 0.5])
+def test_ankles_stand_a_jump_with_half_a_turn(gap: float) -> None:
+    rows: list[Event] = [(1.0, {0: L, 3: R}), (2.0, {0: L, 3: R}), (2.0 + gap, {3: L, 0: R}), (4.0, {0: L, 3: R})]
+    measured = report(bake(chart(), play(rows), pad()))
+    assert measured["frames past joint limits"].value == 0, measured.notes
