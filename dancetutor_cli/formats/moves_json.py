@@ -11,8 +11,8 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
      "contacts": [{"limb": "left_foot", "kind": "tap", "part": null, "column": 0, "start": 1.5, "end": 2.1,
                    "panel": [..]}]}
 
-`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, gallop, evade, pivot, walk
-(on the floor beside the pad its "level" is below 0) or press.
+`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, gallop, evade, pivot, aside
+(a side-step in a wait), walk (on the floor beside the pad its "level" is below 0) or press.
 With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
 A reader must survive added keys.
 """

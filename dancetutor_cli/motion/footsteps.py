@@ -164,7 +164,7 @@ def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
     return out
 
 
-def _room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float], other: tuple[Array, float]) -> float:
+def room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float], other: tuple[Array, float]) -> float:
     """Least distance between a swinging shoe and the standing one, metres."""
     least = np.inf
     standing = stage.middle_of(*other)
@@ -182,7 +182,7 @@ def _as_swings(
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
     swings: tuple[list[Swing], list[Swing]] = ([], [])
-    turns, landings, before, room = [], [], begin.heading, np.inf
+    turns, landings, before, least = [], [], begin.heading, np.inf
     for k, step in enumerate(steps):
         side = (first + k) % 2
         land = how.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
@@ -195,7 +195,7 @@ def _as_swings(
             stage.middle_of(ball, yaw), yaw, stage.middle_of(step.ball, step.yaw), step.yaw,
             stage.middle_of(other, standing), standing, settings.step.apart,
         )  # fmt: skip
-        room = min(room, _room(places[side], step, bulge, places[1 - side]))
+        least = min(least, room(places[side], step, bulge, places[1 - side]))
         level = ground.level(*stage.middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*stage.middle_of(ball, yaw))) > 0.0
         target = (float(step.ball[0]), float(step.ball[1]))
@@ -209,7 +209,7 @@ def _as_swings(
         before = step.heading
         landings.append(land)
     walk = Walk(how.start, landings[-1], tuple(landings), first, how.share, how.gait)
-    return Steps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), room)
+    return Steps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 
 def _joined(turns: list[Turn]) -> list[Turn]:

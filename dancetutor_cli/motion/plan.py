@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion.aside import SideSteps
 from dancetutor_cli.motion.evade import evade_mines
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.stance import SHORTEST, Stance
@@ -30,6 +31,7 @@ class Planner:
         self.stance = Stance(settings)
         self.steps = Steps(play, panels, self.stance)
         self.touches = Touches(play, panels, second, self.stance)
+        self.asides = SideSteps(play, panels, self.stance)
         self.previous: float | None = None
         self.turns: list[Turn] = []
 
@@ -62,8 +64,12 @@ class Planner:
                 self.touches.add(i, time, limb, pressed_column)
 
     def _feet(self, i: int, time: float, feet: list[int], pressed: dict[int, list[int]]) -> None:
-        """One foot steps or both jump, and the body turns with them."""
+        """One foot steps or both jump, and the body turns with them; before that she may step aside."""
         longest = self.settings.step.longest
+        aside = None if self.previous is None else self.asides.before(i, time, list(pressed), self.touches.presses)
+        if aside is not None:
+            self.turns.append(aside)
+            self.previous = max(foot.landed for foot in self.stance.feet)
         turn = (self.play.facing[i] - self.stance.normal + 180.0) % 360.0 - 180.0
         before = self.stance.normal
         self.stance.normal += turn

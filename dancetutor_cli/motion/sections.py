@@ -172,6 +172,18 @@ class WalkSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class AsideSettings:
+    """When she steps aside to the other pad, and how."""
+
+    far: float
+    gain: float
+    travel: float
+    pause: float
+    quick: float
+    slow: float
+
+
+@dataclass(frozen=True, slots=True)
 class Gait:
     """A way to walk: a cycle of two steps, from one landing of the left foot to the next."""
 

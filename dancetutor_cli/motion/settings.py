@@ -12,6 +12,7 @@ import yaml
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.motion.sections import (
     ArmSettings,
+    AsideSettings,
     BodySettings,
     Gait,
     HairSettings,
@@ -29,6 +30,7 @@ from dancetutor_cli.resources import config_path
 
 __all__ = [
     "ArmSettings",
+    "AsideSettings",
     "BarSettings",
     "BodySettings",
     "Gait",
@@ -85,6 +87,7 @@ class MotionSettings:
     hair: HairSettings
     bar: BarSettings
     walk: WalkSettings
+    aside: AsideSettings
     stroll: Gait
     brisk: Gait
     heels_stroll: Gait

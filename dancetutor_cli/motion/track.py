@@ -21,7 +21,8 @@ class Swing:
     pitches : heel up, radians, at lift, at most, at landing, then standing
     bulge : (x, z) added at the middle of the path, to go around the other foot
     kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one),
-        "pivot" (turning on the ball, which stays down) or "walk"; level : height of the ground where it lands
+        "pivot" (turning on the ball, which stays down), "aside" (in a wait, to the other pad) or "walk"
+    level : height of the ground where it lands
     turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
     turning : the part of a jump's way that goes round that middle; the rest is straight
     """

@@ -30,7 +30,11 @@ REST = 0.15  # seconds that she stands between a walk and a step at least
 
 def ground_of(pad: Pad, settings: MotionSettings) -> Ground:
     """The pad as a rectangle, and the floor around it."""
-    panels = stage.panels_on_ground(pad)
+    return rectangle(stage.panels_on_ground(pad), settings)
+
+
+def rectangle(panels: Array, settings: MotionSettings) -> Ground:
+    """The ground of a pad whose panels have their centres (c, 2) there."""
     low, high = panels.min(axis=0) - stage.HALF_PANEL, panels.max(axis=0) + stage.HALF_PANEL
     return Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
 
@@ -64,9 +68,10 @@ def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Moti
     if busy < walk.least or (mines < busy).any():
         return plan
     goal = standing(plan.feet, -np.inf)
-    places, following = _centres(ground), [_next_step(track, -np.inf) for track in plan.feet]
-    if len(places) > 1 and None not in following:
-        goal = stand_at(np.array([_nearest(places, following), 0.0]), 0.0, settings)
+    places, following = places_along(ground), [_next_step(track, -np.inf) for track in plan.feet]
+    targets = np.array([s.target for s in following if s is not None])
+    if len(places) > 1 and len(targets) == len(following):
+        goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
     away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
     begin = stand_at(away, -np.pi / 2, settings)
     ready = busy - walk.settle
@@ -114,37 +119,45 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
 
     mines : (m,) seconds; while they pass she stays, for who walks might tread on one
     """
-    walk, places = settings.walk, _centres(ground)
-    if len(places) == 1:
+    if len(places_along(ground)) == 1:
         return plan
-    for start, ready in _waits(plan, mines, walk.wait):
+    for start, ready in _waits(plan, mines, settings.walk.wait):
         begin = standing(plan.feet, start, plan.turns)
         following = [_next_step(track, ready) for track in plan.feet]
         targets = np.array([s.target for s in following if s is not None and s.kind != "evade"])
         if len(targets) < len(following):
             continue
-        if np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
-            continue
-        whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
-        goal = stand_at(np.array([_nearest(places, following), 0.0]), whole, settings)
-        way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
-        steps = footsteps(begin, goal, way, ground, gait, start + walk.pause, ready - REST, settings)
-        if steps is not None and steps.room >= settings.step.apart - 0.01:
+        found = walk_there(begin, targets, ground, gait, (start, ready), settings)
+        if found is not None:
+            steps, goal = found
             plan = _inserted(plan, steps, goal, settings.step.apart)
     return plan
+
+
+def walk_there(
+    begin: Stand, targets: Array, ground: Ground, gait: str, wait: tuple[float, float], settings: MotionSettings
+) -> tuple[Steps, Stand] | None:
+    """A walk in a wait to where both feet will step next, targets (2, 2), if they are far and there is time for it."""
+    walk = settings.walk
+    if wait[1] - wait[0] < walk.wait or np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
+        return None
+    whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
+    goal = stand_at(np.array([_nearest(places_along(ground), targets), 0.0]), whole, settings)
+    way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
+    steps = footsteps(begin, goal, way, ground, gait, wait[0] + walk.pause, wait[1] - REST, settings)
+    return (steps, goal) if steps is not None and steps.room >= settings.step.apart - 0.01 else None
 
 
 def _next_step(track: FootTrack, time: float) -> Swing | None:
     return next((s for s in track.swings if s.lift >= time - 1e-9 and s.kind != "pivot"), None)
 
 
-def _nearest(places: Array, following: list[Swing | None]) -> float:
-    """Which of the places is nearest to where both feet will step next."""
-    middle = np.mean([s.target[0] for s in following if s is not None])
-    return float(places[np.argmin(np.abs(places - middle))])
+def _nearest(places: Array, targets: Array) -> float:
+    """Which of the places is nearest to where both feet will step next, (2, 2)."""
+    return float(places[np.argmin(np.abs(places - targets[:, 0].mean()))])
 
 
-def _centres(ground: Ground) -> Array:
+def places_along(ground: Ground) -> Array:
     """Places (k,) along x where she may wait: the middle of each square of panels, and between two of them."""
     width = ground.high[0] - ground.low[0]
     squares = max(1, round(width / (3 * stage.PANEL)))
