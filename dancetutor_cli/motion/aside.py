@@ -1,7 +1,7 @@
 """Side-steps: in a short wait before notes of the other pad she goes there step by step, the near foot first.
 
 A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again;
-so the notes are reached by a normal step and not by a leap.
+so the notes are reached by a normal step and not by a leap. Nor do they wait with one foot on each pad.
 """
 
 from __future__ import annotations
@@ -94,11 +94,13 @@ class SideSteps:
         return _Next(times, places, tuple(limb for limb in limbs if limb < Limb.LEFT_HAND))
 
     def _far(self, balls: Array, following: _Next) -> float:
-        """How far the next row is: in a step from the other foot, in a jump from either foot's place."""
+        """How far she would stretch: between the feet now, and for the next row, in a step from the other foot, in a
+        jump from either foot's place."""
         if len(following.first) == 2:
-            return float(np.linalg.norm(following.places - balls, axis=1).max())
-        side = following.first[0]
-        return float(np.linalg.norm(following.places[side] - balls[1 - side]))
+            far = np.linalg.norm(following.places - balls, axis=1).max()
+        else:
+            far = np.linalg.norm(following.places[following.first[0]] - balls[1 - following.first[0]])
+        return float(max(far, np.linalg.norm(balls[0] - balls[1])))
 
     def _walks(self, begin: Stand, following: _Next, free: float, time: float) -> bool:
         """Whether there is time to walk, and reason to."""

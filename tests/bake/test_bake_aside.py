@@ -90,6 +90,14 @@ def test_she_stays_without_time_or_reason() -> None:
     assert not asides(plan_of(chart(), play(near, True), pad(True)))
 
 
+def test_she_does_not_wait_with_a_foot_on_each_pad() -> None:
+    rows = [*events(1.6)[:6], (5.4, {2: L}), (5.8, {4: R}), (7.4, {3: R}), (7.8, {0: L})]
+    plan = plan_of(chart(), play(rows, True), pad(True))
+    stood = [[s.target for s in t.swings if s.land <= 7.0][-1] for t in plan.feet]
+    wide = [[s.target for s in t.swings if s.land <= 5.8][-1] for t in plan.feet]
+    assert np.hypot(*(np.array(wide[0]) - wide[1])) > 0.6 and np.hypot(*(np.array(stood[0]) - stood[1])) < 0.3
+
+
 def test_she_walks_where_there_is_time() -> None:
     plan = planned(4.0)
     assert not asides(plan)
