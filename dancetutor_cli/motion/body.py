@@ -11,7 +11,7 @@ from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.bar import kept_back, leaning_share
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
-from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.gait import gaze_ahead, walking
 from dancetutor_cli.motion.height import HeightPath, height_path
 from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.paths import smooth_path
@@ -84,7 +84,8 @@ def body_path(
     bent = _bent(plan.presses, deeper, times, settings)
     mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, sink, above[:, 1], skeleton, settings)
     height = mass_height.at(times) - above[:, 1]
-    chest, head = _looking(yaw, plan.presses, times, ground, rate, settings)
+    ahead = gaze_ahead(plan, times, settings)
+    chest, head = _looking(yaw, plan.presses, times, ground, rate, settings, ahead)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
@@ -190,13 +191,18 @@ def _turned_for_hands(presses: tuple[Press, ...], times: Array, settings: Motion
 
 
 def _looking(
-    yaw: Array, presses: tuple[Press, ...], times: Array, ground: Array, rate: float, settings: MotionSettings
-) -> tuple[Array, Array]:
-    """Chest and head keep to the screen as far as they can (thesis 5.7); when the body turns past, they whip round."""
+    yaw: Array, presses: tuple[Press, ...], times: Array, ground: Array, rate: float, settings: MotionSettings,
+    ahead: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Chest and head keep to the screen as far as they can (thesis 5.7); when the body turns past, they whip round.
+
+    ahead (n,) : how much she looks where she walks and not at the screen
+    """
     look = settings.look
     ones = np.ones(len(yaw))
     gap = _wrapped(screen_yaw(ground, settings) - yaw)
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
+    torso = torso * (1.0 - ahead)
     for press in (p for p in presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
         share = press_share(press, times, settings.hands.reach_down)
         torso = torso + share * (np.copysign(np.radians(look.torso_limit), press.turn) - torso)
@@ -204,6 +210,7 @@ def _looking(
     chest = yaw + follow(smooth_path(torso[:, None], ones, rate, 0.05), rate, controller)[:, 0]
     gap = _wrapped(screen_yaw(ground, settings) - chest)
     head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
+    head = head * (1.0 - settings.walk.ahead * ahead)
     return chest, chest + smooth_path(head[:, None], ones, rate, 0.04)[:, 0]
 
 

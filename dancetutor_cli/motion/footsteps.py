@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.clear import bend, detour, shoes_apart
 from dancetutor_cli.motion.ease import smooth
-from dancetutor_cli.motion.gait import blended, gaits_of
+from dancetutor_cli.motion.gait import STANCE, blended, gaits_of
 from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.settings import Gait, MotionSettings
 from dancetutor_cli.motion.track import FootTrack, Swing, Turn, Walk
 
 Array = NDArray[np.float64]
-STANCE = 0.6  # part of a cycle that a foot stands
 SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
 ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
 SIDESTEP = 0.4  # length of a step aside as a part of one ahead

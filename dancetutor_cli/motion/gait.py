@@ -14,13 +14,16 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.settings import Gait, MotionSettings
-from dancetutor_cli.motion.track import Walk
+from dancetutor_cli.motion.track import Plan, Walk
 from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]
+STANCE = 0.6  # part of a cycle that a foot stands
 SINKING = 0.55  # part of a step in which the body sinks at a plant and comes up again
 HALF_HIPS = 0.088  # metres from the middle of the pelvis to a hip
+HANDS_BACK = 0.06  # metres that hands hang farther back than in a dance
 FADE = 0.45  # seconds over which standing becomes walking and walking standing
+GAZE_AHEAD = 0.35  # seconds by which the gaze is ahead of the walk
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,7 @@ def gait_pose(gait: Gait, phase: Array) -> GaitPose:
         np.radians(gait.chest_yaw) * forward,
         np.radians(gait.hips) * ones,
         np.radians(gait.arch) * ones,
-        gait.arms * np.column_stack((-forward, forward)),
+        gait.arms * np.column_stack((-forward, forward)) - HANDS_BACK,
         ones,
         sink,
     )
@@ -95,13 +98,21 @@ def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> 
         fade = smooth((times[near] - walk.start) / FADE) * smooth((walk.end - times[near]) / FADE)
         landings = np.array([walk.start, *walk.landings])
         first = 0.5 if walk.first == 1 else 1.0
-        phase = np.interp(times[near], landings, first - 0.5 + 0.5 * np.arange(len(landings)))
+        phases = first + np.array([STANCE - 1.0, *(0.5 * np.arange(len(walk.landings)))])
+        phase = np.interp(times[near], landings, phases)
         pose = blended_pose(*gaits_of(walk.gait, settings), walk.share, phase)
         total = total or _standing_pose(len(times))
         for f in fields(GaitPose):
             value = getattr(pose, f.name)
             getattr(total, f.name)[near] += value * (fade if value.ndim == 1 else fade[:, None])
     return total
+
+
+def gaze_ahead(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+    """How much (f,) of her look is where she goes and not at the screen: on her way to the pad and from it."""
+    walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
+    gait = walking(walks, times + GAZE_AHEAD, settings)
+    return np.zeros(len(times)) if gait is None else gait.own
 
 
 def _standing_pose(count: int) -> GaitPose:

@@ -169,6 +169,7 @@ class WalkSettings:
     sideways: float
     far: float
     wait: float
+    ahead: float
 
 
 @dataclass(frozen=True, slots=True)

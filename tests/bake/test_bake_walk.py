@@ -7,7 +7,7 @@ import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, plan_of, report
-from dancetutor_cli.motion.gait import blended, blended_pose, gait_pose
+from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, walking
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings
@@ -20,6 +20,8 @@ OVER = [
     *[(3.0 + 0.4 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(6)],
     *[(9.0 + 0.4 * k, {(4, 7)[k % 2]: (L, R)[k % 2]}) for k in range(16)],
 ]
+
+BOTH = [f"{side}_{joint}" for side in "lr" for joint in ("radiocarpal", "talocrural")]
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +95,53 @@ def test_steps_last_half_a_blended_cycle() -> None:
     for walk in plan.walks:
         period = blended(settings.stroll, settings.brisk, walk.share).period
         np.testing.assert_allclose(np.diff(walk.landings), period / 2)
+
+
+def test_a_walk_goes_through_its_cycle_at_an_even_pace() -> None:
+    """Each foot lands at its normalised time, and what is between has the blended length of the cycle."""
+    plan, settings = plan_of(chart(), play(EVENTS), pad()), default_settings()
+    walk = plan.walks[0]
+    period = blended(settings.stroll, settings.brisk, walk.share).period
+    at = np.arange(walk.start + FADE, walk.end - FADE, 0.01)
+    phase = (1.0 if walk.first == 0 else 0.5) + (at - walk.landings[0]) / period
+    wanted = blended_pose(settings.stroll, settings.brisk, walk.share, phase)
+    seen = walking((walk,), at, settings)
+    assert seen is not None and (at < walk.landings[0]).any()
+    np.testing.assert_allclose(seen.hands, wanted.hands, atol=1e-9)
+    np.testing.assert_allclose(seen.roll, wanted.roll, atol=1e-9)
+
+
+def facings(motion: Motion, at: list[float]) -> np.ndarray:
+    """Yaws (t, 3) of pelvis, chest and head, degrees."""
+    _, world = world_transforms(motion.skeleton, *sample(motion, np.array(at)))
+    front = [
+        quat.rotate(world[:, motion.skeleton.index(n)], np.array([0.0, 0, 1]))
+        for n in ("HumanoidRoot", "vt4", "skullbase")
+    ]
+    return np.degrees([np.arctan2(f[:, 0], f[:, 2]) for f in front]).T
+
+
+def test_on_her_way_she_looks_where_she_goes(walked: Motion) -> None:
+    coming = facings(walked, [0.2, 0.5, 0.8])
+    assert (np.abs(coming[:, 1] - coming[:, 0]) < 15.0).all() and (coming[:, 0] < -75.0).all()
+    assert (coming[:, 2] < -55.0).all() and (coming[:, 2] > -85.0).all()
+    assert (np.abs(facings(walked, [2.7])) < 12.0).all(), "and then at the screen"
+    over = bake(chart(), play(OVER, double=True), pad(double=True))
+    walk = next(w for w in plan_of(chart(), play(OVER, double=True), pad(double=True)).walks if w.start > 5.0)
+    between = facings(over, [float(np.mean(walk.landings[:2]))])[0]
+    assert abs(between[0]) > 25.0 and abs(between[2]) < 15.0, "between the pads she keeps to the screen"
+
+
+def test_hands_swing_before_and_behind_against_the_feet(walked: Motion) -> None:
+    at = np.arange(0.2, 1.2, 0.02)
+    positions, world = world_transforms(walked.skeleton, *sample(walked, at))
+    index = walked.skeleton.index
+    front = quat.rotate(world[:, 0], np.array([0.0, 0, 1]))
+    front[:, 1] = 0.0
+    ahead = {n: np.sum((positions[:, index(n)] - positions[:, 0]) * front, axis=1) for n in BOTH}
+    for hand, foot in (("l_radiocarpal", "r_talocrural"), ("r_radiocarpal", "l_talocrural")):
+        assert ahead[hand].max() > 0.12 and ahead[hand].min() < 0.02
+        assert np.corrcoef(ahead[hand], ahead[foot])[0, 1] > 0.5
 
 
 def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
