@@ -14,13 +14,18 @@ from dancetutor_cli.motion.palms import elbows_on_bar, rest_on_bar
 from dancetutor_cli.motion.settings import BarSettings, MotionSettings
 from dancetutor_cli.motion.stage import HALF_PANEL, PANEL
 from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
-AROUND = 0.18  # metres by which a hand goes around the body on its way
+CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
+TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
+SOFT, FIRST, LAST = 8.0, 0.2, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
+PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
+WAY_UP = np.array([0.0, 1.0, 0.0])
 LIFT = 0.05  # metres that a hand rises on its way to the rail
 REST = 1.2  # seconds; the body leaves the bar only if no hand is on it for longer
 
@@ -104,12 +109,20 @@ def hold(
         turn[near, grip.side] = hand
     weight = np.minimum(weight, 1.0)
     wrists += goal - weight[..., None] * wrists
-    aside = shoulders[:, 0] - shoulders[:, 1]
-    aside /= np.linalg.norm(aside, axis=1, keepdims=True)
-    around = AROUND * 4.0 * weight * (1.0 - weight)
-    wrists += np.stack((around[:, :1] * aside, -around[:, 1:] * aside), axis=1)
-    pinned[:] = np.maximum(pinned, weight)
+    wrists += _around(wrists, weight, shoulders, chest)
+    pinned[:] = np.maximum(pinned, weight**PIN)
     elbows += weight[..., None] * (elbows_on_bar(chest) - elbows)
+
+
+def _around(wrists: Array, weight: Array, shoulders: Array, chest: Array) -> Array:
+    """By how much wrists (f, 2, 3) on their way to the rail or from it keep clear of the trunk, (f, 2, 3)."""
+    upright = quat.swing_twist(chest, WAY_UP)[1][:, None]
+    middle = shoulders.mean(axis=1, keepdims=True) + quat.rotate(chest, TRUNK)[:, None]
+    off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / CLEAR[0], 0.0, 1.0 / CLEAR[1]]
+    far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
+    beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft most of 0 and 1 - far
+    clear = quat.rotate(upright, off / far * beyond * [CLEAR[0], 0.0, CLEAR[1]])
+    return np.asarray((smooth(weight / FIRST) * (1.0 - weight**LAST))[..., None] * clear)
 
 
 def _share(grip: Grip, times: Array, reach: float) -> Array:

@@ -66,7 +66,6 @@ class BarSettings:
     knees: float
     square: float
     let_go: float
-    slack: float
     reach_time: float
     shortest: float
 
