@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.banded import BandedLeastSquares, differences
 from dancetutor_cli.motion.feet import FootPath
-from dancetutor_cli.motion.paths import cubic, sample_path
+from dancetutor_cli.motion.paths import cubic, low_pass, sample_path
 from dancetutor_cli.motion.qp import Limits, solve
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 
@@ -26,6 +26,9 @@ FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball;
 HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
 FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
 ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
+ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
+TIGHTENED = 3  # rounds of narrowing limits where the path without its quickest trembling leaves them
+NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
@@ -51,18 +54,24 @@ def balanced_path(
     low, high, middle = _support(feet)
     middle = middle + _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
-    flight = np.asarray(~down.any(axis=0))
     weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
-    out = np.empty((len(nodes), 2))
-    for k in (0, 1):
-        wanted = _Wanted(middle[:, k], low[:, k], high[:, k], weight, offset[:, k], room[0][:, k], room[1][:, k])
-        out[:, k] = _axis(wanted, flight, lever, rate, body)
-    return cubic(nodes, out, times)
+    flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
+    want = _Wanted(middle, low, high, weight, offset, *room)
+    path = _solved(want, flight, lever, rate, body)
+    for _ in range(TIGHTENED):
+        want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), lever, rate), flight)
+        path = _solved(want, flight, lever, rate, body)
+    return cubic(nodes, path, times)
 
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """What one axis of the path shall do, (n,) each: where the zero-moment point shall be and may be, where pelvis."""
+    """What the path shall do at each of n nodes.
+
+    middle : (n, 2) where the zero-moment point shall be; low, high : (n, 4) where it may be, along `ACROSS`
+    weight : (n,) how much the former counts; offset : (n, 2) from the pelvis to the centre of mass
+    nearest, farthest : (n, 2) where the pelvis may be
+    """
 
     middle: Array
     low: Array
@@ -96,16 +105,20 @@ def _carrying(feet: tuple[FootPath, FootPath]) -> tuple[FootPath, FootPath]:
 
 
 def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
-    """Lowest, highest and best place (n, 2) of the zero-moment point: a box around the soles that stand."""
+    """Where the zero-moment point may be, (n, 4) lowest and highest along `ACROSS`, and (n, 2) where best.
+
+    The limits are a hull of the soles that stand; its eight sides have the same directions at all times.
+    """
     lows, highs, middles = [], [], []
     for foot in feet:
         ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
+        across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
         back = np.where(foot.pitch < HEEL_DOWN, BACK_HEEL, BACK_TOES)[:, None]
         middle = foot.ball[:, [0, 2]] + (FRONT + back) / 2 * ahead
-        half = HALF_WIDTH + ((FRONT - back) / 2 - HALF_WIDTH) * ahead**2
+        half = np.abs(ahead @ ACROSS.T) * (FRONT - back) / 2 + np.abs(across @ ACROSS.T) * HALF_WIDTH
         down = foot.down[:, None]
-        lows.append(np.where(down, middle - half, np.inf))
-        highs.append(np.where(down, middle + half, -np.inf))
+        lows.append(np.where(down, middle @ ACROSS.T - half, np.inf))
+        highs.append(np.where(down, middle @ ACROSS.T + half, -np.inf))
         middles.append(middle)
     left, right = feet[0].down[:, None], feet[1].down[:, None]
     best = np.where(left == right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
@@ -121,25 +134,61 @@ def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) 
     return np.asarray(across * (layers.sway * phase * both)[:, None])
 
 
-def _axis(want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings) -> Array:
+def _zero_moment(path: Array, lever: Array, rate: float) -> Array:
+    """The zero-moment point (n, 2) of a path (n, 2); at its ends the path."""
+    out = path.copy()
+    out[1:-1] -= lever[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
+    return out
+
+
+def _tightened(want: _Wanted, low: Array, high: Array, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
+    """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
+
+    What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
+    goes from foot to foot within a few hundredths of a second, some of that is needed to arrive in time.
+    """
+    along = zmp @ ACROSS.T
+    stand = ~flight[:, None]
+    span = np.subtract(high, low, where=stand, out=np.zeros_like(low))
+    inside = np.minimum(NARROWEST, span) / 2
+    lower = want.low + np.where(stand, np.clip(low - along, 0.0, NARROWER), 0.0)
+    upper = want.high - np.where(stand, np.clip(along - high, 0.0, NARROWER), 0.0)
+    return replace(
+        want,
+        low=np.where(stand, np.minimum(lower, high - inside), low),
+        high=np.where(stand, np.maximum(upper, low + inside), high),
+    )
+
+
+def _solved(want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings) -> Array:
+    """The path (n, 2); both coordinates are unknowns of one programme, by turns."""
     n = len(want.middle)
-    problem = BandedLeastSquares(n, 1)
+    problem = BandedLeastSquares(2 * n, 1, 8)
     inner = np.arange(1, n - 1)
     second = differences(2) * rate**2
-    zmp = np.array([0.0, 1.0, 0.0]) - lever[inner, None] * second
+    zmp = (np.array([0.0, 1.0, 0.0]) - lever[inner, None] * second) / UNIT
     stand = ~flight[inner]
-    k = inner[stand]
-    problem.add(k - 1, zmp[stand] / UNIT, want.weight[k], want.middle[k, None] / UNIT)
-    fly = inner[~stand]
-    problem.add(fly - 1, np.tile(second, (len(fly), 1)), np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
-    problem.add(np.arange(n), np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), want.middle[:, None] / UNIT)
+    k, fly = inner[stand], inner[~stand]
     jerk = np.tile(differences(3) * (rate * body.smooth) ** 3 / UNIT, (n - 3, 1))
-    problem.add(np.arange(n - 3), jerk, np.ones(n - 3), np.zeros((n - 3, 1)))
     # between two feet too far apart for both legs the pelvis is in the middle
     low, high = (b + want.offset for b in (want.nearest, want.farthest))
     low, high = np.minimum(low, (low + high) / 2), np.maximum(high, (low + high) / 2)
-    limits = [
-        Limits(k - 1, zmp[stand] / UNIT, want.low[k] / UNIT, want.high[k] / UNIT, GIVE_SUPPORT),
-        Limits(np.arange(n), np.full((n, 1), 1 / UNIT), low / UNIT, high / UNIT, GIVE_REACH),
-    ]
-    return solve(problem, limits).x
+    limits = []
+    for a in (0, 1):
+        axis = np.eye(2)[a]
+        problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], want.middle[k, a, None] / UNIT)
+        straight = _both(np.tile(second, (len(fly), 1)), axis)
+        problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
+        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), want.middle[:, a, None] / UNIT)
+        problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.zeros((n - 3, 1)))
+        every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)
+        limits.append(Limits(*every, low[:, a] / UNIT, high[:, a] / UNIT, GIVE_REACH))
+    for d, direction in enumerate(ACROSS):
+        along = 2 * k - 2, _both(zmp[stand], direction)
+        limits.append(Limits(*along, want.low[k, d] / UNIT, want.high[k, d] / UNIT, GIVE_SUPPORT))
+    return solve(problem, limits).x.reshape(n, 2)
+
+
+def _both(coefficients: Array, direction: Array) -> Array:
+    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction."""
+    return (coefficients[:, :, None] * direction).reshape(len(coefficients), -1)

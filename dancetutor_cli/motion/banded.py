@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-REACH = 4  # most nodes that one term may touch: third differences
+REACH = 4  # nodes that a term touches at most, if nothing else is said: third differences
 
 
 class BandedLeastSquares:
@@ -20,10 +20,11 @@ class BandedLeastSquares:
     Parameters
     ----------
     nodes : n, number of unknowns in time; width : d, number of paths solved at once with the same terms
+    reach : most neighbouring unknowns that one term may touch
     """
 
-    def __init__(self, nodes: int, width: int) -> None:
-        self.bands = np.zeros((nodes, REACH))
+    def __init__(self, nodes: int, width: int, reach: int = REACH) -> None:
+        self.bands = np.zeros((nodes, reach))
         self.right = np.zeros((nodes, width))
 
     def add(self, start: NDArray[np.int64], coefficients: Array, weight: Array, target: Array) -> None:
@@ -31,10 +32,10 @@ class BandedLeastSquares:
 
         Parameters
         ----------
-        start : (m,) first node of each; coefficients : (m, q), q at most `REACH`; weight : (m,); target : (m, d)
+        start : (m,) first node of each; coefficients : (m, q), q at most `reach`; weight : (m,); target : (m, d)
         """
-        if coefficients.shape[1] > REACH:
-            raise ValueError(f"a term may touch at most {REACH} nodes")
+        if coefficients.shape[1] > self.bands.shape[1]:
+            raise ValueError(f"a term may touch at most {self.bands.shape[1]} nodes")
         whole = np.ascontiguousarray(target, dtype=np.float64)
         _accumulate(self.bands, self.right, start, np.ascontiguousarray(coefficients), weight, whole)
 

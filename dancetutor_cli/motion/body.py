@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.bar import kept_back, leaning_share
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.ease import reduction, smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.gait import gaze_ahead, walking
 from dancetutor_cli.motion.height import HeightPath, height_path
@@ -23,6 +23,7 @@ from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+HASTE_AROUND = 0.12  # seconds before and after fast steps in which the body is as low as in them
 YAW_SMOOTH = 0.08  # seconds over which the pelvis turns with each step
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 
@@ -82,7 +83,10 @@ def body_path(
     gait = walking(plan.walks, times, settings)
     sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
-    mass_height = _height(feet, airborne(plan.feet), times, ground, yaw, bent, sink, above[:, 1], skeleton, settings)
+    stance = settings.body.stance - settings.body.stream_crouch * haste(plan, times, settings)
+    mass_height = _height(
+        feet, airborne(plan.feet), times, ground, yaw, stance, bent, sink, above[:, 1], skeleton, settings
+    )
     height = mass_height.at(times) - above[:, 1]
     ahead = gaze_ahead(plan, times, settings)
     chest, head = _looking(yaw, plan.presses, times, ground, rate, settings, ahead)
@@ -94,6 +98,17 @@ def body_path(
     return BodyPath(
         times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching, np.zeros((len(times), 2))
     )
+
+
+def haste(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+    """How fast (n,) the steps around each time are: 0 for the slowest, 1 for a stream."""
+    step = settings.step
+    fast = np.zeros(len(times))
+    for swing in (s for track in plan.feet for s in track.swings if s.kind not in ("walk", "pivot")):
+        around = slice(*np.searchsorted(times, (swing.lift - HASTE_AROUND, swing.land + HASTE_AROUND)))
+        fast[around] = np.maximum(fast[around], reduction(swing.land - swing.lift, step.fast, step.longest))
+    rate = 1.0 / float(times[1] - times[0])
+    return smooth_path(fast[:, None], np.ones(len(times)), rate, HASTE_AROUND)[:, 0]
 
 
 def _lever(height: HeightPath | None, times: Array) -> Array:
@@ -147,16 +162,19 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 
 
 def _height(
-    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, bent: Array,
-    sink: Array, above: Array, skeleton: Skeleton, settings: MotionSettings,
+    feet: tuple[FootPath, FootPath], flights: Array, times: Array, ground: Array, yaw: Array, stance: Array,
+    bent: Array, sink: Array, above: Array, skeleton: Skeleton, settings: MotionSettings,
 ) -> HeightPath:  # fmt: skip
-    """Height of the centre of mass; `above` (n,): how far it is over the root; `sink`: how far a plant lets it sink."""
+    """Height of the centre of mass, as legs are as long as `stance` (n,) says.
+
+    above : (n,) how far it is over the root; sink : (n,) how far a plant lets it sink
+    """
     body = settings.body
     wanted = np.full(len(yaw), np.inf)
     highest = np.full(len(yaw), np.inf)
     for side in (0, 1):
         most = leg_room(feet, ground, yaw, skeleton, body.soft_reach, side)
-        soft = leg_room(feet, ground, yaw, skeleton, body.stance, side)
+        soft = leg_room(feet, ground, yaw, skeleton, stance, side)
         highest = np.minimum(highest, most)
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])

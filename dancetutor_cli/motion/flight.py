@@ -17,10 +17,13 @@ Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the l
 
 
 def fly(
-    stance: Stance, take_off: float, land: float, goals: Goals, pitches: list[Pitches], turned: float = 0.0
-) -> None:
-    """Move both feet to their goals, on ways that keep the shoes apart; `turned` : degrees that the line between them
-    turns."""
+    stance: Stance, take_off: float, land: float, goals: Goals, pitches: list[Pitches], turned: float = 0.0,
+    eased: float = 1.0,
+) -> None:  # fmt: skip
+    """Move both feet to their goals, on ways that keep the shoes apart.
+
+    turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
+    """
     jump, feet = stance.settings.jump, stance.feet
     starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
     before = np.array([stance.toes(f) for f in feet])
@@ -28,7 +31,7 @@ def fly(
     turn = float(np.radians(turned))
     share, aside = jump_ways(starts, before, ends, after, turn, stance.settings.step.apart)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = tuck_for(far, jump.tuck, jump.far)
+    tuck = eased * tuck_for(far, jump.tuck, jump.far)
     height = GRAVITY * (land - take_off) ** 2 / 8
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):

@@ -43,11 +43,13 @@ def pose(stance: Stance, foot: Foot) -> Pose:
 
 def landing(
     stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float, other: Pose, cut: float,
+    following: Array | None,
 ) -> tuple[Array, float]:  # fmt: skip
     """Where the ball lands and how the foot is turned (without toe-out).
 
     panels : (c, 2); parts : (c,) which part of the foot presses a column; columns : those that it presses
     yaw : wanted; other : the other foot then; cut : 0 for the panel's centre to 1 for its inner edge
+    following : (2,) the panel that this foot steps on next, None if that is far off
     """
     step = stance.settings.step
     if len(columns) > 1:
@@ -55,6 +57,9 @@ def landing(
     toes = stance.toes(foot, yaw)
     panel, room = panels[columns[0]], stage.room_on(panels, columns[0])
     ball = stage.landing_ball(panel, toes, other.middle, cut, step.edge_margin, room)
+    # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
+    way = (foot.ball + (foot.ball if following is None else following)) / 2
+    ball = ball + step.on_the_way * cut * (np.clip(way, panel - room, panel + room) - ball)
     return beside(stance, panel, room, foot, ball, yaw, other)
 
 

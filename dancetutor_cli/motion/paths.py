@@ -56,6 +56,16 @@ def cubic(times: Array, values: Array, at: Array) -> Array:
     return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
+def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
+    """Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are held."""
+    pad = min(int(rate), max(len(values) - 1, 0))
+    held = np.concatenate((np.repeat(values[:1], pad, axis=0), values, np.repeat(values[-1:], pad, axis=0)))
+    frequency = np.fft.rfftfreq(len(held), 1.0 / rate)
+    gain = 1.0 / np.sqrt(1.0 + (frequency / cut) ** 8)
+    spectrum = np.fft.rfft(held, axis=0) * gain.reshape(-1, *([1] * (values.ndim - 1)))
+    return np.asarray(np.fft.irfft(spectrum, n=len(held), axis=0)[pad : pad + len(values)])
+
+
 def leaning(tilt: Array, yaw: Array) -> Array:
     """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
     angle = np.linalg.norm(tilt, axis=1)

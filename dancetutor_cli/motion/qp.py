@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.banded import REACH, BandedLeastSquares, _factor, _solve_one
+from dancetutor_cli.motion.banded import BandedLeastSquares, _factor, _solve_one
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6
@@ -24,7 +24,7 @@ ROUNDS = 60
 class Limits:
     """m limits  low <= sum_i coefficients_i x[start + i] <= high ; infinite sides are left out.
 
-    start : (m,); coefficients : (m, q), q at most 4; low, high : (m,)
+    start : (m,); coefficients : (m, q), q at most the problem's reach; low, high : (m,)
     give : a limit that is exceeded by e costs  e^2 / give , which is added to the sum; 0 for limits that hold
     """
 
@@ -48,12 +48,13 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
     """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value."""
     if problem.right.shape[1] != 1:
         raise ValueError("limits are for one path at a time")
+    nodes, reach = problem.bands.shape
     starts, rows, highs, gives = [], [], [], []
     for part in limits:
-        wide = np.zeros((len(part.start), REACH))
+        wide = np.zeros((len(part.start), reach))
         wide[:, : part.coefficients.shape[1]] = part.coefficients
         # rows near the end are moved forward, so that none reaches beyond the last node
-        start = np.minimum(part.start, len(problem.bands) - REACH)
+        start = np.minimum(part.start, nodes - reach)
         for k in np.flatnonzero(start < part.start):
             wide[k] = np.roll(wide[k], part.start[k] - start[k])
         for sign, bound in ((1.0, part.high), (-1.0, -part.low)):

@@ -17,6 +17,7 @@ class StepSettings:
     fast: float
     jack_height: float
     edge_margin: float
+    on_the_way: float
     lift_pitch: float
     swing_pitch: float
     land_pitch: float
@@ -58,6 +59,7 @@ class BodySettings:
     """How the body rides on the feet."""
 
     stance: float
+    stream_crouch: float
     soft_reach: float
     reach: float
     turn_to_feet: float

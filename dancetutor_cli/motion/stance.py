@@ -39,6 +39,7 @@ class Foot:
     yaw: float  # without toe-out
     free: float = -np.inf  # the foot may not leave before
     landed: float = -np.inf  # when it came down
+    turned: float = -np.inf  # when it last ended a pivot
     swings: list[Swing] = field(default_factory=list)
     holds: dict[int, float] = field(default_factory=dict)  # columns that it holds: until when
     evading: Evading | None = None  # until its next step
@@ -70,7 +71,7 @@ class Foot:
 
     def rested(self, time: float) -> float:
         """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
-        return self.landed + min(STAND, (time - self.landed) / 3)
+        return max(self.landed + min(STAND, (time - self.landed) / 3), self.turned + FREE_WINDOW)
 
 
 class Stance:
@@ -140,10 +141,10 @@ class Stance:
         up = float(np.radians(self.settings.step.pivot_pitch))
         rest = foot.swings[-1].pitches[3] if foot.swings else 0.0
         pitches = (rest, max(up, rest), rest, rest)
-        free = foot.free
+        free, landed = foot.free, foot.landed
         swing = Swing(begin, time, pair(foot.ball), self.toes(foot, yaw), 0.0, pitches, kind="pivot")
         foot.move(swing, foot.ball, yaw)
-        foot.free = max(free, foot.free)
+        foot.free, foot.landed, foot.turned = max(free, foot.free), landed, time
 
 
 def pair(v: Array) -> tuple[float, float]:

@@ -19,6 +19,8 @@ LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
 OVERLAP = 0.01  # seconds that it may leave before the other foot has landed: nobody sees so short a flight
 LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together
+FOLLOWING = 0.6  # seconds to its next step for which a foot comes down near the way there
+FLAT = 0.45  # a quick jump has so much less tuck and raised heels
 SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
 
@@ -39,7 +41,8 @@ class Steps:
         body = stance.body_yaw()
         yaw = stance.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
         columns = self._with_held(i, foot, columns, time)
-        target, yaw = landing(stance, self.panels, self.play.part[i], columns, foot, yaw, pose(stance, other), cut)
+        goal = columns, foot, yaw, pose(stance, other), cut, self._following(i, side)
+        target, yaw = landing(stance, self.panels, self.play.part[i], *goal)
         galloping = self.take_off.get(side, (-1, 0.0))[0] == i
         both = step.double_support + cut * (step.double_support_fast - step.double_support)
         lift = time - max(duration * (1.0 - both), min(LEAST_SWING, duration + OVERLAP))
@@ -70,6 +73,15 @@ class Steps:
         foot.move(swing, target, yaw)
         stance.pivot(other, turned, lift, time)
         return lift
+
+    def _following(self, i: int, side: int) -> Array | None:
+        """The place (2,) of the next step of a foot after row i, if it comes soon."""
+        second, limb = self.play.rows.second, self.play.limb
+        for j in range(i + 1, int(np.searchsorted(second, second[i] + FOLLOWING))):
+            columns = np.flatnonzero(limb[j] == side)
+            if len(columns):
+                return np.asarray(self.panels[columns].mean(axis=0))
+        return None
 
     def _with_held(self, i: int, foot: Foot, columns: list[int], time: float) -> list[int]:
         """A heel or toe that taps alone does so beside a panel that the rest of the foot holds: a bracket."""
@@ -136,8 +148,10 @@ class Steps:
         """Both feet in the air from `take_off` to `time`."""
         jump, step = self.settings.jump, self.settings.step
         cut = float(reduction(duration, step.fast, step.longest))
-        pitches = [heel_up(step, cut, jump.lift_pitch, jump.lift_pitch, jump.land_pitch, c) for c in columns]
-        fly(self.stance, take_off, time, goals, pitches, turned)
+        eased = 1.0 - FLAT * cut
+        lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
+        pitches = [heel_up(step, cut, lift, lift, land, c) for c in columns]
+        fly(self.stance, take_off, time, goals, pitches, turned, eased)
 
     def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> Goals:
         """Where both balls land, and the feet's yaws."""
@@ -149,7 +163,7 @@ class Steps:
             side = 1 - foot.side
             ball, yaw = goals.get(side, (self.panels[columns[side]].mean(axis=0), yaws[side]))
             other = Pose(ball, stance.toes(stance.feet[side], yaw))
-            mine = columns[foot.side], foot, yaws[foot.side], other, cut
+            mine = columns[foot.side], foot, yaws[foot.side], other, cut, self._following(i, foot.side)
             goals[foot.side] = landing(stance, self.panels, self.play.part[i], *mine)
         return [goals[0], goals[1]]
 

@@ -67,16 +67,6 @@ def over_ground(points: Array, ground: Ground | None) -> Array:
     return out
 
 
-def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
-    """Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are held."""
-    pad = min(int(rate), max(len(values) - 1, 0))
-    held = np.concatenate((np.repeat(values[:1], pad, axis=0), values, np.repeat(values[-1:], pad, axis=0)))
-    frequency = np.fft.rfftfreq(len(held), 1.0 / rate)
-    gain = 1.0 / np.sqrt(1.0 + (frequency / cut) ** 8)
-    spectrum = np.fft.rfft(held, axis=0) * gain.reshape(-1, *([1] * (values.ndim - 1)))
-    return np.asarray(np.fft.irfft(spectrum, n=len(held), axis=0)[pad : pad + len(values)])
-
-
 def intervals(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Runs of True as (n, 2) of first and one past the last index."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
