@@ -42,6 +42,7 @@ Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
+TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
@@ -184,7 +185,10 @@ def _settled(
             deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
         heels += np.column_stack([np.interp(grid, coarse, h) for h in _heels_up(skeleton, rotations, settings)])
         heels = np.maximum(smooth_path(heels, np.ones(len(grid)), settings.sampling.work_rate, 0.06), 0.0)
-        body = body_path(plan, grid, feet, skeleton, settings, body, above, deeper, keep=0 < turn < rounds - 1)
+        known, last = (body, above, deeper), turn == rounds - 1
+        body = body_path(
+            plan, grid, feet, skeleton, settings, *known, keep=turn > 0 and not last, tightened=TIGHTENED if last else 0
+        )
         body = replace(body, heels=heels)
     return body
 

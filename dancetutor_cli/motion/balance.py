@@ -27,14 +27,14 @@ HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
 FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
 ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
-TIGHTENED = 3  # rounds of narrowing limits where the path without its quickest trembling leaves them
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
 def balanced_path(
-    feet: tuple[FootPath, FootPath], lever: Array, offset: Array, times: Array, settings: MotionSettings
-) -> Array:
+    feet: tuple[FootPath, FootPath], lever: Array, offset: Array, times: Array, settings: MotionSettings,
+    tightened: int = 0,
+) -> Array:  # fmt: skip
     """Path (n, 2) of the centre of mass over the ground.
 
     Parameters
@@ -43,6 +43,7 @@ def balanced_path(
     lever : (n,) y / (y'' + g), seconds squared; ignored in flight
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
     settings : of the body, and how the weight sways while both feet stand
+    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them
     """
     body, rate = settings.body, NODE_RATE
     nodes = np.arange(times[0], times[-1] + 1.0 / rate, 1.0 / rate)
@@ -58,7 +59,7 @@ def balanced_path(
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
     want = _Wanted(middle, low, high, weight, offset, *room)
     path = _solved(want, flight, lever, rate, body)
-    for _ in range(TIGHTENED):
+    for _ in range(tightened):
         want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), lever, rate), flight)
         path = _solved(want, flight, lever, rate, body)
     return cubic(nodes, path, times)

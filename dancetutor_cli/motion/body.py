@@ -54,13 +54,13 @@ class BodyPath:
 def body_path(
     plan: Plan, times: Array, feet: tuple[FootPath, FootPath], skeleton: Skeleton, settings: MotionSettings,
     before: BodyPath | None = None, above: Array | None = None, deeper: Array | None = None,
-    keep: bool = False,
+    keep: bool = False, tightened: int = 0,
 ) -> BodyPath:  # fmt: skip
     """All paths of the body on evenly spaced `times` (n,), feet sampled at the same times.
 
     before : the path found in the round before; None in the first
     above : (n, 3), centre of mass minus root as measured on a first bake; None for that of the rest pose
-    keep : leave the path over the ground as it was before
+    keep : leave the path over the ground as it was before; tightened : as in `balanced_path`
     deeper : (p,) how far each press of a palm drew the root below where it was wanted, metres
     """
     rate = 1.0 / float(times[1] - times[0])
@@ -73,7 +73,7 @@ def body_path(
         mass_ground = before.mass
     else:
         lever = _lever(before.mass_height if before else None, times)
-        mass_ground = balanced_path(feet, lever, above[:, [0, 2]], times, settings)
+        mass_ground = balanced_path(feet, lever, above[:, [0, 2]], times, settings, tightened)
     held = leaning_share(plan.grips, times)
     if plan.bar is not None and not (keep and before is not None):
         mass_ground = kept_back(mass_ground, held, plan.bar, settings.bar)

@@ -63,7 +63,9 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
             rows.append(sign * wide[use])
             highs.append(bound[use])
             gives.append(np.full(len(highs[-1]), part.give))
-    stacked = np.concatenate(starts), np.concatenate(rows), np.concatenate(highs), np.concatenate(gives)
+    every = np.concatenate(rows)
+    width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
+    stacked = np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives)
     right = np.ascontiguousarray(problem.right[:, 0])
     x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, ROUNDS)
     return Solution(x, bool(found), int(rounds))
@@ -82,18 +84,20 @@ def _times_band(bands: Array, x: Array) -> Array:
 
 
 @njit(cache=True)
-def _times_rows(start: NDArray[np.int64], rows: Array, x: Array) -> Array:
+def _times_rows(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, x: Array) -> Array:
     out = np.zeros(len(start))
     for r in range(len(start)):
-        for i in range(rows.shape[1]):
-            out[r] += rows[r, i] * x[start[r] + i]
+        total = 0.0
+        for i in range(width[r]):
+            total += rows[r, i] * x[start[r] + i]
+        out[r] = total
     return out
 
 
 @njit(cache=True)
-def _add_transposed(start: NDArray[np.int64], rows: Array, z: Array, out: Array) -> None:
+def _add_transposed(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, z: Array, out: Array) -> None:
     for r in range(len(start)):
-        for i in range(rows.shape[1]):
+        for i in range(width[r]):
             out[start[r] + i] += rows[r, i] * z[r]
 
 
@@ -108,51 +112,60 @@ def _longest_step(value: Array, change: Array) -> float:
 
 @njit(cache=True)
 def _direction(
-    factor: Array, start: NDArray[np.int64], rows: Array, give: Array, dual: Array, primal: Array, s: Array, z: Array,
-    aim: Array,
+    factor: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, give: Array, dual: Array,
+    primal: Array, s: Array, z: Array, aim: Array,
 ) -> tuple[Array, Array, Array]:  # fmt: skip
     """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
     right = -dual
-    loose = s + give * z
-    _add_transposed(start, rows, -(aim - s * z + z * primal) / loose, right)
+    for r in range(len(start)):
+        push = (aim[r] - s[r] * z[r] + z[r] * primal[r]) / (s[r] + give[r] * z[r])
+        for i in range(width[r]):
+            right[start[r] + i] -= rows[r, i] * push
     dx = _solve_one(factor, right)
-    dz = (aim - s * z + z * (_times_rows(start, rows, dx) + primal)) / loose
-    ds = give * dz - primal - _times_rows(start, rows, dx)
+    ds, dz = np.empty_like(s), np.empty_like(z)
+    for r in range(len(start)):
+        change = primal[r]
+        for i in range(width[r]):
+            change += rows[r, i] * dx[start[r] + i]
+        dz[r] = (aim[r] - s[r] * z[r] + z[r] * change) / (s[r] + give[r] * z[r])
+        ds[r] = give[r] * dz[r] - change
     return dx, ds, dz
 
 
 @njit(cache=True)
 def _interior_point(
-    bands: Array, right: Array, start: NDArray[np.int64], rows: Array, high: Array, give: Array, tolerance: float,
-    most: int,
+    bands: Array, right: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, high: Array,
+    give: Array, tolerance: float, most: int,
 ) -> tuple[Array, bool, int]:  # fmt: skip
     """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own."""
     x = _solve_one(_factor(bands), right)
     m = len(high)
     if m == 0:
         return x, True, 0
-    s = np.maximum(high - _times_rows(start, rows, x), 0.1)
+    s = np.maximum(high - _times_rows(start, width, rows, x), 0.1)
     z = np.full(m, 0.1)
     scale = 1.0 + np.abs(right).max()
     for turn in range(most):
         dual = _times_band(bands, x) - right
-        _add_transposed(start, rows, z, dual)
-        primal = _times_rows(start, rows, x) + s - give * z - high
+        _add_transposed(start, width, rows, z, dual)
+        primal = _times_rows(start, width, rows, x) + s - give * z - high
         mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, turn
         system = bands.copy()
         for r in range(m):
             w = z[r] / (s[r] + give[r] * z[r])
-            for i in range(rows.shape[1]):
-                for j in range(i, rows.shape[1]):
-                    system[start[r] + i, j - i] += w * rows[r, i] * rows[r, j]
+            for i in range(width[r]):
+                weighted = w * rows[r, i]
+                if weighted != 0.0:  # in a programme of two coordinates every other one
+                    for j in range(i, width[r]):
+                        system[start[r] + i, j - i] += weighted * rows[r, j]
         factor = _factor(system)
-        dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, np.zeros(m))
+        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
         after = ((s + ap * ds) * (z + ad * dz)).sum() / m
         centre = (after / mu) ** 3
-        dx, ds, dz = _direction(factor, start, rows, give, dual, primal, s, z, centre * mu - ds * dz)
+        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
         if give.max() > 0.0:
             ap = ad = min(ap, ad)
