@@ -192,4 +192,5 @@ def _solved(want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float,
 
 def _both(coefficients: Array, direction: Array) -> Array:
     """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction."""
-    return (coefficients[:, :, None] * direction).reshape(len(coefficients), -1)
+    count, width = coefficients.shape
+    return (coefficients[:, :, None] * direction).reshape(count, 2 * width)
