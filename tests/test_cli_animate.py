@@ -135,6 +135,24 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path: Path) -> None:
     assert not target.exists()
 
 
+@pytest.mark.parametrize("suffix", ["npz", "glb", "bvh", "json"])
+def test_a_section_shorter_than_a_frame(suffix: str, tmp_path: Path) -> None:
+    for section in ("10.003:10.01", "10.016:10.018", "0:0.00001"):
+        animate(SONG, *HARD, "--section", section, "-o", tmp_path / f"a.{suffix}")
+    assert "cannot be measured" in said(SONG, *HARD, "--section", "10:10.01", "-o", tmp_path / "a.npz", "--report")
+
+
+def test_numbers_that_are_none(tmp_path: Path) -> None:
+    for option in ("--fps", "--rate"):
+        assert "nan" in said(SONG, *HARD, option, "nan", "-o", tmp_path / "a.glb")
+
+
+def test_a_bvh_is_told_with_its_frames_and_its_beginning(tmp_path: Path) -> None:
+    said_of_it = animate(SONG, *HARD, "--section", "8:10", "--fps", 30, "-o", tmp_path / "a.bvh").output
+    assert "61 frames" in said_of_it and "from second 8.000" in said_of_it
+    assert "Frames: 61" in (tmp_path / "a.bvh").read_text()
+
+
 def test_a_chart_without_steps(tmp_path: Path) -> None:
     song = tmp_path / "none.sm"
     song.write_text("#TITLE:x;#BPMS:0=120;#NOTES:\ndance-single:\n:\nHard:\n5:\n0:\n0000\n00M0\n0000\n0000\n;\n")

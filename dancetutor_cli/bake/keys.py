@@ -21,7 +21,10 @@ KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 
 
 def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
-    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land."""
+    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land.
+
+    A stretch too short for two of them has its own start and end.
+    """
     regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
     extra = [t for foot in plan.feet for s in foot.swings for t in (s.lift, s.land)]
     extra += [t for p in plan.presses for t in (p.start, p.end)]
@@ -37,7 +40,7 @@ def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
             keep[k] = False
         else:
             last = t
-    return np.asarray(times[keep])
+    return np.asarray(times[keep]) if keep.sum() > 1 else np.array([start, end])
 
 
 def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:

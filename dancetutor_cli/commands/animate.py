@@ -34,14 +34,29 @@ _TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
 
 
+def number(_context: click.Context, _option: click.Parameter, value: float) -> float:
+    """The value, unless it is nan, which no range keeps out."""
+    if value != value:
+        raise click.BadParameter("nan is not a number.")
+    return value
+
+
 @click.command()
 @click.argument("file", type=_FILE)
 @click.option("-o", "--output", type=_FILE, help="A .glb, .npz, .bvh or .json file; default: SONG-difficulty.glb.")
-@click.option("--fps", type=click.FloatRange(1, 1000), default=60.0, show_default=True, help="Frames per second.")
+@click.option(
+    "--fps",
+    type=click.FloatRange(1, 1000),
+    callback=number,
+    default=60.0,
+    show_default=True,
+    help="Frames per second.",
+)
 @section_option
 @click.option(
     "--rate",
     type=click.FloatRange(SLOWEST, FASTEST),
+    callback=number,
     default=1.0,
     show_default=True,
     help="Speed of the music she dances to.",
@@ -114,11 +129,21 @@ def _bake_and_write(
         from dancetutor_cli.character.retarget import retarget
 
         write_motion(target, retarget(motion, character), character)
-        click.echo(f"{target}: {len(motion.times)} keys, {motion.times[-1] - motion.times[0]:.1f} s, {label}")
+        click.echo(f"{target}: {_extent(motion, target)}, {label}")
     if report_to is not None or plot is not None:
         from dancetutor_cli.bake import mines_of, report
 
         _report(report(motion, mines_of(asked.play, asked.pad)), report_to, plot)
+
+
+def _extent(motion: Motion, target: Path) -> str:
+    """How much is in a file: keys and seconds, and for what cannot say when it begins, that too."""
+    start, end = float(motion.times[0]), float(motion.times[-1])
+    if target.suffix.lower() != ".bvh":
+        return f"{len(motion.times)} keys, {end - start:.1f} s"
+    from dancetutor_cli.formats.bvh import frame_count
+
+    return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
 
 
 def default_name(song: Song, chart: Chart) -> str:

@@ -86,6 +86,11 @@ def read_bvh(path: Path, scale: float | None = None) -> Motion:
     )
 
 
+def frame_count(motion: Motion, fps: float) -> int:
+    """How many frames a motion has at `fps`, from its first key on."""
+    return max(1, math.floor(float(motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
+
+
 def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_metre: float = 100.0) -> None:
     """Write a motion as BVH, in centimetres by default, atomically.
 
@@ -95,7 +100,7 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
     Raises FileError when the file cannot be written.
     """
     fps = motion.fps if fps is None else fps
-    count = max(1, math.floor((motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
+    count = frame_count(motion, fps)
     order = _depth_first(motion.skeleton)
     text = ["HIERARCHY", *_written(motion.skeleton, order[0], 0, units_per_metre), "MOTION"]
     text += [f"Frames: {count}", f"Frame Time: {1 / fps:.9f}"]

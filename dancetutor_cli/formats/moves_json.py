@@ -4,15 +4,16 @@ One object, schema 1, UTF-8; metres, seconds of the music, degrees; places are [
 the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
 
     {"schema": 1, "title": "...", "chart": "dance-single Hard 8",
-     "start": {"left_foot": {"at": [0.1, 0.05], "yaw": 9.0}, "right_foot": {...}},
+     "start": {"left_foot": {"at": [0.1, 0.05], "yaw": 9.0}, "right_foot": {...}, "body": {"yaw": 0.0}},
      "moves": [{"limb": "left_foot", "kind": "step", "start": 1.2, "end": 1.5, "from": [..], "to": [..], "yaw": 12.0,
                 "height": 0.05}],
      "turns": [{"start": 1.2, "end": 1.5, "yaw": 20.0}],
      "contacts": [{"limb": "left_foot", "kind": "tap", "part": null, "column": 0, "start": 1.5, "end": 2.1,
                    "panel": [..]}]}
 
-`from` and `to` are the ball of the foot, or for a hand its palm; kind is step, jump, gallop, evade, pivot, aside
-(a side-step in a wait), walk (on the floor beside the pad its "level" is below 0) or press.
+`start` is how she stands before the first of these moves. `from` and `to` are the ball of the foot, or for a hand its
+palm; kind is step, jump, gallop, evade, pivot, aside (a side-step in a wait) or walk (on the floor beside the pad its
+"level" is below 0); of a hand reach, on its way to a panel, `from` null where it hung free, and press, down on it.
 With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
 A reader must survive added keys.
 """
@@ -26,7 +27,7 @@ from typing import Any
 
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.model import Bar, Grip
-from dancetutor_cli.motion.track import FootTrack, Plan
+from dancetutor_cli.motion.track import FootTrack, Plan, Press
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
 SCHEMA = 1
@@ -42,26 +43,14 @@ def write_moves(path: Path, plan: Plan, title: str, chart: str, start: float, en
 def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> dict[str, Any]:
     """The object described above, as plain data."""
     moves = [m for side, track in enumerate(plan.feet) for m in _foot_moves(track, _FEET[side])]
-    moves += [
-        {
-            "limb": ("left_hand", "right_hand")[p.side],
-            "kind": "press",
-            "start": _round(p.start),
-            "end": _round(p.end),
-            "to": _place(p.target),
-        }
-        for p in plan.presses
-    ]
+    moves += _hand_moves(plan.presses)
     moves += [_grip(plan.bar, grip) for grip in plan.grips if plan.bar is not None]
     moves.sort(key=lambda m: (m["start"], m["limb"]))
     return {
         "schema": SCHEMA,
         "title": title,
         "chart": chart,
-        "start": {
-            name: {"at": _place(track.start), "yaw": _degrees(track.start_yaw)}
-            for name, track in zip(_FEET, plan.feet, strict=True)
-        },
+        "start": _stand(plan, start),
         "moves": [m for m in moves if start <= m["start"] <= end],
         "turns": [
             {"start": _round(t.start), "end": _round(t.end), "yaw": _degrees(t.yaw)}
@@ -82,6 +71,38 @@ def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> 
             if start <= c.start <= end
         ],
     }
+
+
+def _stand(plan: Plan, start: float) -> dict[str, Any]:
+    """Where the feet are, and how feet and body are turned, after all that began before `start`."""
+    out: dict[str, Any] = {}
+    for name, track in zip(_FEET, plan.feet, strict=True):
+        at, yaw = track.start, track.start_yaw
+        for swing in track.swings:
+            if _round(swing.lift) < start:
+                at, yaw = swing.target, swing.yaw
+        out[name] = {"at": _place(at), "yaw": _degrees(yaw)}
+    turned = [t.yaw for t in plan.turns if t.start < start]
+    out["body"] = {"yaw": _degrees(turned[-1] if turned else 0.0)}
+    return out
+
+
+def _hand_moves(presses: tuple[Press, ...]) -> list[dict[str, Any]]:
+    """Ways to panels, and how long palms stay there."""
+    out: list[dict[str, Any]] = []
+    last: dict[int, Press] = {}
+    for p in presses:
+        limb, before = ("left_hand", "right_hand")[p.side], last.get(p.side)
+        begin = p.start - p.lead
+        down = before is not None and begin <= before.end + 1e-6
+        start = _place(before.target) if down and before is not None else None
+        way = {"start": _round(begin), "end": _round(p.start), "from": start, "to": _place(p.target)}
+        out.append({"limb": limb, "kind": "reach", **way})
+        out.append(
+            {"limb": limb, "kind": "press", "start": _round(p.start), "end": _round(p.end), "to": _place(p.target)}
+        )
+        last[p.side] = p
+    return out
 
 
 def _grip(bar: Bar, grip: Grip) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.moves_json import moves_data, write_moves
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from dancetutor_cli.formats.play_json import read_play
+from dancetutor_cli.motion.track import Press
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, prepare, solve_chart
 from dancetutor_cli.resources import charts_path
@@ -59,6 +60,32 @@ def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # typ
             place, end = move["to"], move["end"]
     late = moves_data(plan, "", "", 10.0, 20.0)
     assert all(10.0 <= m["start"] <= 20.0 for m in late["moves"])
+
+
+def test_moves_of_a_section_begin_where_she_stands(demo) -> None:  # type: ignore[no-untyped-def]
+    plan = plan_of(*demo)
+    for begin in (10.0, 17.3, 24.9):
+        data = moves_data(plan, "", "", begin, begin + 8.0)
+        for limb in ("left_foot", "right_foot"):
+            first = next(m for m in data["moves"] if m["limb"] == limb)
+            assert data["start"][limb]["at"] == first["from"]
+        turns = moves_data(plan, "", "", -1e9, 1e9)["turns"]
+        assert data["start"]["body"]["yaw"] == [t["yaw"] for t in turns if t["start"] < begin][-1]
+
+
+def test_hands_reach_from_panel_to_panel(demo) -> None:  # type: ignore[no-untyped-def]
+    presses = (
+        Press(10.0, 10.1, 1, (0.28, 0.0), lead=0.7),
+        Press(10.5, 11.5, 1, (0.0, 0.28), lead=0.4),
+        Press(14.0, 14.1, 0, (-0.28, 0.0), lead=0.7),
+    )
+    data = moves_data(replace(plan_of(*demo), presses=presses), "", "", -1e9, 1e9)
+    moves = [m for m in data["moves"] if m["limb"].endswith("hand")]
+    right = [m for m in moves if m["limb"] == "right_hand"]
+    assert [m["kind"] for m in right] == ["reach", "press", "reach", "press"]
+    assert [(m["start"], m["end"]) for m in right] == [(9.3, 10.0), (10.0, 10.1), (10.1, 10.5), (10.5, 11.5)]
+    assert [m.get("from") for m in right] == [None, None, [0.28, 0.0], None]
+    assert [m["to"] for m in moves if m["limb"] == "left_hand"] == [[-0.28, 0.0]] * 2
 
 
 def as_json(chart, play) -> dict:  # type: ignore[no-untyped-def, type-arg]

@@ -18,8 +18,10 @@ from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
 from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
+from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.model import Motion
 
+SHORTEST = 0.05  # seconds; of less there are no accelerations to measure
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
 __all__ = ["Figure", "Report", "report"]
 
@@ -31,7 +33,14 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
     ----------
     motion : from `bake`, or read from a file
     mines : (m, 3) of second, x, z of every mine, metres in the world; None leaves its figure out
+
+    Raises
+    ------
+    DancetutorError if the motion is too short to be measured.
     """
+    length = float(motion.times[-1] - motion.times[0])
+    if length < SHORTEST - 1e-9:
+        raise DancetutorError(f"{length:.3f} s of motion cannot be measured; a report needs at least {SHORTEST} s")
     contacts, errors = contact_figures(motion)
     body = body_of(motion)
     ground, notes = ground_figures(motion, body, mines)
