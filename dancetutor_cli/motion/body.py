@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.balance import balanced_path
 from dancetutor_cli.motion.bar import kept_back, leaning_share
-from dancetutor_cli.motion.ease import reduction, smooth
+from dancetutor_cli.motion.crouch import haste, jump_crouch, jump_lean
+from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.gait import gaze_ahead, walking
 from dancetutor_cli.motion.height import HeightPath, height_path
@@ -23,7 +24,7 @@ from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-HASTE_AROUND = 0.12  # seconds before and after fast steps in which the body is as low as in them
+WRUNG = np.radians(110.0)  # before the screen is right behind her, the chest gives up looking at it over so far
 YAW_SMOOTH = 0.08  # seconds over which the pelvis turns with each step
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 
@@ -83,7 +84,8 @@ def body_path(
     gait = walking(plan.walks, times, settings)
     sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
-    stance = settings.body.stance - settings.body.stream_crouch * haste(plan, times, settings)
+    crouch = jump_crouch(plan, times, settings.jump)
+    stance = settings.body.stance - settings.body.stream_crouch * haste(plan, times, settings) - crouch
     mass_height = _height(
         feet, airborne(plan.feet), times, ground, yaw, stance, bent, sink, above[:, 1], skeleton, settings
     )
@@ -93,22 +95,13 @@ def body_path(
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
+    fold = np.radians(settings.jump.fold) * crouch
+    tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, rate, controller)
     return BodyPath(
         times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching, np.zeros((len(times), 2))
     )
-
-
-def haste(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How fast (n,) the steps around each time are: 0 for the slowest, 1 for a stream."""
-    step = settings.step
-    fast = np.zeros(len(times))
-    for swing in (s for track in plan.feet for s in track.swings if s.kind not in ("walk", "pivot")):
-        around = slice(*np.searchsorted(times, (swing.lift - HASTE_AROUND, swing.land + HASTE_AROUND)))
-        fast[around] = np.maximum(fast[around], reduction(swing.land - swing.lift, step.fast, step.longest))
-    rate = 1.0 / float(times[1] - times[0])
-    return smooth_path(fast[:, None], np.ones(len(times)), rate, HASTE_AROUND)[:, 0]
 
 
 def _lever(height: HeightPath | None, times: Array) -> Array:
@@ -178,7 +171,7 @@ def _height(
         highest = np.minimum(highest, most)
         wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
-    wanted = np.minimum(wanted + body.step_rise * lifted, highest - 0.002) - sink
+    wanted = np.minimum(wanted + body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - sink
     highest = highest - sink
     share, depth = bent[:, 0], bent[:, 1]
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
@@ -220,6 +213,7 @@ def _looking(
     ones = np.ones(len(yaw))
     gap = _wrapped(screen_yaw(ground, settings) - yaw)
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
+    torso = torso * smooth((np.pi - np.abs(gap)) / WRUNG)  # a spine is not wrung from one side to the other at once
     torso = torso * (1.0 - ahead)
     for press in (p for p in presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
         share = press_share(press, times, settings.hands.reach_down)

@@ -52,6 +52,10 @@ class JumpSettings:
     yaw_to_normal: float
     gallop: float
     gallop_wait: float
+    crouch: float
+    follow: float
+    fold: float
+    lean: float
 
 
 @dataclass(frozen=True, slots=True)
