@@ -32,15 +32,15 @@ GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of st
 
 
 def balanced_path(
-    feet: tuple[FootPath, FootPath], lever: Array, offset: Array, times: Array, settings: MotionSettings,
-    tightened: int = 0,
+    feet: tuple[FootPath, FootPath], lever: Array, seen: Array, offset: Array, times: Array,
+    settings: MotionSettings, tightened: int = 0,
 ) -> Array:  # fmt: skip
     """Path (n, 2) of the centre of mass over the ground.
 
     Parameters
     ----------
     feet : at the n even `times`, seconds
-    lever : (n,) y / (y'' + g), seconds squared; ignored in flight
+    lever : (n,) y / (y'' + g), seconds squared; ignored in flight; seen : the same without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
     settings : of the body, and how the weight sways while both feet stand
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them
@@ -48,7 +48,7 @@ def balanced_path(
     body, rate = settings.body, NODE_RATE
     nodes = np.arange(times[0], times[-1] + 1.0 / rate, 1.0 / rate)
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
-    lever = np.interp(nodes, times, lever)
+    lever, seen = (np.interp(nodes, times, x) for x in (lever, seen))
     offset = sample_path(offset, times, nodes)
     room = _room(feet)
     feet = _carrying(feet)
@@ -60,7 +60,7 @@ def balanced_path(
     want = _Wanted(middle, low, high, weight, offset, *room)
     path = _solved(want, flight, lever, rate, body)
     for _ in range(tightened):
-        want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), lever, rate), flight)
+        want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), seen, rate), flight)
         path = _solved(want, flight, lever, rate, body)
     return cubic(nodes, path, times)
 

@@ -15,7 +15,7 @@ from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.gait import gaze_ahead, walking
 from dancetutor_cli.motion.height import HeightPath, height_path
 from dancetutor_cli.motion.inertia import Controller, follow
-from dancetutor_cli.motion.paths import smooth_path
+from dancetutor_cli.motion.paths import low_pass, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan, Press, Turn, airborne
 from dancetutor_cli.rig import quaternion as quat
@@ -73,8 +73,8 @@ def body_path(
     if keep and before is not None:
         mass_ground = before.mass
     else:
-        lever = _lever(before.mass_height if before else None, times)
-        mass_ground = balanced_path(feet, lever, above[:, [0, 2]], times, settings, tightened)
+        levers = _levers(before.mass_height if before else None, times)
+        mass_ground = balanced_path(feet, *levers, above[:, [0, 2]], times, settings, tightened)
     held = leaning_share(plan.grips, times)
     if plan.bar is not None and not (keep and before is not None):
         mass_ground = kept_back(mass_ground, held, plan.bar, settings.bar)
@@ -104,14 +104,23 @@ def body_path(
     )
 
 
-def _lever(height: HeightPath | None, times: Array) -> Array:
-    """y / (y'' + g) of the centre of mass, seconds squared; standing still as long as its height is not known."""
+def _levers(height: HeightPath | None, times: Array) -> tuple[Array, Array]:
+    """y / (y'' + g) of the centre of mass, seconds squared, twice (n,): of its path, and of that without trembling.
+
+    Standing still as long as its height is not known.
+    """
     if height is None:
-        return np.full(len(times), STANDING_HEIGHT / GRAVITY)
+        still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
+        return still, still
     step = 1.0 / 60.0
     y = height.at(times)
     acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
-    return np.asarray(y / np.maximum(acceleration + GRAVITY, 0.4 * GRAVITY))
+    rate = 1.0 / float(times[1] - times[0])
+    return _lever(y, acceleration, 0.4), _lever(low_pass(y, rate), low_pass(acceleration, rate), 0.3)
+
+
+def _lever(y: Array, acceleration: Array, least: float) -> Array:
+    return np.asarray(y / np.maximum(acceleration + GRAVITY, least * GRAVITY))
 
 
 def _yaw_target(turns: tuple[Turn, ...], times: Array) -> Array:
