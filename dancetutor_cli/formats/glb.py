@@ -27,6 +27,7 @@ _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
 _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _VERTICES, _INDICES = 34962, 34963
+MOST_PER_SECOND = 29_000  # bytes of an animation with exact legs: two minutes and the dancer's mesh stay below 5 MB
 
 
 def read_glb(path: Path) -> Character:
@@ -37,10 +38,11 @@ def read_glb(path: Path) -> Character:
 def write_glb(path: Path, character: Character, motion: Motion | None = None) -> None:
     """Write a character, and the motion as its animation, atomically.
 
-    The motion must be of the character's skeleton. Rotations are normalised 16-bit quaternions (0.03 mm at the foot);
-    joints that never move have no channel, the others have the keys that they need (`thinning.clocks`). glTF counts
-    time from 0: the animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is
-    kept in the animation's extras as `start_second`.
+    The motion must be of the character's skeleton. Joints that never move have no channel, the others have the keys
+    that they need (`thinning.clocks`), as normalised 16-bit quaternions; legs are exact 32-bit ones, unless the steps
+    are so many that the file would get too large (then feet are off by 0.03 mm). glTF counts time from 0: the
+    animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is kept in the
+    animation's extras as `start_second`.
 
     Raises FileError when the file cannot be written, ValueError when motion and character differ in joints.
     """
@@ -180,15 +182,14 @@ class _Writer:
         start = min(0.0, float(motion.times[0]))
         times = np.asarray(motion.times - start, dtype="<f4")
         apart = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
-        channels = _Channels(self)
-        groups = clocks(motion)
+        channels, before = _Channels(self), len(self.binary)
+        legs, *groups = clocks(motion)
         for clock in groups:
-            keep = apart & clock.keep
-            for j in clock.joints:
-                turned = np.rint(quat.continuous(motion.rotations[keep, j])[:, [1, 2, 3, 0]] * 32767).astype("<i2")
-                if (turned != turned[0]).any() or abs(int(turned[0, 3])) != 32767:
-                    channels.add(j, "rotation", times[keep], turned, normalized=True)
-        keep = apart & groups[0].keep
+            channels.turns(motion.rotations, clock.joints, times, apart & clock.keep, exact=False)
+        keep = apart & legs.keep
+        room = MOST_PER_SECOND * (times[-1] - times[0]) - (len(self.binary) - before)
+        exact = keep.sum() * (len(legs.joints) + 1) * 16 <= room
+        channels.turns(motion.rotations, legs.joints, times, keep, exact)
         channels.add(0, "translation", times[keep], np.asarray(motion.root[keep], dtype="<f4"))
         animation: dict[str, Any] = {"name": "dance", "samplers": channels.samplers, "channels": channels.channels}
         extras: dict[str, Any] = {} if start == 0 else {"start_second": start}
@@ -208,6 +209,25 @@ class _Channels:
         self.inputs: dict[bytes, int] = {}
         self.samplers: list[dict[str, Any]] = []
         self.channels: list[dict[str, Any]] = []
+
+    def turns(
+        self, rotations: NDArray[np.float64], joints: tuple[int, ...], times: NDArray[Any], keep: NDArray[np.bool_],
+        exact: bool,
+    ) -> None:  # fmt: skip
+        """Channels of joints that turn, with the keys `keep` of rotations (f, j, 4) at times (f,).
+
+        exact : in 32 bits per number instead of 16
+        """
+        for j in joints:
+            turned = quat.continuous(rotations[keep, j])[:, [1, 2, 3, 0]]
+            short = np.rint(turned * 32767).astype("<i2")
+            still = not (short != short[0]).any()
+            if still and abs(int(short[0, 3])) == 32767:
+                continue
+            if exact and not still:
+                self.add(j, "rotation", times[keep], turned.astype("<f4"))
+            else:
+                self.add(j, "rotation", times[keep], short, normalized=True)
 
     def add(self, node: int, path: str, times: NDArray[Any], values: NDArray[Any], **more: Any) -> None:
         """A channel; where its values stand still for a while only the keys at both ends are written, if that pays."""

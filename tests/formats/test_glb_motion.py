@@ -22,6 +22,7 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
 
+ROOT = Path(__file__).resolve().parents[2]
 FASTER, STREAM = 2.0, (1.2, 3.5)  # 17 steps per second, more than any chart of the corpus keeps up
 
 
@@ -45,13 +46,13 @@ def drawn(path: Path, motion: Motion) -> Motion:
     return replace(motion, rotations=rotations, root=places)
 
 
-def fast(**more: object) -> Motion:
+def fast(faster: float = FASTER, **more: object) -> Motion:
     song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")
     chart = next(c for c in song.charts if c.difficulty == "Challenge")
     play, pad = solve_chart(chart, load_preset("itg")), load_pad(chart.steps_type)
     assert play is not None and pad is not None
-    quick = replace(play, rows=replace(play.rows, second=play.rows.second / FASTER))
-    return bake(chart, quick, pad, rate=FASTER, **more)  # type: ignore[arg-type]
+    quick = replace(play, rows=replace(play.rows, second=play.rows.second / faster))
+    return bake(chart, quick, pad, rate=faster, **more)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module", params=["free", "bar"])
@@ -90,6 +91,20 @@ def test_contacts_stay_exact(written: tuple[Path, Motion]) -> None:
     after = report(drawn(path, motion))
     assert after["contacts missed"].value == 0 and after["contact error"].value <= 1.0
     assert after["penetration"].met
+
+
+def test_usual_charts_are_exact(tmp_path: Path) -> None:
+    motion = fast(faster=1.0)  # the same chart as it is: no figure of the feet is worse in the file
+    write_glb(tmp_path / "a.glb", load_dancer(), motion)
+    seen = drawn(tmp_path / "a.glb", motion)
+    for points in sole_points(motion.skeleton):
+        right, shown = (points_in_world(m.skeleton, points, m.rotations, m.root) for m in (motion, seen))
+        assert np.linalg.norm(right - shown, axis=-1).max() < 1e-5
+    before, after = report(motion), report(seen)
+    for name in ("contact error", "plant slide", "penetration", "foot in foot", "contacts missed"):
+        assert after[name].value == pytest.approx(before[name].value, abs=0.02), name
+    size = (tmp_path / "a.glb").stat().st_size - (ROOT / "dancetutor_cli/character/data/dancer.glb").stat().st_size
+    assert size * 120.0 / np.ptp(motion.times) < 3_600_000
 
 
 def test_palms_stay_and_free_hands_are_near(written: tuple[Path, Motion]) -> None:
