@@ -99,7 +99,7 @@ def test_usual_charts_are_exact(tmp_path: Path) -> None:
     seen = drawn(tmp_path / "a.glb", motion)
     for points in sole_points(motion.skeleton):
         right, shown = (points_in_world(m.skeleton, points, m.rotations, m.root) for m in (motion, seen))
-        assert np.linalg.norm(right - shown, axis=-1).max() < 1e-5
+        assert np.linalg.norm(right - shown, axis=-1).max() < 3e-5
     before, after = report(motion), report(seen)
     for name in ("contact error", "plant slide", "penetration", "foot in foot", "contacts missed"):
         assert after[name].value == pytest.approx(before[name].value, abs=0.02), name
