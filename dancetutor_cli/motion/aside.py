@@ -152,8 +152,8 @@ class SideSteps:
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
         other = stance.feet[1 - foot.side]
-        bulge = around(stance, foot, fall.ball, fall.heading, other, other.yaw)
         lift = max(start + step.double_support * duration, foot.free)
+        bulge = around(stance, foot, (lift, start + duration), fall.ball, fall.heading, other)
         swing = Swing(lift, start + duration, pair(fall.ball), fall.yaw, height, pitches, bulge, "aside")
         foot.move(swing, fall.ball, fall.heading)
         foot.evading = None

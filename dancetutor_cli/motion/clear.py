@@ -5,44 +5,56 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.ease import swung, travelled
 from dancetutor_cli.motion.stage import BALL_AHEAD
 
 Array = NDArray[np.float64]
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
-_ASIDE, _AHEAD = np.meshgrid(np.arange(-9, 10) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
+_ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
 _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
-_SHARE = np.linspace(0.05, 0.95, 13)
+SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
+TOO_SHORT = 0.03  # metres; a shorter way has no room for a detour
 
 
 def detour(
-    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: float, apart: float,
-    turned: float | None = None,
-) -> tuple[float, float]:  # fmt: skip
+    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: Array | float, apart: float
+) -> tuple[float, float]:
     """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
 
     Parameters
     ----------
-    start, end : (2,) middle of the swinging foot; other : of the standing one; yaws in radians
+    start, end : (2,) ball of the swinging foot; yaws in radians
+    other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
     apart : metres; where no detour is enough, the best one is taken
-    turned : the yaw to which the standing foot turns on its ball meanwhile
     """
     path = end - start
     length = float(np.linalg.norm(path))
-    if length < 0.03:
+    if length < TOO_SHORT:
         return 0.0, 0.0
     axes = np.array([[path[1], -path[0]], path]) / length
-    s = smooth(_SHARE)
-    along = HALF_SHOE * headings(start_yaw + s * (end_yaw - start_yaw))
-    ahead = headings(other_yaw + s * ((other_yaw if turned is None else turned) - other_yaw))
-    still = other + BALL_AHEAD * (headings(np.array(other_yaw)) - ahead)
-    places = start + s[:, None] * path + bend(s)[:, None] * (_WAYS @ axes)[:, None]
-    gaps = segment_gaps(places - along, places + along, still - HALF_SHOE * ahead, still + HALF_SHOE * ahead)
-    # at its ends the path is given: no detour can do better there than the worse of both ends
-    least = gaps.min(axis=1)
-    chosen = _WAYS[np.argmax(least >= min(apart, least.max()) - 1e-6)] @ axes
+    e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (end_yaw - start_yaw))
+    straight = start + e[:, None] * path - BALL_AHEAD * ahead
+    aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
+    still = shoe_line(other - BALL_AHEAD * aim, aim)
+    gaps = segment_gaps(*shoe_line(straight, ahead), *still)
+    need = enough(gaps, e, apart) - 1e-3
+    if (gaps >= need).all():
+        return 0.0, 0.0
+    places = straight + bend(e)[:, None] * (_WAYS @ axes)[:, None]
+    room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
+    chosen = _WAYS[np.argmax(room >= min(0.0, room.max()))] @ axes
     return float(chosen[0]), float(chosen[1])
+
+
+def enough(gaps: Array, e: Array, apart: float) -> Array:
+    """Room (k,) to ask for on a way: its ends are given, so it is no more than there is at both; e : how far it is."""
+    return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
+
+
+def shoe_line(middle: Array, ahead: Array) -> tuple[Array, Array]:
+    """Both ends (..., 2) of a shoe's middle line; ahead (..., 2) : unit vectors along it."""
+    return middle - HALF_SHOE * ahead, middle + HALF_SHOE * ahead
 
 
 def bend(share: Array) -> Array:
@@ -66,8 +78,7 @@ def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
     ahead = headings(yaws)
     middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
     rest = other - BALL_AHEAD * still
-    along = HALF_SHOE * ahead
-    return segment_gaps(middle - along, middle + along, rest - HALF_SHOE * still, rest + HALF_SHOE * still)
+    return segment_gaps(*shoe_line(middle, ahead), *shoe_line(rest, still))
 
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 PITCHES = (0.1, 0.2, 0.05, 0.0)  # radians, heel up
 SQUARE = 4  # panels around the middle of a pad
 ROAM = 0.04  # metres that it gives way there for the other foot
+FAR_HOME = 0.30  # metres; the middle of the pad is too far from a foot that stands farther away
 STEEP = 0.02  # seconds in which a foot in a hurry gets up high enough, or down from there
 HASTE = 0.06  # seconds; a step that may last so long waits until the other foot is down
 PUSH = 0.03  # seconds that a foot stands between a mine and a jump
@@ -90,12 +91,14 @@ def _lift(stance: Stance, foot: Foot, time: float, panels: Array, column: int) -
     if there is None or (len(stance.mined) and (np.abs(stance.mined - there).max(axis=1) < stage.HALF_PANEL).any()):
         target, yaw = _home(stance, foot, panels)
         panel, room = target, np.full(2, ROAM)
+        if np.linalg.norm(target - foot.ball) > FAR_HOME:  # off the mines is enough
+            target, yaw, panel, room = foot.ball, foot.yaw, foot.ball, np.full(2, FAR_HOME)
     else:
         panel, room, yaw = there, stage.room_on(panels, column), foot.yaw
         middle = pose(stance, other).middle
         target = stage.landing_ball(panel, stance.toes(foot), middle, 1.0, step.edge_margin, room)
     target, yaw = beside(stance, panel, room, foot, target, yaw, pose(stance, other))
-    bulge = around(stance, foot, target, yaw, other, other.yaw)
+    bulge = around(stance, foot, (lift, time + half), target, yaw, other)
     evading = Evading(first, time, foot.ball, foot.yaw)
     toes = stance.toes(foot, yaw)
     foot.move(Swing(lift, time + half, pair(target), toes, mines.height, PITCHES, bulge, "evade"), target, yaw)

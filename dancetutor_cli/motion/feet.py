@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.clear import bend
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.ease import smooth, swung, travelled
 from dancetutor_cli.motion.track import FootTrack
-from dancetutor_cli.motion.ways import TURNED, travelled, turning
+from dancetutor_cli.motion.ways import turning
 
 Array = NDArray[np.float64]
 GRAVITY = 9.81
 EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
 HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
 WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
+NO_TIME = 0.03  # seconds on the ground in which a heel stays as it has landed
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 
@@ -56,7 +57,7 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     level = np.array([track.start_level, *(w.level for w in swings)])
     up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
-    turned = yaw[i] + smooth(s / TURNED) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    turned = yaw[i] + swung(s) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
     pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
     turned = np.where(swinging, turned, yaw[done])
@@ -100,7 +101,9 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     height, tuck = np.array([(w.height, w.tuck) for w in track.swings])[i].T
     kind = np.array([w.kind for w in track.swings])[i]
     evade = 1.0 - (2.0 * s - 1.0) ** 4
-    jump = height * 4.0 * s * (1.0 - s) + tuck * np.sin(np.pi * s) ** 2
+    # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
+    pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
+    jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
     step = np.sin(np.pi * s**1.35)
     return np.asarray(
         np.where(kind == "jump", jump, height * np.where((kind == "evade") | (kind == "gallop"), evade, step))
@@ -124,6 +127,7 @@ def _stand_pitch(
     leaves = np.concatenate((lift, [1e9]))[done]
     leave = np.concatenate((pitches[:, 0], [0.0]))[done]
     stood = leaves - landed
+    rest = np.where(stood < NO_TIME, touch, rest)
     drop = np.minimum(heel_drop, 0.6 * stood)
     early = np.array([WALKING_RISE if w.kind == "walk" else HEEL_RISE for w in track.swings] + [HEEL_RISE])[done]
     rise = np.minimum(early, 0.4 * stood)

@@ -190,10 +190,7 @@ def _as_swings(
         share = min(far / (0.6 * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
         pitches = (0.8 * share * push, max(share, 0.3) * push, -share * heel, 0.0)
         (ball, yaw), (other, standing) = places[side], places[1 - side]
-        bulge = detour(
-            stage.middle_of(ball, yaw), yaw, stage.middle_of(step.ball, step.yaw), step.yaw,
-            stage.middle_of(other, standing), standing, settings.step.apart,
-        )  # fmt: skip
+        bulge = detour(ball, yaw, step.ball, step.yaw, other, standing, settings.step.apart)
         least = min(least, room(places[side], step, bulge, places[1 - side]))
         level = ground.level(*stage.middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*stage.middle_of(ball, yaw))) > 0.0

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour, gaps_at, headings
+from dancetutor_cli.motion.clear import SHARES, detour, gaps_at, headings
+from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.stance import Foot, Stance
 from dancetutor_cli.play.model import Part
@@ -20,6 +21,7 @@ PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 # corners of a sole from the ball, metres: ahead, aside
 SOLE = np.array([(-0.166, 0.032), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, -0.034)])
+LATEST = 4  # swings of a foot that are looked at to see where it is
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
@@ -117,8 +119,18 @@ def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: floa
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
-def around(stance: Stance, foot: Foot, target: Array, yaw: float, other: Foot, turned: float) -> tuple[float, float]:
-    """Sideways detour that keeps the swinging foot clear of the standing one, which meanwhile turns to `turned`."""
-    a, b, c = stance.toes(foot), stance.toes(foot, yaw), stance.toes(other)
-    start, end, still = stage.middle_of(foot.ball, a), stage.middle_of(target, b), stage.middle_of(other.ball, c)
-    return detour(start, a, end, b, still, c, stance.settings.step.apart, stance.toes(other, turned))
+def shoes_apart(a: Pose, b: Pose) -> float:
+    """Least distance between the middle lines of two standing shoes, metres."""
+    return float(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0])
+
+
+def around(
+    stance: Stance, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
+) -> tuple[float, float]:
+    """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
+    a, b, apart = stance.toes(foot), stance.toes(foot, yaw), stance.settings.step.apart
+    if max(other.landed, other.turned) <= span[0]:
+        return detour(foot.ball, a, target, b, other.ball, stance.toes(other), apart)
+    times = span[0] + SHARES * (span[1] - span[0])
+    there = foot_path(stance.track(other, LATEST), times, stance.settings.step.heel_drop)
+    return detour(foot.ball, a, target, b, there.ball[:, [0, 2]], there.yaw, apart)

@@ -18,7 +18,7 @@ from dancetutor_cli.motion.track import Plan, Turn
 from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
-LEAD = 25.0  # degrees that a turning body is at most ahead of a foot that turns with it
+LEAD = 15.0  # degrees that a turning body is at most ahead of a foot that turns with it
 STEEPEST = 1.875  # largest slope of `ease.smooth`
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 

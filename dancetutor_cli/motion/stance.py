@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.clear import gaps_at
+from dancetutor_cli.motion.feet import NO_TIME
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import FootTrack, Swing
 
@@ -17,6 +18,7 @@ SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
 SHORTEST_PIVOT = 0.04  # seconds
 STAND = 0.045  # seconds; a foot that has landed stays down so long, if its next note leaves it the time
+FARTHEST_TURN = np.radians(60.0)  # of the body from a foot that stands
 HOME_OUT = 0.080  # metres; a waiting foot stands so far beside the middle of the pad: on no panel
 
 
@@ -51,6 +53,9 @@ class Foot:
 
     def move(self, swing: Swing, target: Array, yaw: float) -> None:
         """Add a swing; afterwards the foot stands at its target."""
+        if self.swings and swing.lift - self.swings[-1].land < NO_TIME:
+            heel = self.swings[-1].pitches[2]
+            swing = replace(swing, pitches=(heel, max(heel, swing.pitches[1]), *swing.pitches[2:]))
         self.swings.append(swing)
         self.ball, self.yaw, self.free = target, yaw, swing.land + FREE_WINDOW
         self.landed = swing.land
@@ -90,8 +95,15 @@ class Stance:
 
     def tracks(self) -> tuple[FootTrack, FootTrack]:
         """Everything that both feet have done, from the start."""
-        both = [FootTrack(place, yaw, tuple(f.swings)) for (place, yaw), f in zip(self._start, self.feet, strict=True)]
-        return both[0], both[1]
+        return self.track(self.feet[0]), self.track(self.feet[1])
+
+    def track(self, foot: Foot, latest: int | None = None) -> FootTrack:
+        """What a foot has done, all of it or only its latest swings."""
+        first = 0 if latest is None else max(len(foot.swings) - latest, 0)
+        place, yaw = self._start[foot.side]
+        if first > 0:
+            place, yaw = foot.swings[first - 1].target, foot.swings[first - 1].yaw
+        return FootTrack(place, yaw, tuple(foot.swings[first:]))
 
     def toes(self, foot: Foot, yaw: float | None = None) -> float:
         """Where the toes of a foot point, at its own yaw or at another one; radians."""
@@ -110,10 +122,17 @@ class Stance:
         return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
 
     def turned_to(self, yaws: tuple[float, float] | None = None) -> float:
-        """The yaw that the body turns to for the feet's yaws, those of now or others, radians."""
+        """The yaw that the body turns to for the feet's yaws, those of now or others, radians.
+
+        Where both stand, it is no farther from either than hips and ankles turn.
+        """
         left, right = yaws or (self.feet[0].yaw, self.feet[1].yaw)
         mean = (left + right) / 2
-        return float(mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean))
+        wanted = mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean)
+        if yaws is not None:
+            return float(wanted)
+        low, high = max(left, right) - FARTHEST_TURN, min(left, right) + FARTHEST_TURN
+        return float(np.clip(wanted, min(low, mean), max(high, mean)))
 
     def limited(self, yaw: float, body: float) -> float:
         """A foot's yaw, not farther from the body's than hips allow."""

@@ -9,7 +9,7 @@ from dancetutor_cli.motion.ease import reduction
 from dancetutor_cli.motion.evade import land_early, left_standing, resumed
 from dancetutor_cli.motion.feet import GRAVITY
 from dancetutor_cli.motion.flight import Goals, fly, tuck_for
-from dancetutor_cli.motion.landing import Pose, around, heel_up, landing, pose
+from dancetutor_cli.motion.landing import Pose, around, beside, heel_up, landing, pose, shoes_apart
 from dancetutor_cli.motion.stance import Foot, Stance, pair
 from dancetutor_cli.motion.track import Swing
 from dancetutor_cli.play.model import Part, Play
@@ -21,6 +21,8 @@ LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has it
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together
 FOLLOWING = 0.6  # seconds to its next step for which a foot comes down near the way there
 FLAT = 0.45  # a quick jump has so much less tuck and raised heels
+TOUCHING = 0.077  # metres between the middle lines of shoes that touch
+ASIDE = 0.25  # metres that a foot gives way at most for the other one
 SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
 
@@ -64,14 +66,12 @@ class Steps:
             return foot.swings[-1].lift
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
         toes = stance.toes(foot, yaw)
-        turned = other.yaw
         if kind == "step":
             after = stance.turned_to((yaw, other.yaw) if side == 0 else (other.yaw, yaw))
-            turned = stance.pivot_yaw(other, after, target, toes)
-        bulge = around(stance, foot, target, yaw, other, turned)
+            stance.pivot(other, stance.pivot_yaw(other, after, target, toes), lift, time)
+        bulge = around(stance, foot, (lift, time), target, yaw, other)
         swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
         foot.move(swing, target, yaw)
-        stance.pivot(other, turned, lift, time)
         return lift
 
     def _following(self, i: int, side: int) -> Array | None:
@@ -125,20 +125,28 @@ class Steps:
         return take_off
 
     def _leap(self, time: float, duration: float, foot: Foot, goal: tuple[Array, float], columns: list[int]) -> bool:
-        """A step too far for a straddle: both feet leave the ground, and the other one lands beside. False if none."""
+        """A step too far for a straddle, or to where the other foot is in the way: both feet leave the ground, and the
+        other one lands beside. False if it is neither."""
         step, jump, stance = self.settings.step, self.settings.jump, self.stance
         other = stance.feet[1 - foot.side]
+        landed = Pose(goal[0], stance.toes(foot, goal[1]))
         away = goal[0] - other.ball
         far = float(np.linalg.norm(away))
-        if far <= step.leap:
+        in_the_way = shoes_apart(landed, pose(stance, other)) < TOUCHING
+        if far <= step.leap and not in_the_way:
             return False
-        flight = min(float(np.sqrt(8 * jump.apex_far / GRAVITY)), jump.flight_share * duration)
+        apex = jump.apex_near if in_the_way else jump.apex_far
+        flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration)
         take_off = self._take_off(time, flight)
-        if time - take_off < SHORTEST_FLIGHT or max(f.free for f in stance.feet) > take_off:
+        bound = other.free if in_the_way else max(foot.free, other.free)
+        if time - take_off < SHORTEST_FLIGHT or bound > take_off:
             return False
         yaw = stance.limited(other.yaw + step.yaw_to_normal * (stance.body_yaw() - other.yaw), stance.body_yaw())
         goals = [goal, goal]
-        goals[other.side] = (goal[0] - step.leap_stance * away / far, yaw)
+        if in_the_way:
+            goals[other.side] = beside(stance, other.ball, np.full(2, ASIDE), other, other.ball, other.yaw, landed)
+        else:
+            goals[other.side] = (goal[0] - step.leap_stance * away / far, yaw)
         self._fly(take_off, time, duration, goals, [columns, columns], 0.0)
         return True
 
@@ -170,4 +178,5 @@ class Steps:
     def _take_off(self, time: float, flight: float) -> float:
         feet: tuple[Foot, ...] = self.stance.feet
         latest = (f.latest(time, self.settings.step.let_go) for f in feet)
-        return min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
+        take_off = min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
+        return max(take_off, *(f.rested(time) for f in feet))

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import detour
+from dancetutor_cli.motion.clear import SHARES, detour
+from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.footsteps import Stand, Steps, footsteps, stand_at, standing
 from dancetutor_cli.motion.model import Contact, Ground
 from dancetutor_cli.motion.settings import MotionSettings
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 BEGIN = -0.3  # seconds at which the first step begins: as the song does, she is on her way
+HEEL_DROP = 0.09  # seconds; of no account for where a foot is
+ARRIVED = 0.04  # seconds at least that a foot stands after a walk before it leaves for the first step
 REST = 0.15  # seconds that she stands between a walk and a step at least
 
 
@@ -74,7 +77,7 @@ def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Moti
         goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
     away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
     begin = stand_at(away, -np.pi / 2, settings)
-    ready = busy - walk.settle
+    ready = min(plan.first - walk.settle, busy - walk.settle - ARRIVED)
     steps = footsteps(begin, goal, -np.pi / 2, ground, gait, BEGIN, ready, settings)
     if steps is None:
         return plan
@@ -209,20 +212,22 @@ def _from_there(swings: tuple[Swing, ...], goal: Stand, side: int) -> tuple[Swin
 
 
 def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float) -> tuple[FootTrack, FootTrack]:
-    """Both feet, the first step of each after a walk, which now comes from elsewhere, around the other foot."""
+    """Both feet after a walk, from which they come from elsewhere: their steps go around where the other foot is now,
+    until both have stepped."""
+    firsts = [_next_step(track, walked) for track in feet]
+    until = max((s.land for s in firsts if s is not None), default=walked)
     out = []
     for side, track in enumerate(feet):
-        swings, stand = list(track.swings), feet[1 - side]
-        k = next((k for k, s in enumerate(swings) if s.lift >= walked - 1e-9 and s.kind != "pivot"), None)
-        if k is not None and swings[k].kind == "step":
-            step, before = swings[k], standing(feet, swings[k].lift)
-            after = standing((stand, stand), step.land)
-            shoes = [stage.middle_of(before.balls[s], float(before.yaws[s])) for s in (0, 1)]
-            end = stage.middle_of(np.array(step.target), step.yaw)
-            bulge = detour(
-                shoes[side], float(before.yaws[side]), end, step.yaw, shoes[1 - side], float(before.yaws[1 - side]),
-                apart, float(after.yaws[0]),
-            )  # fmt: skip
-            swings[k] = replace(step, bulge=bulge)
+        swings = list(track.swings)
+        for k, step in enumerate(swings):
+            if step.kind == "step" and walked - 1e-9 <= step.lift <= until:
+                swings[k] = replace(step, bulge=_bulge(feet, side, step, apart))
         out.append(replace(track, swings=tuple(swings)))
     return out[0], out[1]
+
+
+def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, apart: float) -> tuple[float, float]:
+    start = standing(feet, step.lift)
+    there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), HEEL_DROP)
+    way = start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw
+    return detour(*way, there.ball[:, [0, 2]], there.yaw, apart)

@@ -5,23 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.clear import HALF_SHOE, bend, headings, segment_gaps
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.clear import SHARES, bend, enough, headings, segment_gaps, shoe_line
+from dancetutor_cli.motion.ease import swung, travelled
 from dancetutor_cli.motion.stage import BALL_AHEAD
 
 Array = NDArray[np.float64]
 TURNING = 0.5  # part of a jump's way that turns about the middle between the feet; the rest is straight
-OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
-TURNED = 0.95  # part of a swing after which the foot points where it lands
-_SHARE = np.linspace(0.05, 0.95, 19)
 _ROUND = (TURNING, 0.75, 1.0)
 _SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
-
-
-def travelled(s: Array) -> Array:
-    """How far over the ground a swing has come (...) at each part (...) of its time: slow at both ends."""
-    free = np.clip((s - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
-    return np.asarray((1.0 - np.cos(np.pi * free)) / 2)
 
 
 def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array, e: Array) -> Array:
@@ -50,14 +41,12 @@ def jump_ways(
     turn : radians that the line between the feet turns
     apart : metres between the middle lines of the shoes; where it cannot be had, the most that can
     """
-    e, turned = travelled(_SHARE), smooth(_SHARE / TURNED)
+    e, turned = travelled(SHARES), swung(SHARES)
     aim = headings(start_yaws[:, None] + turned * (end_yaws - start_yaws)[:, None])
     straight = starts[:, None] + e[:, None] * (ends - starts)[:, None]
     middles = starts.mean(axis=0), ends.mean(axis=0)
     round_ = np.stack([turning(a, b, middles, np.array(turn), e) for a, b in zip(starts, ends, strict=True)])
-    # at its ends the way is given, so between them no more room is asked for than there is at both
-    first, *_, last = _gaps(straight, aim)
-    need = np.minimum(apart, first + e * (last - first))
+    need = enough(_gaps(straight, aim), e, apart)
     across = round_[0, len(e) // 2] - round_[1, len(e) // 2]
     across = across / max(float(np.linalg.norm(across)), 1e-9)
     best, found = -np.inf, (TURNING, np.zeros((2, 2)))
@@ -75,5 +64,5 @@ def jump_ways(
 
 def _gaps(balls: Array, aim: Array) -> Array:
     """Least distances (k,) between the middle lines of both shoes; balls and headings (2, k, 2)."""
-    middle, along = balls - BALL_AHEAD * aim, HALF_SHOE * aim
-    return segment_gaps(*(middle[side] + sign * along[side] for side in (0, 1) for sign in (-1.0, 1.0)))
+    shoes = [shoe_line(b - BALL_AHEAD * a, a) for b, a in zip(balls, aim, strict=True)]
+    return segment_gaps(*shoes[0], *shoes[1])

@@ -12,7 +12,7 @@ from dancetutor_cli.bake import bake, mines_of, plan_of, report
 from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.height import LEAST_PHASE
 from dancetutor_cli.motion.track import Plan, airborne
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.model import Part, Play
 
 CLEAR = ("feet on mines", "penetration", "flight gravity off by", "flight residual", "foot in foot", "contacts missed")
 ROWS: list[Event] = [(1.0, {0: L}), (1.5, {3: R})]
@@ -144,4 +144,45 @@ def test_the_first_step_after_a_walk_goes_around_the_other_foot() -> None:
 def test_ankles_stand_a_jump_with_half_a_turn(gap: float) -> None:
     rows: list[Event] = [(1.0, {0: L, 3: R}), (2.0, {0: L, 3: R}), (2.0 + gap, {3: L, 0: R}), (4.0, {0: L, 3: R})]
     measured = report(bake(chart(), play(rows), pad()))
+    assert measured["frames past joint limits"].value == 0, measured.notes
+
+
+def test_both_feet_of_a_gallop_go_around_each_other() -> None:
+    """From a crossover: the right foot from the left panel to the right one, the left one from up to down."""
+    meets(play([(1.0, {0: L}), (1.5, {3: R}), (2.0, {2: L}), (2.5, {0: R}), (3.5, {3: R}), (3.59, {1: L})]))
+
+
+def test_a_leg_that_trails_behind_lets_the_body_fly() -> None:
+    """A turning jump from the right pad to the two panels in the middle: the leg behind must not hold her back."""
+    meets(play([(1.0, {4: R}), (1.5, {5: L}), (1.83, {3: L, 4: R}), (3.0, {3: L})], double=True), True)
+
+
+def test_a_foot_makes_room_for_a_bracket_over_its_panel() -> None:
+    parts = {(3, 1): Part.HEEL, (3, 3): Part.TOE}
+    meets(play([(1.0, {0: L}), (1.5, {3: R}), (1.7, {1: L}), (2.1, {1: R, 3: R}), (3.5, {0: L})], brackets=parts))
+
+
+def test_all_steps_after_a_walk_go_around_until_both_feet_have_stepped() -> None:
+    """Her left foot passes the right one, which still stands where she has walked to, and passes it back."""
+    steps = play([(4.0, {3: L}), (4.6, {0: L}), (5.4, {1: R}), (6.0, {3: L})], double=True)
+    assert any(w.end < 4.0 for w in planned(steps, True).walks)
+    meets(steps, True)
+
+
+def test_a_jump_does_not_leave_before_a_foot_has_landed() -> None:
+    """The other foot's hold ends so late that it is let go early, but not so early."""
+    rows: list[Event] = [(1.0, {0: L}), (1.5, {2: L}), (1.85, {1: R}), (1.975, {0: L, 3: R}), (3.0, {2: L})]
+    steps = play(rows, holds={(1, 2): 1.96})
+    planned(steps)
+    meets(steps)
+
+
+def test_a_heel_stays_as_it_is_between_a_landing_and_the_next_moment() -> None:
+    meets(play([(1.0, {3: L, 4: R}), (2.0, {0: L, 3: R}), (2.065, {6: R}), (3.0, {3: L})], double=True), True)
+
+
+@pytest.mark.parametrize("gap", [0.25, 0.31])
+def test_ankles_stand_a_step_with_half_a_turn(gap: float) -> None:
+    events: list[Event] = [(1.0, {5: L}), (1.5, {7: R}), (1.66, {4: R}), (1.66 + gap, {6: L}), (3.0, {7: R})]
+    measured = report(bake(chart(), play(events, double=True), pad(True)))
     assert measured["frames past joint limits"].value == 0, measured.notes

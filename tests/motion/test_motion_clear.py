@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import HALF_SHOE, detour
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.clear import HALF_SHOE, SHARES, detour
+from dancetutor_cli.motion.ease import swung, travelled
 from dancetutor_cli.motion.landing import beside, pose
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.stance import Stance
@@ -43,14 +43,18 @@ def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
 @pytest.mark.parametrize("turned", [None, 0.6])
 def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     start, end, other, yaw = np.array([0.2, -0.25]), np.array([0.15, 0.3]), np.array([0.17, 0.02]), 0.1
-    bulge = detour(start, 0.0, end, 0.2, other, yaw, APART, turned)
+    to, pivot = yaw if turned is None else turned, stage.ball_of(other, yaw)
+    now = yaw + swung(SHARES) * (to - yaw)
+    balls = stage.ball_of(start, 0.0), stage.ball_of(end, 0.2)
+    bulge = detour(balls[0], 0.0, balls[1], 0.2, pivot, now, APART)
     least = np.inf
-    pivot = stage.ball_of(other, yaw)
-    for share in smooth(np.linspace(0.05, 0.95, 60)):
-        middle = start + share * (end - start) + np.sin(np.pi * share) * np.array(bulge)
-        now = yaw if turned is None else yaw + share * (turned - yaw)
-        least = min(least, gap(line_points(middle, share * 0.2), line_points(stage.middle_of(pivot, now), now)))
-    assert least >= APART - 0.006
+    for s in np.linspace(0.05, 0.95, 60):
+        share, aim = float(travelled(s)), yaw + float(swung(s)) * (to - yaw)
+        ball = balls[0] + share * (balls[1] - balls[0]) + np.sin(np.pi * share) * np.array(bulge)
+        own = float(swung(s)) * 0.2
+        shoes = line_points(stage.middle_of(ball, own), own), line_points(stage.middle_of(pivot, aim), aim)
+        least = min(least, gap(*shoes))
+    assert least >= APART - 0.004
     assert np.linalg.norm(bulge) > 0.03  # straight through would hit it
 
 

@@ -1,0 +1,65 @@
+"""The body turns with the feet: not long before they leave the ground, and never far from a foot that stands."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.motion.ease import smooth, swung
+from dancetutor_cli.motion.feet import foot_path
+from dancetutor_cli.motion.flight import fly
+from dancetutor_cli.motion.plan import LEAD, _turn_start
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.stance import FARTHEST_TURN, FREE_WINDOW, NO_TIME, Stance
+from dancetutor_cli.motion.track import Swing
+
+
+@pytest.mark.parametrize("far", [60.0, 120.0, 180.0, 220.0])
+@pytest.mark.parametrize(("duration", "flight"), [(0.2, 0.155), (0.43, 0.24), (0.3, 0.27)])
+def test_a_body_that_turns_is_little_ahead_of_the_foot_that_turns_with_it(
+    far: float, duration: float, flight: float
+) -> None:
+    begin = _turn_start(10.0, duration, 10.0 - flight, far)
+    times = np.linspace(10.0 - duration, 10.0, 200)
+    body = far * smooth((times - begin) / (10.0 - begin))
+    foot = far * swung((times - 10.0 + flight) / flight)
+    assert (body - foot).max() <= LEAD + 3.0
+    assert begin >= 10.0 - duration
+
+
+def test_small_turns_begin_with_their_move() -> None:
+    assert _turn_start(10.0, 0.4, 9.64, 10.0) == 9.6
+
+
+@pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
+def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[float, float]) -> None:
+    stance = Stance(default_settings())
+    stance.normal = 180.0  # the play would have her face backward
+    for foot, yaw in zip(stance.feet, np.radians(yaws), strict=True):
+        foot.yaw = float(yaw)
+    body = stance.turned_to()
+    assert max(abs(body - foot.yaw) for foot in stance.feet) <= FARTHEST_TURN + 1e-9
+
+
+def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
+    """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
+    stance = Stance(default_settings())
+    goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in stance.feet]
+    fly(stance, 1.0, 1.24, goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    swing = stance.feet[0].swings[-1]
+    for share, least in ((0.1, 0.25), (0.2, 0.5)):
+        height = foot_path(stance.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        falling = swing.height * 4 * share * (1 - share)
+        assert height - falling >= least * swing.tuck
+
+
+def test_a_heel_does_not_drop_in_no_time() -> None:
+    """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
+    stance = Stance(default_settings())
+    foot = stance.feet[0]
+    for lift, land, kind in ((1.0, 1.2, "step"), (1.2 + FREE_WINDOW, 1.4, "pivot"), (1.41, 1.6, "step")):
+        foot.move(Swing(lift, land, (0.3, 0.1), 0.2, 0.05, (0.2, 0.4, 0.15, 0.0), kind=kind), foot.ball, foot.yaw)
+    times = np.linspace(1.19, 1.43, 2401)
+    path = foot_path(stance.tracks()[0], times, 0.09)
+    assert NO_TIME > 0.01
+    assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
