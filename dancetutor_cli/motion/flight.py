@@ -18,11 +18,12 @@ Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the l
 
 def fly(
     stance: Stance, take_off: float, land: float, goals: Goals, pitches: list[Pitches], turned: float = 0.0,
-    eased: float = 1.0,
+    eased: float = 1.0, first: tuple[float, float] = (np.inf, np.inf),
 ) -> None:  # fmt: skip
     """Move both feet to their goals, on ways that keep the shoes apart.
 
     turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
+    first : when each foot leaves the ground, if before the take-off of both
     """
     jump, feet = stance.settings.jump, stance.feet
     starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
@@ -32,15 +33,16 @@ def fly(
     share, aside = jump_ways(starts, before, ends, after, turn, stance.settings.step.apart)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
     tuck = eased * tuck_for(far, jump.tuck, jump.far)
-    height = GRAVITY * (land - take_off) ** 2 / 8
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):
+        lift = min(first[side], take_off)
+        height = GRAVITY * (land - lift) ** 2 / 8
         # heels that have just come down do not get up so far again
-        up = float(np.clip((take_off - foot.landed) / HEEL_UP, 0.0, 1.0))
+        up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)
         swing = Swing(
-            take_off, land, pair(ends[side]), float(after[side]), height, rise, pair(aside[side]), "jump",
+            lift, land, pair(ends[side]), float(after[side]), height, rise, pair(aside[side]), "jump",
             tuck, turn, *middles, turning=share,
         )  # fmt: skip
         foot.move(swing, ends[side], goals[side][1])

@@ -23,6 +23,7 @@ FOLLOWING = 0.6  # seconds to its next step for which a foot comes down near the
 FLAT = 0.45  # a quick jump has so much less tuck and raised heels
 TOUCHING = 0.077  # metres between the middle lines of shoes that touch
 ASIDE = 0.25  # metres that a foot gives way at most for the other one
+LONGER = 0.03  # metres; a foot with so much the longer way leaves first in quick jumps
 SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
 
@@ -159,7 +160,20 @@ class Steps:
         eased = 1.0 - FLAT * cut
         lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
         pitches = [heel_up(step, cut, lift, lift, land, c) for c in columns]
-        fly(self.stance, take_off, time, goals, pitches, turned, eased)
+        fly(self.stance, take_off, time, goals, pitches, turned, eased, self._first(take_off, time, duration, goals))
+
+    def _first(self, take_off: float, time: float, duration: float, goals: Goals) -> tuple[float, float]:
+        """When each foot leaves the ground in a quick jump: the one with the longer way before both take off."""
+        step, feet = self.settings.step, self.stance.feet
+        ways = [float(np.linalg.norm(ball - f.ball)) for (ball, _), f in zip(goals, feet, strict=True)]
+        side = int(ways[1] > ways[0])
+        foot, (target, yaw) = feet[side], goals[side]
+        out = [take_off, take_off]
+        straight = around(self.stance, foot, target, yaw, feet[1 - side], feet[1 - side].yaw) == (0.0, 0.0)
+        if straight and ways[side] > ways[1 - side] + LONGER:
+            early = max(foot.earliest(time), time - duration * (1.0 - step.double_support_fast))
+            out[side] -= float(reduction(duration, step.fast, step.longest)) * max(take_off - early, 0.0)
+        return out[0], out[1]
 
     def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> Goals:
         """Where both balls land, and the feet's yaws."""
