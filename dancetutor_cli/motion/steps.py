@@ -169,9 +169,9 @@ class Steps:
         side = int(ways[1] > ways[0])
         foot, (target, yaw) = feet[side], goals[side]
         out = [take_off, take_off]
-        straight = around(self.stance, foot, target, yaw, feet[1 - side], feet[1 - side].yaw) == (0.0, 0.0)
+        early = max(foot.earliest(time), time - duration * (1.0 - step.double_support_fast))
+        straight = around(self.stance, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
         if straight and ways[side] > ways[1 - side] + LONGER:
-            early = max(foot.earliest(time), time - duration * (1.0 - step.double_support_fast))
             out[side] -= float(reduction(duration, step.fast, step.longest)) * max(take_off - early, 0.0)
         return out[0], out[1]
 
