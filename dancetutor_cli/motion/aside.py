@@ -47,6 +47,7 @@ class SideSteps:
         self.ground = rectangle(panels, stance.settings)
         self.places = places_along(self.ground)
         self.mines = play.rows.second[play.rows.mines.any(axis=1)]
+        self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
 
     def before(self, i: int, time: float, limbs: list[int], presses: list[Press]) -> Turn | None:
         """Step aside before row i if that helps and there is time: the body's turn meanwhile, or None.
@@ -85,9 +86,9 @@ class SideSteps:
         rows = self.play.rows
         times, places = np.full(2, np.nan), np.full((2, 2), np.nan)
         for side in (0, 1):
-            later = np.flatnonzero((self.play.limb[i:] == side).any(axis=1))
-            if len(later):
-                row = i + int(later[0])
+            k = int(np.searchsorted(self.steps[side], i))
+            if k < len(self.steps[side]):
+                row = int(self.steps[side][k])
                 times[side] = time if row == i else rows.second[row]
                 if times[side] < time + AHEAD:
                     places[side] = self.panels[self.play.limb[row] == side].mean(axis=0)

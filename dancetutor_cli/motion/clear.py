@@ -67,12 +67,6 @@ def headings(yaw: Array) -> Array:
     return np.stack((np.sin(yaw), np.cos(yaw)), axis=-1)
 
 
-def shoes_apart(middle: Array, yaw: float, other: Array, other_yaw: float) -> float:
-    """Least distance in metres between the middle lines of two shoes, given the (2,) middles of both and their yaws."""
-    ball, rest = (m + BALL_AHEAD * headings(np.array(y)) for m, y in ((middle, yaw), (other, other_yaw)))
-    return float(gaps_at(ball[None], np.array([yaw]), rest, other_yaw)[0])
-
-
 def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
     """Least distance (k,) in metres between the middle lines of shoes, balls (k, 2) and yaws (k,), and another shoe."""
     ahead = headings(yaws)

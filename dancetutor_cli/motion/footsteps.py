@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import bend, detour, shoes_apart
+from dancetutor_cli.motion.clear import bend, detour, gaps_at
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.gait import STANCE, blended, gaits_of
 from dancetutor_cli.motion.model import Ground
@@ -44,9 +45,9 @@ def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, 
     """How she stands at a time: after all that landed before it."""
     balls, yaws = [], []
     for track in feet:
-        done = [s for s in track.swings if s.land <= time]
-        balls.append(done[-1].target if done else track.start)
-        yaws.append(done[-1].yaw if done else track.start_yaw)
+        done = bisect_right(track.swings, time, key=lambda s: s.land)
+        balls.append(track.swings[done - 1].target if done else track.start)
+        yaws.append(track.swings[done - 1].yaw if done else track.start_yaw)
     before = [t.yaw for t in turns if t.end <= time]
     return Stand(np.array(balls), np.array(yaws), before[-1] if before else 0.0)
 
@@ -165,14 +166,9 @@ def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
 
 def room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float], other: tuple[Array, float]) -> float:
     """Least distance between a swinging shoe and the standing one, metres."""
-    least = np.inf
-    standing = stage.middle_of(*other)
-    for s in np.linspace(0.1, 1.0, 10):
-        share = smooth(s)
-        ball = start[0] + share * (step.ball - start[0]) + bend(share) * np.array(bulge)
-        yaw = start[1] + float(share) * (step.yaw - start[1])
-        least = min(least, shoes_apart(stage.middle_of(ball, yaw), yaw, standing, other[1]))
-    return float(least)
+    share = smooth(np.linspace(0.1, 1.0, 10))
+    balls = start[0] + share[:, None] * (step.ball - start[0]) + bend(share)[:, None] * np.array(bulge)
+    return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
 
 
 def _as_swings(
