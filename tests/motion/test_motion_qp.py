@@ -68,3 +68,32 @@ def test_limits_that_give_way_cost_what_they_say() -> None:
 
     best = minimize(whole, np.zeros(n), method="BFGS", options={"gtol": 1e-9})
     np.testing.assert_allclose(found.x, best.x, atol=1e-4)
+
+
+def test_two_coordinates_by_turns_agree_with_a_general_solver() -> None:
+    """Unknowns x0, z0, x1, z1 ... : terms of each path touch every other one, limits along a diagonal touch all."""
+    rng = np.random.default_rng(3)
+    n = 14
+    target = np.cumsum(rng.normal(size=(n, 2)), axis=0)
+    problem = BandedLeastSquares(2 * n, 1, 8)
+    jerk = np.zeros((n - 3, 7))
+    jerk[:, ::2] = differences(3) * 1.5
+    for axis in (0, 1):
+        problem.add(2 * np.arange(n) + axis, np.ones((n, 1)), np.ones(n), target[:, axis, None])
+        problem.add(2 * np.arange(n - 3) + axis, jerk, np.ones(n - 3), np.zeros((n - 3, 1)))
+    aslant = Limits(2 * np.arange(n), np.full((n, 2), 0.5**0.5), np.full(n, -0.8), np.full(n, 0.6))
+    found = solve(problem, [aslant])
+    assert found.found
+
+    def whole(x: np.ndarray) -> float:
+        return cost(x[::2], target[:, 0], 1.5) + cost(x[1::2], target[:, 1], 1.5)
+
+    within = [
+        {"type": "ineq", "fun": lambda x: 0.6 - (x[::2] + x[1::2]) * 0.5**0.5},
+        {"type": "ineq", "fun": lambda x: (x[::2] + x[1::2]) * 0.5**0.5 + 0.8},
+    ]
+    best = minimize(
+        whole, np.zeros(2 * n), constraints=within, method="SLSQP", options={"maxiter": 1000, "ftol": 1e-12}
+    )
+    assert whole(found.x) <= best.fun + 1e-4
+    np.testing.assert_allclose(found.x, best.x, atol=2e-3)

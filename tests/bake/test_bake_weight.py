@@ -1,0 +1,157 @@
+"""Weight, haste and crouch: the zero-moment point against scipy's hull, quick feet, knees before and after a jump."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bake_plays import Event, L, R, chart, pad, play, stream
+from scipy.spatial import ConvexHull
+
+from dancetutor_cli.bake import bake, report
+from dancetutor_cli.bake.bake import plan_of
+from dancetutor_cli.bake.quality.body import GROUND, Body, body_of
+from dancetutor_cli.bake.quality.smoothness import jerk
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+SETTINGS = default_settings()
+GRAVITY = 9.81
+
+
+def outside(points: np.ndarray, place: np.ndarray) -> float:
+    """How far a place is beyond the nearest side of the convex hull of points, metres; negative inside."""
+    hull = ConvexHull(points)
+    return float((hull.equations[:, :2] @ place + hull.equations[:, 2]).max())
+
+
+def share_in_hull(body: Body, start: float, end: float) -> float:
+    """Part of the standing frames between two seconds whose zero-moment point, unfiltered, is in the hull + 2 cm."""
+    acceleration = np.diff(body.mass, n=2, axis=0) * body.rate**2
+    mass = body.mass[1:-1]
+    zmp = mass[:, [0, 2]] - (mass[:, 1] / (acceleration[:, 1] + GRAVITY))[:, None] * acceleration[:, [0, 2]]
+    stands, inside = 0, 0
+    for k in np.flatnonzero((body.times[1:-1] > start) & (body.times[1:-1] < end)):
+        if body.standing[k : k + 3].any(axis=1).all():
+            soles = body.soles[k + 1].reshape(-1, 3)
+            stands += 1
+            inside += outside(soles[soles[:, 1] < GROUND + 0.004][:, [0, 2]], zmp[k]) <= 0.02
+    return inside / stands
+
+
+@pytest.mark.parametrize("gap", [0.125, 0.16, 0.25])
+def test_the_weight_is_over_the_soles_in_streams(gap: float) -> None:
+    events = stream(1.0, round(6.0 / gap), gap)
+    assert share_in_hull(body_of(bake(chart(), play(events), pad())), 1.0, events[-1][0]) > 0.98
+
+
+def across_both_pads(gap: float) -> list[Event]:
+    """A stream to and fro between the pads of dance-double: feet stand aslant most of the time."""
+    return [(1.0 + gap * k, {(3, 4, 6, 5, 7, 4, 2, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)]
+
+
+def test_the_weight_does_not_leave_feet_that_stand_aslant() -> None:
+    """A box around both soles would allow much that no sole does: 98.2 % with limits along the two axes only."""
+    events = across_both_pads(0.2)
+    assert share_in_hull(body_of(bake(chart(), play(events, True), pad(True))), 1.0, events[-1][0]) > 0.986
+
+
+def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pytest.MonkeyPatch) -> None:
+    danced = play(across_both_pads(0.2), True)
+
+    def balance() -> float:
+        return next(f.value for f in report(bake(chart(), danced, pad(True))).figures if f.name == "balance")
+
+    with_it = balance()
+    monkeypatch.setattr(importlib.import_module("dancetutor_cli.bake.bake"), "TIGHTENED", 0)
+    assert with_it > balance() + 0.3
+
+
+def travelled(danced: list[tuple[float, dict[int, int]]], on_the_way: float) -> float:
+    """How far both feet go in a plan, metres."""
+    settings = replace(SETTINGS, step=replace(SETTINGS.step, on_the_way=on_the_way))
+    plan = plan_of(chart(), play(danced), pad(), settings)
+    first, last = danced[0][0] + 0.01, danced[-1][0] + 0.01
+    total = 0.0
+    for track in plan.feet:
+        place = np.array(track.start)
+        for swing in track.swings:
+            target = np.array(swing.target)
+            total += float(np.linalg.norm(target - place)) * (first < swing.land < last)
+            place = target
+    return total
+
+
+def test_feet_in_a_stream_take_the_shortest_way() -> None:
+    danced = [(1.0 + 0.125 * k, {(0, 3, 1, 2)[k % 4]: (L, R)[k % 2]}) for k in range(32)]
+    assert travelled(danced, SETTINGS.step.on_the_way) < 0.7 * travelled(danced, 0.0)
+
+
+def test_slow_feet_stand_on_the_middle_of_their_panels() -> None:
+    danced = [(1.0 + 0.6 * k, {(0, 3, 1, 2)[k % 4]: (L, R)[k % 2]}) for k in range(8)]
+    assert travelled(danced, SETTINGS.step.on_the_way) == pytest.approx(travelled(danced, 0.0))
+
+
+def test_a_foot_that_has_turned_leaves_as_early_as_one_that_has_not() -> None:
+    """Crossing to and fro in a stream: standing feet turn on their balls, and still swing as long as they can."""
+    danced = [(1.0 + 0.15 * k, {(0, 2, 3, 1, 0, 3)[k % 6]: (L, R)[k % 2]}) for k in range(36)]
+    plan = plan_of(chart(), play(danced), pad())
+    turned = quick = 0
+    for track in plan.feet:
+        for before, swing in zip(track.swings, track.swings[1:], strict=False):
+            if before.kind == "pivot" and swing.kind == "step" and swing.lift > 1.5:
+                turned += 1
+                quick += swing.land - swing.lift > 0.12
+    assert turned >= 5
+    assert quick == turned
+
+
+def test_quick_feet_make_the_body_jerk_less_on_bent_knees() -> None:
+    danced = play(stream(1.0, 48, 0.125))
+    upright = replace(SETTINGS, body=replace(SETTINGS.body, stream_crouch=0.0))
+    low, high = (body_of(bake(chart(), danced, pad(), settings=s)) for s in (SETTINGS, upright))
+    assert low.joints[:, 0, 1].mean() < high.joints[:, 0, 1].mean() - 0.015
+    assert jerk(low.joints[:, 0], low.rate).mean() < 0.95 * jerk(high.joints[:, 0], high.rate).mean()
+
+
+def test_she_crouches_before_a_jump_and_after_it() -> None:
+    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {1: L, 2: R}), (4.5, {0: L})]), pad())
+    body = body_of(motion)
+    height, times = body.joints[:, 0, 1], body.times
+    stands = np.median(height[(times > 1.8) & (times < 2.2)])
+    flies = times[~body.standing.any(axis=1)]
+    take_off, landing = flies.min(), flies.max()
+    assert height[(times > take_off - 0.3) & (times < take_off)].min() < stands - 0.03
+    assert height[(times > landing) & (times < landing + 0.25)].min() < stands - 0.02
+    assert height[(times > 3.8) & (times < 4.1)].mean() > stands - 0.015  # and then she is up again
+
+
+def test_close_jumps_leave_no_time_to_crouch() -> None:
+    """Twice as deep at 0.8 s a jump as at 0.3 s, as seen from the mean height between the jumps."""
+
+    def dip(gap: float) -> float:
+        events = [(1.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
+        body = body_of(bake(chart(), play(events), pad()))
+        inside = (body.times > 1.0 + gap) & (body.times < 1.0 + 6 * gap) & body.standing.any(axis=1)
+        return float(SETTINGS.body.stance + 0.09 - np.percentile(body.joints[inside, 0, 1], 5))
+
+    assert dip(0.8) > dip(0.3) + 0.02
+
+
+def test_a_spine_is_not_wrung_in_a_spin() -> None:
+    """The chest lets the screen go before it is right behind her: against the pelvis it turns no faster than spines."""
+    events = [(1.0 + 0.25 * k, {(0, 1, 3, 2)[k % 4]: (L, R)[k % 2]}) for k in range(12)]
+    turning = play(events)
+    turning.facing[:] = 90.0 * np.arange(12)  # once round in a second, three times
+    body = body_of(bake(chart(), turning, pad()))
+
+    skeleton = dancer_skeleton()
+
+    def yaw(left: str, right: str) -> np.ndarray:
+        across = body.joints[:, skeleton.index(left)] - body.joints[:, skeleton.index(right)]
+        return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))
+
+    twist = yaw("l_shoulder", "r_shoulder") - yaw("l_hip", "r_hip")
+    assert np.degrees(np.abs(np.diff(twist)).max() * body.rate) < 600.0
