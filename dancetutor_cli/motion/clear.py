@@ -14,7 +14,7 @@ _ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 
 _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
-TOO_SHORT = 0.03  # metres; a shorter way has no room for a detour
+SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
 def detour(
@@ -30,9 +30,7 @@ def detour(
     """
     path = end - start
     length = float(np.linalg.norm(path))
-    if length < TOO_SHORT:
-        return 0.0, 0.0
-    axes = np.array([[path[1], -path[0]], path]) / length
+    axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
     e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))

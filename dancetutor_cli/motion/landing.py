@@ -19,8 +19,12 @@ Pitches = tuple[float, float, float, float]
 _ACROSS = np.linspace(-1.0, 1.0, 11)
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
-# corners of a sole from the ball, metres: ahead, aside
-SOLE = np.array([(-0.166, 0.032), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, -0.034)])
+# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
+SOLE = np.array(
+    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
+     (0.084, -0.034)]
+)  # fmt: skip
+OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 LATEST = 4  # swings of a foot that are looked at to see where it is
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
@@ -90,7 +94,7 @@ def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
     ahead = headings(toes)
     across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
     points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
-    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= stage.HALF_PANEL
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= stage.HALF_PANEL + OVER
     return np.asarray(inside.any(axis=(1, 2)))
 
 

@@ -52,7 +52,7 @@ class Planner:
         pressed: dict[int, list[int]] = {}
         for column in np.flatnonzero(self.play.limb[i] >= 0):
             pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
-        soon = slice(int(np.searchsorted(self.play.rows.second, time + MINES_AHEAD)))
+        soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
         self.stance.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
         evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
         self.stance.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
@@ -62,6 +62,11 @@ class Planner:
         for limb, columns in pressed.items():
             for pressed_column in columns:
                 self.touches.add(i, time, limb, pressed_column)
+
+    def _stays(self, i: int, time: float) -> float:
+        """Until when mines matter to the feet that land at row i: for a while, and as long as they hold."""
+        held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
+        return max([time + MINES_AHEAD, *(self.touches.second(int(tick)) for tick in held if tick >= 0)])
 
     def _feet(self, i: int, time: float, feet: list[int], pressed: dict[int, list[int]]) -> None:
         """One foot steps or both jump, and the body turns with them; before that she may step aside."""

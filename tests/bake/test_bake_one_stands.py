@@ -186,3 +186,11 @@ def test_ankles_stand_a_step_with_half_a_turn(gap: float) -> None:
     events: list[Event] = [(1.0, {5: L}), (1.5, {7: R}), (1.66, {4: R}), (1.66 + gap, {6: L}), (3.0, {7: R})]
     measured = report(bake(chart(), play(events, double=True), pad(True)))
     assert measured["frames past joint limits"].value == 0, measured.notes
+
+
+def test_feet_that_hold_stand_off_panels_whose_mines_come_much_later() -> None:
+    """In a stream feet land near the next panels; the mines there pass long after, while both feet still hold."""
+    rows = [*stream(1.0, 12, 0.125), (2.5, {0: L}), (2.625, {3: R}), (4.0, {}), (4.3, {}), (5.5, {0: L})]
+    steps = danced(rows, {14: [1], 15: [2]}, holds={(12, 0): 5.0, (13, 3): 5.0})
+    assert len([s for t in planned(steps).feet for s in t.swings if 2.7 < s.lift < 5.0 and s.kind != "pivot"]) == 0
+    meets(steps)

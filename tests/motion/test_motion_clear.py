@@ -8,7 +8,7 @@ import pytest
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.clear import HALF_SHOE, SHARES, detour
 from dancetutor_cli.motion.ease import swung, travelled
-from dancetutor_cli.motion.landing import beside, pose
+from dancetutor_cli.motion.landing import beside, over, pose
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.stance import Stance
 
@@ -69,3 +69,28 @@ def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
     heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
     assert min(heel[0], ball[0]) > 0.03  # half a sole from the edge at x = 0
     assert np.abs(ball - panel).max() <= 0.1 + 1e-9
+
+
+def test_a_heel_that_only_just_reaches_over_a_mine_counts() -> None:
+    """The corner of a panel under the middle of the heel, none of whose own corners is over the panel."""
+    ball, toes = np.array([-0.187, 0.0]), np.radians(-24.0)
+    assert over(np.array([[0.0, -0.28]]), ball[None], np.array([toes]))[0]
+    assert not over(np.array([[0.0, -0.28]]), ball[None] - [0.08, 0.0], np.array([toes]))[0]
+
+
+def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
+    """Its heel swings past the middle of the other shoe, which lies across behind it."""
+    place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
+    bulge = detour(place, -turn, place, turn, other, aim, APART)
+
+    def least(aside: tuple[float, float]) -> float:
+        gaps = []
+        for s in SHARES:
+            e, yaw = float(travelled(s)), -turn + float(swung(s)) * 2 * turn
+            ball = place + np.sin(np.pi * e) * np.array(aside)
+            shoes = line_points(stage.middle_of(ball, yaw), yaw), line_points(stage.middle_of(other, aim), aim)
+            gaps.append(gap(*shoes))
+        return min(gaps)
+
+    assert least((0.0, 0.0)) < APART - 0.01
+    assert least(bulge) >= APART - 2e-3
