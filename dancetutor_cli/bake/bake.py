@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
 from dancetutor_cli.bake.pieces import Each, Piece, in_turn, joined, piece_ends, trimmed
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.bar import bar_of, hold_share, holding
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
+BEATS_AFTER = 16  # beats after the last row that she still hears
 STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
@@ -106,6 +108,7 @@ def plan_of(
     settings = settings or default_settings()
     plan = Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
     first, last = plan.first, plan.last
+    plan = replace(plan, beats=_beats(chart, play, rate))
     plan = with_walks(plan, ground_of(pad, settings), mines_of(play, pad)[:, 0], gait, settings)
     if not bar:
         return plan
@@ -237,6 +240,12 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
 def _mass(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
     """Centre of mass (f, 3) of solved frames."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, rotations, root))
+
+
+def _beats(chart: Chart, play: Play, rate: float) -> tuple[float, ...]:
+    """Seconds of all beats from the first measure to a while after the last row."""
+    ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
+    return tuple(float(t) for t in chart.timing.seconds(ticks) / rate)
 
 
 def _clock(chart: Chart, rate: float) -> Callable[[int], float]:

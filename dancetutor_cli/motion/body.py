@@ -13,6 +13,7 @@ from dancetutor_cli.motion.crouch import haste, jump_crouch, jump_lean
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import GRAVITY, FootPath
 from dancetutor_cli.motion.gait import gaze_ahead, walking
+from dancetutor_cli.motion.groove import groove
 from dancetutor_cli.motion.height import HeightPath, height_path
 from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.paths import low_pass, smooth_path
@@ -85,7 +86,10 @@ def body_path(
     sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
     crouch = jump_crouch(plan, times, settings.jump)
-    stance = settings.body.stance - settings.body.stream_crouch * haste(plan, times, settings) - crouch
+    quick = haste(plan, times, settings)
+    stance = settings.body.stance - settings.body.stream_crouch * quick - crouch
+    beat = groove(plan.beats, times, quick, reaching.sum(axis=1) + (0.0 if gait is None else gait.own))
+    sink = sink + settings.layers.bounce * beat
     mass_height = _height(
         feet, airborne(plan.feet), times, ground, yaw, stance, bent, sink, above[:, 1], skeleton, settings
     )
@@ -95,7 +99,7 @@ def body_path(
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
-    fold = np.radians(settings.jump.fold) * crouch
+    fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, rate, controller)

@@ -145,6 +145,8 @@ class LayerSettings:
     shoulder_drop: float
     sway: float
     sway_time: float
+    bounce: float
+    beat_nod: float
     blink_time: float
 
 

@@ -99,6 +99,7 @@ class Plan:
 
     bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
     walks : in order of time; ground : pad and floor, where she walks on both
+    beats : seconds of the song's beats, in order
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -112,6 +113,7 @@ class Plan:
     grips: tuple[Grip, ...] = ()
     walks: tuple[Walk, ...] = ()
     ground: Ground | None = None
+    beats: tuple[float, ...] = ()
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
