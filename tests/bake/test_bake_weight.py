@@ -62,7 +62,7 @@ def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pyte
     danced = play(across_both_pads(0.2), True)
 
     def balance() -> float:
-        return next(f.value for f in report(bake(chart(), danced, pad(True))).figures if f.name == "balance")
+        return report(bake(chart(), danced, pad(True)))["balance below 10 Hz"].value
 
     with_it = balance()
     monkeypatch.setattr(importlib.import_module("dancetutor_cli.bake.bake"), "TIGHTENED", 0)
