@@ -15,6 +15,7 @@ from dancetutor_cli.bake.pieces import Each, Piece, in_turn, joined, piece_ends,
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.ankles import ease_ankles
 from dancetutor_cli.motion.bar import bar_of, hold_share, holding
 from dancetutor_cli.motion.body import BodyPath, body_path, stepping
 from dancetutor_cli.motion.feet import FootPath, foot_path
@@ -222,7 +223,8 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
     drop = settings.step.heel_drop
-    side = stepping((foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop)), settings)
+    feet = foot_path(plan.feet[0], at, drop), foot_path(plan.feet[1], at, drop)
+    side = stepping(feet, settings)
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
     free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
     dressed = rotations.copy()
@@ -232,6 +234,7 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     for _ in range(CORRECTIONS):
         targets = moved(targets, goal - head - _mass(skeleton, rotations, root))
         rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
+    ease_ankles(skeleton, rotations, feet)
     look(skeleton, rotations, root, body, at, settings)
     add_layers(skeleton, at, rotations, side, free, settings.layers)
     return rotations, root

@@ -70,6 +70,23 @@ def beyond(skeleton: Skeleton, name: str, turns: Array) -> Array:
     return _past(limit, turns, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)
 
 
+def within(skeleton: Skeleton, name: str, turns: Array, margin: float) -> Array:
+    """The turns (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits.
+
+    The joint's cone is not looked at: there are no cones where there are limits of swings.
+    """
+    limit, sign = LIMITS[name.replace("r_", "l_", 1)], -1.0 if name.startswith("r_") else 1.0
+    bone = _bone(skeleton, skeleton.index(name))
+    swing, twist = quat.swing_twist(turns, bone)
+    swung, turned = np.degrees(_vector(swing)), sign * np.degrees(_vector(twist) @ bone)
+    swung[:, 0] = np.clip(swung[:, 0], limit.x[0] + margin, limit.x[1] - margin)
+    swung[:, 2] = sign * np.clip(sign * swung[:, 2], limit.z[0] + margin, limit.z[1] - margin)
+    turned = np.radians(sign * np.clip(turned, limit.twist[0] + margin, limit.twist[1] - margin))
+    size = np.linalg.norm(swung, axis=1)
+    axis = np.where(size[:, None] > 1e-9, swung / np.maximum(size, 1e-9)[:, None], [1.0, 0.0, 0.0])
+    return quat.multiply(quat.from_axis_angle(axis, np.radians(size)), quat.from_axis_angle(bone, turned))
+
+
 def _bone(skeleton: Skeleton, joint: int) -> Array:
     """Unit vector about which a joint twists: to its child for arms, else upright."""
     name = skeleton.names[joint]
