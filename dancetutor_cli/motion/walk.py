@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
-BEGIN = -0.3  # seconds at which the first step begins: as the song does, she is on her way
+BEGIN = -0.4  # seconds at which the first step begins: as the song does, she is on her way
 HEEL_DROP = 0.09  # seconds; of no account for where a foot is
 ARRIVED = 0.04  # seconds at least that a foot stands after a walk before it leaves for the first step
 REST = 0.15  # seconds that she stands between a walk and a step at least

@@ -7,10 +7,14 @@ import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, plan_of, report
+from dancetutor_cli.chart import load
 from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, walking
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import points_in_world, sole_points
@@ -186,3 +190,14 @@ def test_she_stays_while_a_foot_holds_or_a_mine_passes() -> None:
     assert between() == 1
     assert between(mines={6: [2]}) == 0
     assert between(holds={(5, 3): 8.0}) == 0
+
+
+@pytest.mark.parametrize("gait", ["flat", "heels"])
+def test_she_walks_on_in_the_demo_song(gait: str) -> None:
+    """Its first note is at 2.4 s: just time enough."""
+    song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")
+    for wanted in song.charts:
+        real, own = solve_chart(wanted, load_preset("itg")), load_pad(wanted.steps_type)
+        assert real is not None and own is not None
+        walks = plan_of(wanted, real, own, gait=gait).walks
+        assert [w.end < 2.0 for w in walks] == [True, False], wanted.label
