@@ -14,6 +14,7 @@ from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.ik import arm_rotations, solve
 from dancetutor_cli.motion.model import Bar, Grip
 from dancetutor_cli.motion.palms import elbows_on_bar, rest_on_bar
+from dancetutor_cli.motion.paths import UP
 from dancetutor_cli.motion.settings import BarSettings, MotionSettings
 from dancetutor_cli.motion.targets import ik_targets
 from dancetutor_cli.motion.track import Plan
@@ -32,6 +33,7 @@ EARLY = 0.12  # seconds that a hand leaves before its arm gets uncomfortable, an
 PART, MARGIN = 60.0, 4.0  # seconds of a song that are looked at together, and beyond which they begin and end
 BESIDE = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
 LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
+INWARD = 0.13  # metres that a wrist is nearer to the other side than its shoulder, at most: no arm goes across the back
 ROOM = 4.0  # degrees that a joint keeps from its limits: the path looked at is not yet the final one
 TRUNK_ASIDE, TRUNK_DEEP = 0.195, 0.155  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # of the forearm and the hand, where they are looked at
@@ -125,6 +127,8 @@ class _Arm:
         shoulder, chest = trunk.shoulders[when, side], trunk.chest[when]
         wrist, hand = rest_on_bar(bar, side, x, skeleton, self.settings.bar)
         near = np.linalg.norm(wrist - shoulder, axis=1) <= self.settings.bar.let_go
+        aside = quat.rotate(quat.from_axis_angle(UP, -trunk.yaw[when]), wrist - shoulder)[:, 0]
+        near &= (aside if side == 0 else -aside) > -INWARD
         elbow = elbows_on_bar(chest)[:, side]
         hands = np.tile(hand, (len(wrist), 1))
         turns = arm_rotations(skeleton, side, shoulder, chest, wrist, hands, elbow)
@@ -142,7 +146,7 @@ class _Arm:
         along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
         end = wrist + HAND * along
         out = np.zeros(len(elbow), dtype=bool)
-        upright = quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), -trunk.yaw[when])
+        upright = quat.from_axis_angle(UP, -trunk.yaw[when])
         for share in ALONG:
             point = elbow + share * (end - elbow)
             low = trunk.pelvis[when]
