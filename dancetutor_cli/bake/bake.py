@@ -18,6 +18,7 @@ from dancetutor_cli.motion import stage
 from dancetutor_cli.motion.ankles import ease_ankles
 from dancetutor_cli.motion.bar import bar_of, hold_share, holding
 from dancetutor_cli.motion.body import BodyPath, body_path, stepping
+from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import FootPath, foot_path
 from dancetutor_cli.motion.grips import grips_of
 from dancetutor_cli.motion.ik import Targets, solve
@@ -31,7 +32,7 @@ from dancetutor_cli.motion.targets import ik_targets, moved
 from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.motion.walk import ground_of, with_walks
 from dancetutor_cli.physics.hair import add_hair
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.model import Limb, Part, Play
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
@@ -50,6 +51,7 @@ CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its 
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
+HEEL_DOWN = 0.06  # seconds in which a heel comes down to press a panel
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
 OVERLAP = 5.0  # seconds that a piece of a long song is planned and baked beyond its ends: what differs has died away
 
@@ -189,6 +191,7 @@ def _settled(
             deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
         heels += np.column_stack([np.interp(grid, coarse, h) for h in _heels_up(skeleton, rotations, settings)])
         heels = np.maximum(smooth_path(heels, np.ones(len(grid)), settings.sampling.work_rate, 0.06), 0.0)
+        heels *= _may_rise(plan, grid)
         known, last = (body, above, deeper), turn == rounds - 1
         body = body_path(
             plan, grid, feet, skeleton, settings, *known, keep=turn > 0 and not last, tightened=TIGHTENED if last else 0
@@ -206,6 +209,15 @@ def _heels_up(skeleton: Skeleton, rotations: Array, settings: MotionSettings) ->
         q = np.where(q[:, :1] < 0, -q, q)
         out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, MOST_HEEL))
     return out[0], out[1]
+
+
+def _may_rise(plan: Plan, times: Array) -> Array:
+    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel."""
+    out = np.ones((len(times), 2))
+    for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
+        away = np.maximum(contact.start - times, times - contact.end)
+        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / HEEL_DOWN))
+    return out
 
 
 def _targets(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: MotionSettings) -> Targets:

@@ -12,7 +12,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limit
-UP_FROM, UP_TO = 0.001, 0.002  # metres over the ground between which a foot gets free to turn
+UP_FROM, UP_TO = 0.004, 0.030  # metres over the ground between which a foot gets free to turn: lower it would touch
 
 
 def ease_ankles(skeleton: Skeleton, rotations: Array, feet: tuple[FootPath, FootPath]) -> None:

@@ -18,7 +18,8 @@ from dancetutor_cli.motion.track import Plan, Turn
 from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
-LEAD = 15.0  # degrees that a turning body is at most ahead of a foot that turns with it
+LEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it
+WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
 STEEPEST = 1.875  # largest slope of `ease.smooth`
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
@@ -93,4 +94,5 @@ def _turn_start(time: float, duration: float, leaves: float, far: float) -> floa
     """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
     ground that body and foot would ever be turned much farther from each other than they are anyway."""
     ahead = 2.0 * LEAD / (STEEPEST * max(far, LEAD)) * (time - leaves)
-    return max(time - duration, leaves - ahead)
+    late = LATE * float(np.clip(far / WIDE - 1.0, 0.0, 1.0))  # for the body's path is smooth: it turns before it begins
+    return max(time - duration, leaves - ahead + late)

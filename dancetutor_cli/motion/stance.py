@@ -18,7 +18,7 @@ SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
 SHORTEST_PIVOT = 0.04  # seconds
 STAND = 0.045  # seconds; a foot that has landed stays down so long, if its next note leaves it the time
-FARTHEST_TURN = np.radians(60.0)  # of the body from a foot that stands
+FARTHEST_TURN = np.radians(45.0)  # of the body from a foot that stands
 HOME_OUT = 0.080  # metres; a waiting foot stands so far beside the middle of the pad: on no panel
 
 
