@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.arms import arm_targets
 from dancetutor_cli.motion.body import BodyPath, ankle_of
+from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import FootPath
 from dancetutor_cli.motion.gait import turned, walking
 from dancetutor_cli.motion.ik import Targets
@@ -20,6 +21,9 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
+STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
+FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
+HALF_HIPS = 0.09  # metres from the middle of the pelvis to a hip
 KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
 KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 PELVIS_SHARE = 0.58  # the pelvis tilts this part of the chest's tilt
@@ -55,7 +59,7 @@ def ik_targets(
     ]
     return Targets(
         pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
-        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet), hands.pull,
+        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet, pelvis, ankles), hands.pull,
     )  # fmt: skip
 
 
@@ -66,12 +70,22 @@ def moved(targets: Targets, by: Array) -> Targets:
     return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
 
 
-def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath]) -> Array:
-    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn."""
+def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath], pelvis: Array, ankles: Array) -> Array:
+    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
+
+    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
+    """
+    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
     out = []
     for side, foot in enumerate(feet):
-        aside = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
-        aside = np.arctan2(KNEE_TO_TOES * np.sin(aside), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(aside))
-        aside = np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + (KNEE_OUT if side == 0 else -KNEE_OUT)
+        outward = 1.0 if side == 0 else -1.0
+        leg = ankles[:, side] - pelvis
+        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - HALF_HIPS, -leg[:, 1])
+        toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
+        aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT
+        most = np.minimum(outward * toes + FROM_TOES, MOST_ASIDE)
+        straddled = smooth((lean - STRADDLE[0]) / (STRADDLE[1] - STRADDLE[0]))
+        aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
         out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
     return np.stack(out, axis=1)
