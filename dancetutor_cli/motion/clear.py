@@ -6,13 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.ease import swung, travelled
-from dancetutor_cli.motion.stage import BALL_AHEAD
+from dancetutor_cli.motion.stage import BALL_AHEAD, HALF_PANEL
 
 Array = NDArray[np.float64]
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
 _ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
 _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
+# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
+SOLE = np.array(
+    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
+     (0.084, -0.034)]
+)  # fmt: skip
+OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
@@ -71,6 +77,15 @@ def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
     middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
     rest = other - BALL_AHEAD * still
     return segment_gaps(*shoe_line(middle, ahead), *shoe_line(rest, still))
+
+
+def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
+    """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
+    ahead = headings(toes)
+    across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + OVER
+    return np.asarray(inside.any(axis=(1, 2)))
 
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:

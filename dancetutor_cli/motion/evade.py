@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
+from dancetutor_cli.motion.clear import over
 from dancetutor_cli.motion.flight import fly
-from dancetutor_cli.motion.landing import around, beside, over, pose
+from dancetutor_cli.motion.landing import around, beside, pose
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.stance import FREE_WINDOW, HOME_OUT, SHORTEST, Evading, Foot, Stance, pair
 from dancetutor_cli.motion.track import Swing

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import SHARES, detour, gaps_at, headings
+from dancetutor_cli.motion.clear import SHARES, detour, gaps_at, over
 from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.stance import Foot, Stance
@@ -19,12 +19,6 @@ Pitches = tuple[float, float, float, float]
 _ACROSS = np.linspace(-1.0, 1.0, 11)
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
-# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
-SOLE = np.array(
-    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
-     (0.084, -0.034)]
-)  # fmt: skip
-OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 LATEST = 4  # swings of a foot that are looked at to see where it is
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
@@ -87,15 +81,6 @@ def beside(
     price += over(stance.mined, grid, yaws + foot.outward * stance.toe_out) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
-
-
-def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
-    """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
-    ahead = headings(toes)
-    across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
-    points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
-    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= stage.HALF_PANEL + OVER
-    return np.asarray(inside.any(axis=(1, 2)))
 
 
 def _bracket(

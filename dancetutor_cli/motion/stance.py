@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import gaps_at
+from dancetutor_cli.motion.clear import gaps_at, over
 from dancetutor_cli.motion.feet import NO_TIME
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import FootTrack, Swing
@@ -142,6 +142,8 @@ class Stance:
     def pivot_yaw(self, foot: Foot, body: float, other: Array, other_toes: float) -> float:
         """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
 
+        Nor does it turn over a panel with a mine.
+
         other, other_toes : ball and toes of the other foot after its step
         """
         step = self.settings.step
@@ -149,8 +151,11 @@ class Stance:
             return foot.yaw
         wanted = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
         yaws = foot.yaw + np.linspace(1.0, 0.0, 9) * (wanted - foot.yaw)
-        gaps = gaps_at(np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out, other, other_toes)
-        return float(yaws[np.argmax(gaps >= min(step.apart, gaps.max()))])
+        balls, toes = np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out
+        gaps = gaps_at(balls, toes, other, other_toes)
+        mined = over(self.mined, balls, toes)
+        clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
+        return float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
 
     def pivot(self, foot: Foot, yaw: float, start: float, time: float) -> None:
         """The standing foot turns on its ball to a yaw."""

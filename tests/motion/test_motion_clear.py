@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.clear import HALF_SHOE, SHARES, detour
+from dancetutor_cli.motion.clear import HALF_SHOE, SHARES, detour, over
 from dancetutor_cli.motion.ease import swung, travelled
-from dancetutor_cli.motion.landing import beside, over, pose
+from dancetutor_cli.motion.landing import beside, pose
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.stance import Stance
 
@@ -94,3 +94,16 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
 
     assert least((0.0, 0.0)) < APART - 0.01
     assert least(bulge) >= APART - 2e-3
+
+
+def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
+    """Its toes on the left panel; turned to the front its heel would lie on the down panel, which has a mine."""
+    stance = Stance(default_settings())
+    left = stance.feet[0]
+    left.ball, left.yaw = np.array([0.187, -0.046]), float(np.radians(65.0))
+    far = np.array([-0.2, 0.1])
+    free = stance.pivot_yaw(left, 0.0, far, 0.0)
+    stance.mined = np.array([[0.0, -0.28]])
+    kept = stance.pivot_yaw(left, 0.0, far, 0.0)
+    assert over(stance.mined, left.ball[None], np.array([stance.toes(left, free)]))[0]
+    assert not over(stance.mined, left.ball[None], np.array([stance.toes(left, kept)]))[0]
