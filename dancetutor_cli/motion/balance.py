@@ -24,7 +24,7 @@ UNIT = 0.03  # metres; scales the programme
 HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
 FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
 HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
-FARTHEST = 0.38  # metres over the ground, along each axis, from the pelvis to an ankle
+FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
 ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
@@ -46,7 +46,7 @@ def balanced_path(
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them
     """
     body, rate = settings.body, NODE_RATE
-    nodes = np.arange(times[0], times[-1] + 1.0 / rate, 1.0 / rate)
+    nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     lever, seen = (np.interp(nodes, times, x) for x in (lever, seen))
     offset = sample_path(offset, times, nodes)

@@ -88,7 +88,8 @@ def body_path(
     crouch = jump_crouch(plan, times, settings.jump)
     quick = haste(plan, times, settings)
     stance = settings.body.stance - settings.body.stream_crouch * quick - crouch
-    beat = groove(plan.beats, times, quick, reaching.sum(axis=1) + (0.0 if gait is None else gait.own))
+    busy = reaching.sum(axis=1) + held + (0.0 if gait is None else gait.own)
+    beat = groove(plan.beats, times, quick, busy)
     sink = sink + settings.layers.bounce * beat
     mass_height = _height(
         feet, airborne(plan.feet), times, ground, yaw, stance, bent, sink, above[:, 1], skeleton, settings
