@@ -9,15 +9,19 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.bar import hold
 from dancetutor_cli.motion.body import BodyPath
+from dancetutor_cli.motion.crouch import haste
 from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import foot_path
 from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.ik import arm_rotations
 from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.palms import palm_down
 from dancetutor_cli.motion.paths import UP, leaning, sample_path, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.spine import shoulders_over, torso_turns
 from dancetutor_cli.motion.track import Plan, Press
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES, palm_points
 
@@ -25,6 +29,12 @@ Array = NDArray[np.float64]
 LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
 FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
 SLAP = 0.8  # metres per second with which a palm meets the floor at least
+FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
+POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
+EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
+HANG, SHALLOW, DEEP = 0.28, np.radians(25.0), np.radians(100.0)  # so far they do; of which bends
+WANDER = ((7.9, 0.37), (4.3, 0.23))  # seconds of two waves, and how much of one each hand and axis is behind the last
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
@@ -43,17 +53,20 @@ def arm_targets(
     plan: Plan, body: BodyPath, at: Array, shoulders: Array, chest: Array, skeleton: Skeleton, settings: MotionSettings
 ) -> HandTargets:
     """Targets at times `at` (f,); shoulders (f, 2, 3) and chest (f, 4) as the IK will be asked for them."""
-    upright = quat.swing_twist(chest, UP)[1]
+    lean, upright = quat.swing_twist(chest, UP)
     hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
-    wrists = shoulders + quat.rotate(upright[:, None], hang) + lag
+    # in a deep bend the other arm goes some way with the chest, its hand to the knees
+    bent = HANG * smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
+    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, bent), upright)
+    wrists = shoulders + quat.rotate(along[:, None], hang) + lag
     wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
-    out = np.array([[1.0], [-1.0]]) * np.array([0.7, 0.0, 0.0]) + np.array([0.0, -0.25, -0.75])
+    out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
     elbows = quat.rotate(upright[:, None], out)
     turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
     pinned, pull = np.zeros((len(at), 2)), np.zeros((len(at), 2))
     hold(plan, at, wrists, turn, pinned, elbows, shoulders, chest, skeleton, settings)
     for press in plan.presses:
-        _press(press, at, wrists, turn, pinned, pull, elbows, shoulders, skeleton, settings)
+        _press(press, at, wrists, turn, pinned, pull, elbows, body, skeleton, settings)
     return HandTargets(wrists, turn, pinned, pull, elbows)
 
 
@@ -65,9 +78,11 @@ def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: Motion
     arms = settings.arms
     swing = _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))
+    quick = haste(plan, body.times, settings)[:, None]
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
-    hang[..., 1] = -arms.down + 0.25 * np.abs(swing)
-    hang[..., 2] = arms.forward + swing
+    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * quick
+    hang[..., 2] = arms.forward + swing + arms.stream_forward * quick
+    hang += arms.wander * _wandering(body.times)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
@@ -80,6 +95,13 @@ def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: Motion
         lag[:, side] = follow(target, rate, controller) - target
     far = np.linalg.norm(lag, axis=2, keepdims=True)
     return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
+
+
+def _wandering(times: Array) -> Array:
+    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image."""
+    hands = np.arange(6).reshape(2, 3)
+    slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in WANDER)
+    return np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
 
 
 def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
@@ -97,7 +119,7 @@ def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
 
 
 def _press(
-    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, pull: Array, elbows: Array, shoulders: Array,
+    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, pull: Array, elbows: Array, body: BodyPath,
     skeleton: Skeleton, settings: MotionSettings,
 ) -> None:  # fmt: skip
     down, side = settings.hands.reach_down, press.side
@@ -105,17 +127,8 @@ def _press(
     if not len(near):
         return
     t = at[near]
-    middle = shoulders[near].mean(axis=1)
-    panel = np.array([press.target[0], 0.0, press.target[1]])
-    note = np.argmin(np.abs(t - press.start))
-    away, across = panel - middle[note], shoulders[near[note], 0] - shoulders[near[note], 1]
-    front = np.array([-across[2], 0.0, across[0]]) / np.hypot(across[0], across[2])
-    # a hand behind the body keeps its fingers to the front: no wrist turns round
-    fingers = front + 0.8 * away if np.dot(away, front) > 0 else front + 0.3 * away
-    fingers[1] = 0.0
-    fingers /= max(float(np.linalg.norm(fingers)), 1e-6)
-    hand = palm_down(skeleton, side, fingers)
-    wrist = panel - quat.rotate(hand, palm_points(skeleton)[side].offset)
+    hand, pole = _lay_down(press, body, skeleton)
+    wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(hand, palm_points(skeleton)[side].offset)
     going = np.clip((t - press.start + press.lead) / press.lead, 0.0, 1.0)
     leaving = np.clip((t - press.end) / down, 0.0, 1.0)
     across = smooth(going) * (1.0 - smooth(leaving))
@@ -131,3 +144,36 @@ def _press(
     pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
     pinned[near, side] = np.maximum(pinned[near, side], pin)
     pull[near, side] = np.maximum(pull[near, side], pin)
+    elbows[near, side] += across[:, None] * (pole - elbows[near, side])
+
+
+def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, Array]:
+    """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
+
+    Of many ways the one that is easiest for shoulder and wrist as the body is at the note, and then the one whose
+    fingers point most from the body to the panel.
+    """
+    when, side = np.array([press.start]), press.side
+    ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
+    yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
+    pelvis_turn, chest, bent = torso_turns(tilt, yaw, chest_yaw)
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest, bent)
+    panel = np.array([press.target[0], 0.0, press.target[1]])
+    away = panel - shoulders[0].mean(axis=0)
+    liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
+    out = (1.0, -1.0)[side]
+    poles = quat.rotate(chest, POLES * [out, 1.0, 1.0])
+    aside = np.repeat(FINGERS, len(poles))
+    poles = np.tile(poles, (len(FINGERS), 1))
+    down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
+    hands = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
+    wrists = panel - quat.rotate(hands, palm_points(skeleton)[side].offset)
+    # the body is drawn on until the arm reaches
+    shoulder = np.tile(shoulders[0, side], (len(wrists), 1))
+    turns = arm_rotations(skeleton, side, shoulder, np.tile(chest, (len(wrists), 1)), wrists, hands, poles)
+    effort = EASY * aside**2
+    for name, joint in (("shoulder", turns[0]), ("radiocarpal", turns[2])):
+        effort += np.maximum(beyond(skeleton, f"{SIDES[side]}_{name}", joint) + EASE, 0.0) ** 2
+    best = int(np.argmin(effort))
+    return hands[best], poles[best]

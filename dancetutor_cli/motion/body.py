@@ -19,6 +19,7 @@ from dancetutor_cli.motion.inertia import Controller, follow
 from dancetutor_cli.motion.paths import low_pass, smooth_path
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.track import Plan, Press, Turn, airborne
+from dancetutor_cli.motion.twist import counter_twist
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
@@ -97,6 +98,8 @@ def body_path(
     height = mass_height.at(times) - above[:, 1]
     ahead = gaze_ahead(plan, times, settings)
     chest, head = _looking(yaw, plan.presses, times, ground, rate, settings, ahead)
+    loose = (1.0 - held) * (1.0 - reaching.max(axis=1)) * (1.0 if gait is None else 1.0 - gait.own)
+    chest = chest + loose * counter_twist(feet, times, ground, mass_ground, yaw, chest, head, skeleton, settings.arms)
     tilt = _tilt(plan.presses, times, reaching, chest, ground, rate, settings, held)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))

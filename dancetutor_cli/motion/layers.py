@@ -13,9 +13,11 @@ from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.settings import LayerSettings
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, Skeleton
+from dancetutor_cli.rig.soles import hand_direction, palm_normal
 
 Array = NDArray[np.float64]
 ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+WRIST_TIME = 5.7  # seconds in which a free hand drops and comes up
 BLINK = 0.16  # seconds from open to open
 SEED = 20140513
 
@@ -34,6 +36,16 @@ def add_layers(
     raised = np.radians(settings.breath_shoulders) * breath * free
     for side, sign in (("l", 1.0), ("r", -1.0)):
         _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * raised)
+    for side, phase, bent in (("l", 0.0, 0.8), ("r", 0.4, 1.2)):
+        hand = hand_direction(skeleton, side)
+        drop = bent + 0.35 * np.sin(2 * np.pi * (times / WRIST_TIME + phase))
+        _turn(
+            skeleton,
+            rotations,
+            f"{side}_radiocarpal",
+            np.cross(hand, palm_normal(skeleton, side)),
+            np.radians(settings.wrists) * drop * free,
+        )
     bob = np.radians(settings.head_bob) * stepping * free
     _turn(skeleton, rotations, "skullbase", FRONT, -bob)
     nod = np.radians(settings.breath_nod) * breath

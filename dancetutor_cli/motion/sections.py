@@ -98,6 +98,11 @@ class ArmSettings:
     out: float
     forward: float
     down: float
+    stream_up: float
+    stream_forward: float
+    wander: float
+    cancel: float
+    twist: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +152,7 @@ class LayerSettings:
     sway_time: float
     bounce: float
     beat_nod: float
+    wrists: float
     blink_time: float
 
 

@@ -13,8 +13,9 @@ from dancetutor_cli.motion.ease import smooth
 from dancetutor_cli.motion.feet import FootPath
 from dancetutor_cli.motion.gait import turned, walking
 from dancetutor_cli.motion.ik import Targets
-from dancetutor_cli.motion.paths import UP, leaning, sample_path
+from dancetutor_cli.motion.paths import UP, sample_path
 from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.spine import shoulders_over, torso_turns
 from dancetutor_cli.motion.track import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -26,7 +27,6 @@ FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
 HALF_HIPS = 0.09  # metres from the middle of the pelvis to a hip
 KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
 KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
-PELVIS_SHARE = 0.58  # the pelvis tilts this part of the chest's tilt
 
 
 def ik_targets(
@@ -36,18 +36,11 @@ def ik_targets(
     ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
     yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    pelvis_turn = leaning(PELVIS_SHARE * tilt, yaw)
-    chest_turn = leaning(tilt, chest_yaw)
+    pelvis_turn, chest_turn, bent = torso_turns(tilt, yaw, chest_yaw)
     gait = walking(plan.walks, at, settings)
     if gait is not None:
         pelvis_turn, chest_turn = turned(gait, pelvis_turn, chest_turn)
-    rest = skeleton.rest
-    shoulders = np.stack(
-        [
-            pelvis + quat.rotate(chest_turn, rest[skeleton.index(f"{s}_shoulder")] - rest[0])
-            for s in "lr"
-        ], axis=1,
-    )  # fmt: skip
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest_turn, bent)
     hands = arm_targets(plan, body, at, shoulders, chest_turn, skeleton, settings)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
