@@ -32,6 +32,7 @@ SLAP = 0.8  # metres per second with which a palm meets the floor at least
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
+AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that it keeps farther aside and ahead there
 HANG, SHALLOW, DEEP = 0.28, np.radians(25.0), np.radians(100.0)  # so far they do; of which bends
 WANDER = ((7.9, 0.37), (4.3, 0.23))  # seconds of two waves, and how much of one each hand and axis is behind the last
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
@@ -56,8 +57,9 @@ def arm_targets(
     lean, upright = quat.swing_twist(chest, UP)
     hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
-    bent = HANG * smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
-    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, bent), upright)
+    bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
+    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, HANG * bent), upright)
+    hang = hang + bent[:, None, None] * AWAY
     wrists = shoulders + quat.rotate(along[:, None], hang) + lag
     wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
     out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
