@@ -19,7 +19,7 @@ from dancetutor_cli.motion.qp import Limits, solve
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 
 Array = NDArray[np.float64]
-NODE_RATE = 80.0  # nodes per second
+NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
 UNIT = 0.03  # metres; scales the programme
 HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
 FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
@@ -43,9 +43,9 @@ def balanced_path(
     lever : (n,) y / (y'' + g), seconds squared; ignored in flight; seen : the same without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
     settings : of the body, and how the weight sways while both feet stand
-    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them
+    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
     """
-    body, rate = settings.body, NODE_RATE
+    body, rate = settings.body, NODE_RATE if tightened else ROUGH_RATE
     nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     lever, seen = (np.interp(nodes, times, x) for x in (lever, seen))
