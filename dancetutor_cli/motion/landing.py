@@ -20,6 +20,7 @@ _ACROSS = np.linspace(-1.0, 1.0, 11)
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
+STAYING = 0.7  # part of its way to the wanted place that a foot on its own panel leaves out
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
@@ -60,6 +61,8 @@ def landing(
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
     ball = ball + step.on_the_way * cut * (np.clip(way, panel - room, panel + room) - ball)
+    if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
+        ball = ball + STAYING * (foot.ball - ball)
     return beside(stance, panel, room, foot, ball, yaw, other)
 
 
