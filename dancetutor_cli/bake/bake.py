@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 BEATS_AFTER = 16  # beats after the last row that she still hears
+LOWEST = 0.35  # metres of the pelvis over the pad, however far away a palm shall be
 STANDS = 0.4  # seconds of standing after she has walked off
 SETTLING = 3  # rounds of rough baking before the path of the body is final
 TIGHTENED = 2  # rounds of tightening the limits of her balance in the last of those
@@ -188,7 +189,8 @@ def _settled(
         drawn = root[:, 1] - targets.pelvis[:, 1]
         for k, press in enumerate(plan.presses):
             near = (coarse >= press.start - 0.05) & (coarse <= press.end + 0.05)
-            deeper[k] -= min(float(drawn[near].min(initial=0.0)), 0.0)
+            more = deeper[k] - min(float(drawn[near].min(initial=0.0)), 0.0)
+            deeper[k] = min(more, max(settings.hands.pelvis - LOWEST, 0.0))  # where no palm reaches, nobody sinks
         heels += np.column_stack([np.interp(grid, coarse, h) for h in _heels_up(skeleton, rotations, settings)])
         heels = np.maximum(smooth_path(heels, np.ones(len(grid)), settings.sampling.work_rate, 0.06), 0.0)
         heels *= _may_rise(plan, grid)
