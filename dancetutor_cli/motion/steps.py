@@ -19,6 +19,7 @@ LEAST_SWING = 0.09  # seconds; a foot is given so long where it is free
 OVERLAP = 0.01  # seconds that it may leave before the other foot has landed: nobody sees so short a flight
 LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together
+ALTERNATING = 0.3  # seconds between taps of heel and toes for which the foot stays over both panels
 FOLLOWING = 0.6  # seconds to its next step for which a foot comes down near the way there
 FLAT = 0.45  # a quick jump has so much less tuck and raised heels
 TOUCHING = 0.077  # metres between the middle lines of shoes that touch
@@ -91,7 +92,19 @@ class Steps:
         here = self.panels[columns[0]]
         held = [c for c, end in foot.holds.items() if end > time - LET_GO and c != columns[0]]
         near = [c for c in held if np.linalg.norm(self.panels[c] - here) < NEIGHBOURS]
-        return columns + near[-1:]
+        return columns + (near[-1:] or self._other_part(i, foot.side, columns[0]))
+
+    def _other_part(self, i: int, side: int, column: int) -> list[int]:
+        """The panel beside one that a heel or toe taps alone, where the other end of the foot taps soon: two rolls."""
+        rows, part = self.play.rows, self.play.part
+        for j in (i + 1, i - 1, i + 2, i - 2):
+            if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > ALTERNATING:
+                continue
+            for c in np.flatnonzero(self.play.limb[j] == side):
+                other = part[j, c] not in (Part.WHOLE, part[i, column]) and c != column
+                if other and np.linalg.norm(self.panels[c] - self.panels[column]) < NEIGHBOURS:
+                    return [int(c)]
+        return []
 
     def _gallop(self, i: int, time: float, duration: float, side: int) -> None:
         """A step after a wait, and soon after it one of the other foot: one jump whose second foot lands later."""

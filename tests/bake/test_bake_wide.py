@@ -73,3 +73,10 @@ def test_a_heel_taps_beside_its_hold_while_the_other_foot_jumps_too() -> None:
     events = [(1.0, {3: R}), (1.5, {0: L}), (2.0, {1: L, 2: R}), (2.5, {3: R})]
     danced = play(events, holds={(1, 0): 2.0}, brackets={(2, 1): Part.HEEL})
     assert np.abs(report(bake(chart(), danced, pad())).contact_errors).max() < 1.0
+
+
+def test_heel_and_toes_tap_two_rolls_by_turns() -> None:
+    """Taps of two rolls under one foot, heel and toes alone each time: the foot stays over both panels."""
+    events = [(1.0, {0: L}), *((1.5 + 0.125 * k, {(2, 3)[k % 2]: R}) for k in range(8)), (3.0, {0: L})]
+    parts = {(1 + k, (2, 3)[k % 2]): (Part.TOE, Part.HEEL)[k % 2] for k in range(8)}
+    check(bake(chart(), play(events, brackets=parts), pad()))
