@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.ease import smooth
 
 Array = NDArray[np.float64]
-SHORTEST, LONGEST = 0.36, 1.1  # seconds; of quicker beats she takes every second one, and slower ones she lets pass
+SHORTEST = 0.36  # seconds; of quicker beats she takes every second one, or a later one
+WIDEST = 0.4  # seconds from a beat, at most, in which she goes down for it and comes up again
 FADE = 0.5  # of the fastest steps: from there on nothing is left of it
 
 
@@ -17,18 +18,16 @@ def groove(beats: tuple[float, ...], times: Array, haste: Array, busy: Array) ->
 
     beats : seconds of all beats, in order; haste : (n,) as in `motion.crouch`; busy : (n,) 0 to 1
     """
-    at = np.asarray(beats)
-    gaps = np.diff(at)
-    if not (gaps > 0).any():
+    heard: list[float] = []
+    for beat in beats:
+        if not heard or beat - heard[-1] >= SHORTEST:
+            heard.append(beat)
+    if not heard:
         return np.zeros(len(times))
-    if np.median(gaps[gaps > 0]) < SHORTEST:
-        at = at[::2]
-    at = at[np.concatenate(([True], np.diff(at) > 1e-6))]
-    i = np.clip(np.searchsorted(at, times, side="right") - 1, 0, max(len(at) - 2, 0))
-    if len(at) < 2:
-        return np.zeros(len(times))
-    gap = at[i + 1] - at[i]
-    phase = (times - at[i]) / gap
-    inside = (phase >= 0.0) & (phase < 1.0) & (gap <= LONGEST)
+    at = np.array(heard)
+    after = np.searchsorted(at, times, side="right")
+    last, coming = times - np.append(-np.inf, at)[after], np.append(at, np.inf)[after] - times
+    half = np.minimum((last + coming) / 2, WIDEST)  # of the way from beat to beat; alone, a beat has its own width
+    near = np.minimum(np.minimum(last, coming) / half, 1.0)
     free = smooth(1.0 - haste / FADE) * (1.0 - np.clip(busy, 0.0, 1.0))
-    return np.asarray(np.where(inside, (1.0 + np.cos(2.0 * np.pi * phase)) / 2, 0.0) * free)
+    return np.asarray((1.0 + np.cos(np.pi * near)) / 2 * free)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bake_plays import Event, L, R, chart, pad, play, stream
+from bake_plays import RH, Event, L, R, chart, pad, play, stream
 from scipy.spatial import ConvexHull
 
 from dancetutor_cli.bake import bake, report
@@ -155,3 +155,30 @@ def test_a_spine_is_not_wrung_in_a_spin() -> None:
 
     twist = yaw("l_shoulder", "r_shoulder") - yaw("l_hip", "r_hip")
     assert np.degrees(np.abs(np.diff(twist)).max() * body.rate) < 600.0
+
+
+def test_in_quick_jumps_the_foot_with_the_longer_way_leaves_first() -> None:
+    """Jumps between steps at six rows a second: right stays on its panel, left has a way to go; slow ones do not."""
+    for gap, staggered in ((0.17, True), (0.6, False)):
+        pressed = ({0: L, 3: R}, {2: L}, {1: L, 3: R}, {0: L})
+        plan = plan_of(chart(), play([(1.0 + gap * k, pressed[k % 4]) for k in range(16)]), pad())
+        jumps = [[s for s in track.swings if s.kind == "jump" and s.land > 1.5] for track in plan.feet]
+        pairs = [(a, b) for a in jumps[0] for b in jumps[1] if a.land == b.land]
+        assert len(pairs) >= 6
+        assert any(left.lift < right.lift - 0.01 for left, right in pairs) == staggered
+
+
+def test_a_foot_that_steps_on_its_own_panel_again_hardly_moves() -> None:
+    """It lands near the edge in a stream, and taps there again at leisure."""
+    danced = [*stream(1.0, 13, 0.125), (2.9, {0: L}), (3.3, {0: L})]
+    assert danced[12][1] == {0: L}
+    swings = [s for s in plan_of(chart(), play(danced), pad()).feet[0].swings if 2.45 < s.land < 3.0]
+    before, again = swings[0], swings[-1]
+    assert before.land < again.land == pytest.approx(2.9)
+    assert np.hypot(*(np.array(again.target) - np.array(before.target))) < 0.05
+
+
+def test_nobody_sinks_into_the_pad_for_a_palm_out_of_reach() -> None:
+    """Feet on the left pad's left side, a hand on the right pad's right panel: 1.4 metres away."""
+    danced = play([(2.0, {0: L}), (2.5, {1: R}), (4.5, {0: L, 1: R, 7: RH}), (6.5, {0: L})], True)
+    assert body_of(bake(chart(), danced, pad(True))).joints[:, 0, 1].min() > 0.2
