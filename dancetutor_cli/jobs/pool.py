@@ -115,14 +115,16 @@ def _worker(connection: Connection) -> None:
     """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
     collect_seldom()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)  # so that an encoder at work is ended first
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pickle.loads(connection.recv_bytes())
             if task is None:
                 leave_garbage()
                 return
+            # so that an encoder at work is ended first; not while modules are imported, whose C code would swallow it
+            signal.signal(signal.SIGTERM, _leave)
             done = attempt(task, lambda n: connection.send(n))
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
             try:
                 message = pickle.dumps(done)
             except Exception as error:
