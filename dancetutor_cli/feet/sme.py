@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.feet.contradictions import Said
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.model import FeetProblem
+from dancetutor_cli.library.feet_files import EDITOR_FILE, song_stems
 
-FILE_NAME = "data.sme"
+FILE_NAME = EDITOR_FILE
 OURS = "dancetutor"  # our own key in the file: what we wrote into it, which is no person's word
 # SMEditor's values: a foot, or with numbers a part of one.
 FEET: dict[str | int, tuple[Limb, Part]] = {
@@ -61,12 +61,6 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
 def place_in_type(song: Song, chart: Chart) -> int:
     """The place of a chart among those of its steps type, in file order: how `data.sme` tells charts apart."""
     return [c.index for c in song.charts if c.steps_type == chart.steps_type].index(chart.index)
-
-
-def song_stems(folder: Path) -> set[str]:
-    """The names, without suffix, of the chart files in a folder; more than one means several songs."""
-    suffixes = (".sm", ".ssc")
-    return {p.stem.lower() for p in folder.iterdir() if p.suffix.lower() in suffixes and not p.name.startswith(".")}
 
 
 def chart_entry(data: Any, chart: Chart, place: int) -> Any:

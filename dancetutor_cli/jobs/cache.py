@@ -19,7 +19,7 @@ from pathlib import Path
 import dancetutor_cli
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.result import FileResult
-from dancetutor_cli.library.settings_file import find_settings_file
+from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
 _CHARTS = (".sm", ".ssc")
@@ -78,10 +78,11 @@ class ResultCache:
                     path.unlink(missing_ok=True)
 
     def _beside(self, path: Path) -> Iterator[str]:
-        """What else beside it a result depends on: music, pictures, data.sme by size and time; the other format."""
+        """What else beside it a result depends on: music and pictures by size and time, feet, the other format."""
         if path.parent not in self._listings:
-            self._listings[path.parent] = f"{_listing(path.parent)}\n{_settings(path.parent)}"
+            self._listings[path.parent] = _listing(path.parent)
         yield self._listings[path.parent]
+        yield feet_fingerprint(path)
         for suffix in _CHARTS:
             other = path.with_suffix(suffix)
             if other != path and other.is_file():
@@ -120,12 +121,6 @@ def _files(folder: str) -> Iterator[tuple[str, os.stat_result]]:
                 yield from _files(entry.path)
         elif entry.name.endswith((".py", ".yaml")):
             yield entry.path, entry.stat()
-
-
-def _settings(folder: Path) -> str:
-    """The dancetutor.yaml up the tree: it may lay down feet, whatever --config says."""
-    found = find_settings_file(folder)
-    return hashlib.sha256(found.read_bytes()).hexdigest() if found else ""
 
 
 def _listing(folder: Path) -> str:

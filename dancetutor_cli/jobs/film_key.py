@@ -1,12 +1,18 @@
-"""What a film is made of, as one hash: the same hash, the same film."""
+"""What a film is made of, as one hash: the same hash, the same film.
+
+Every field of the request is in it, so that no new one can be forgotten, and every file in which people say whose foot
+it is (`library.feet_files`); files count by their content, whatever they are called.
+"""
 
 from __future__ import annotations
 
 import hashlib
+from dataclasses import fields, is_dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
 if TYPE_CHECKING:
@@ -18,55 +24,54 @@ _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")
 
 def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
     """Hash (hex) of the chart file, which chart, the music, what is wanted of the film, and this program."""
-    out = hashlib.sha256()
-    wanted = (
-        request.look,
-        request.fps,
-        request.preset,
-        request.section,
-        request.sync,
-        request.mute,
-        request.practice,
-        request.bar,
-        request.gait,
-    )
-    parts = (
-        program_hash().encode(),
-        subject.song.data,
-        str(subject.chart.index).encode(),
-        b"" if subject.music is None else file_hash(subject.music).encode(),
-        repr((wanted, encoding)).encode(),
-        _preset(request.preset),
-        b"" if request.play is None else file_hash(request.play).encode(),
-        _feet(subject.song.path.parent / "data.sme"),
-        _character(request.character),
-        b"" if request.look.font is None else file_hash(request.look.font).encode(),
-    )
-    for part in parts:
-        out.update(len(part).to_bytes(8, "little"))
-        out.update(part)
-    return out.hexdigest()
+    parts = {field.name: _plain(getattr(request, field.name)) for field in fields(request)}
+    parts |= {
+        "path": hashlib.sha256(subject.song.data).hexdigest(),
+        "selection": subject.chart.index,  # however it was chosen
+        "preset": _preset(request.preset),
+        "character": _character(request.character),
+        "feet": feet_fingerprint(request.path),
+        "findings": _findings(request.path),
+        "music": None if subject.music is None else file_hash(subject.music),
+        "encoding": _plain(encoding),
+        "program": program_hash(),
+    }
+    return hashlib.sha256(repr(sorted(parts.items())).encode("utf-8", "surrogateescape")).hexdigest()
 
 
-def _preset(name: str) -> bytes:
-    """The content of a preset given as a file; those by name are part of the program."""
-    path = Path(name)
-    return path.read_bytes() if path.suffix and path.is_file() else b""
+def _plain(value: Any) -> Any:
+    """A value of a request as something whose `repr` is the same in every process; a file is its content."""
+    if is_dataclass(value):
+        return [(field.name, _plain(getattr(value, field.name))) for field in fields(value)]
+    if isinstance(value, tuple | list):
+        return [_plain(part) for part in value]
+    if isinstance(value, dict):
+        return [(key, _plain(part)) for key, part in value.items()]
+    if isinstance(value, Path):
+        return file_hash(value)
+    return value
 
 
-def _character(name: str) -> bytes:
+def _preset(name: str) -> Any:
+    """What a preset says, with those that it extends."""
+    from dancetutor_cli.play import load_preset
+
+    return _plain(load_preset(name))
+
+
+def _character(name: str) -> str:
     """The content of a character's file; those by name are part of the program."""
     from dancetutor_cli.character import BUILT_IN
 
-    return (name if name in BUILT_IN else file_hash(Path(name))).encode()
+    return name if name in BUILT_IN else file_hash(Path(name))
 
 
-def _feet(path: Path) -> bytes:
-    """What people said about feet beside the chart file; what they said in it is part of the file."""
-    try:
-        return path.read_bytes()
-    except OSError:
-        return b""
+def _findings(path: Path) -> str:
+    """Which findings are called out in the picture: dancetutor.yaml says so, and files that it extends."""
+    from dancetutor_cli.library.settings_file import find_settings_file
+    from dancetutor_cli.lint.configuration import load_configuration
+
+    return load_configuration(find_settings_file(path.absolute().parent)).settings.fingerprint()
 
 
 def file_hash(path: Path) -> str:

@@ -13,7 +13,8 @@ from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.library.settings_file import find_settings_file, places_of_settings_file
+from dancetutor_cli.library.feet_files import places_of_feet
+from dancetutor_cli.library.settings_file import find_settings_file
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
@@ -87,11 +88,9 @@ class LintRun:
 
         A configuration that cannot be read is no error here: only what it names is not known.
         """
-        yield path.parent / "data.sme"
+        yield from places_of_feet(path)
         yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
-        if self.request.config is None:
-            yield from places_of_settings_file(path.parent)
-        else:
+        if self.request.config is not None:
             yield Path(self.request.config)
         with suppress(DancetutorError):
             configuration = self.configuration(path)

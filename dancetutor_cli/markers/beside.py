@@ -8,6 +8,7 @@ from pathlib import Path
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet import sme
+from dancetutor_cli.library.feet_files import song_stems
 from dancetutor_cli.markers import edit, sidecar, smeditor
 from dancetutor_cli.markers.model import EDIT, SIDECAR, SMEDITOR, Change, ChartFeet, Lack
 
@@ -64,7 +65,7 @@ def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
 
 def _one_song(song: Song, path: Path) -> None:
     """`data.sme` knows charts only by their place, so it can only serve one song."""
-    if len(stems := sme.song_stems(song.path.parent)) > 1:
+    if len(stems := song_stems(song.path.parent)) > 1:
         raise FileError(path, f"its folder has {len(stems)} songs, and data.sme can only tell one; it is not written")
 
 

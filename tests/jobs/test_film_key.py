@@ -1,0 +1,147 @@
+"""The key of a film: it changes with every field of the request and with every file that says whose foot it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.cache import ResultCache
+from dancetutor_cli.jobs.film_key import film_key
+from dancetutor_cli.jobs.film_request import Practice, Request, look_up
+from dancetutor_cli.jobs.lint_run import LintRun
+from dancetutor_cli.jobs.lint_run import Request as LintRequest
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.feet_files import places_of_feet
+from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.scroll import parse_scroll
+
+ENCODING = Encoding("mp4", (64, 64), 12)
+CHARTS = "".join(
+    f"#NOTES:\n dance-single:\n :\n {name}:\n 8:\n :{{}}\n1000\n0001\n1000\n0001\n;\n" for name in ("Easy", "Hard")
+)
+SONG = "#TITLE:x;\n#BPMS:0=120;\n" + CHARTS
+SETTINGS = "feet:\n  - when: {{path: 'song/*'}}\n    steps: {{0: {}}}\n"
+
+
+@pytest.fixture
+def song(tmp_path: Path) -> Path:
+    path = tmp_path / "pack" / "song" / "song.sm"
+    path.parent.mkdir(parents=True)
+    path.write_text(SONG.format("", ""))
+    return path
+
+
+def request_of(song: Path) -> Request:
+    return Request(song, Selection(index=0), FilmLook(load_layout("highway"), (64, 64)), fps=12)
+
+
+def key(request: Request) -> str:
+    return film_key(request, look_up(request), ENCODING)
+
+
+def other_values(song: Path) -> dict[str, list[Any]]:
+    """For each field of a request values other than `request_of` has."""
+    folder = song.parent.parent.parent
+    other = folder / "other.sm"
+    other.write_text(SONG.format("//{dt1! RLRL}", ""))
+    (folder / "play.json").write_text("{}")
+    (folder / "font.ttf").write_bytes(b"letters")
+    (folder / "base.yaml").write_text("extends: itg\nroll-window: 0.25\n")
+    (folder / "mine.yaml").write_text("extends: base.yaml\n")
+    (folder / "her.glb").write_bytes(b"a character")
+    look = request_of(song).look
+    looks = {
+        "layout": load_layout("vertical"),
+        "size": (96, 64),
+        "quality": "draft",
+        "renderer": "cpu",
+        "camera": "front",
+        "scroll": parse_scroll("C500"),
+        "down": True,
+        "font": folder / "font.ttf",
+    }
+    practices = {"rates": (0.5,), "loop": 2, "count_in": 4, "claps": True, "metronome": True}
+    assert set(looks) == {f.name for f in fields(FilmLook)}
+    assert set(practices) == {f.name for f in fields(Practice)}
+    return {
+        "path": [other],
+        "selection": [Selection(index=1)],
+        "look": [replace(look, **{name: value}) for name, value in looks.items()],
+        "fps": [24],
+        "preset": ["itg", str(folder / "mine.yaml")],
+        "section": ["0:1"],
+        "sync": [0.009],
+        "mute": [True],
+        "practice": [replace(Practice(), **{name: value}) for name, value in practices.items()],
+        "play": [folder / "play.json"],
+        "character": ["mannequin", str(folder / "her.glb")],
+        "bar": [True],
+        "gait": ["heels"],
+    }
+
+
+def test_every_field_of_a_request_counts(song: Path) -> None:
+    request, others = request_of(song), other_values(song)
+    assert set(others) == {f.name for f in fields(Request)}, "a field of the request that this test does not know"
+    keys = [key(request)]
+    keys += [key(replace(request, **{name: value})) for name, values in others.items() for value in values]
+    assert len(set(keys)) == len(keys)
+    assert key(request) == keys[0]
+
+
+def test_files_count_by_their_content(song: Path) -> None:
+    others, folder = other_values(song), song.parent.parent.parent
+    request = replace(
+        request_of(song), play=folder / "play.json", preset=others["preset"][1], character=others["character"][1]
+    )
+    request = replace(request, look=replace(request.look, font=folder / "font.ttf"))
+    keys = [key(request)]
+    for name, text in (
+        ("play.json", "{ }"), ("font.ttf", "other"), ("base.yaml", "extends: itg\nroll-window: 0.3\n"), ("her.glb", "x")
+    ):  # fmt: skip
+        (folder / name).write_text(text)
+        keys.append(key(request))
+    assert len(set(keys)) == len(keys)
+
+
+def _analysis(song: Path) -> str:
+    task: Task = LintRun(LintRequest()).task(song)
+    found = ResultCache(song.parent.parent.parent / "cache").key(task)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("key_of", [lambda song: key(request_of(song)), _analysis], ids=["film", "analysis"])
+def test_every_source_of_feet_counts(song: Path, key_of: Callable[[Path], str]) -> None:
+    pack = song.parent.parent
+    changes = {
+        "pinned measures": (song, SONG.format("//{dt1! RLRL}", "")),
+        "data.sme": (song.parent / "data.sme", '{"parity": {"dance-single": [{"overrides": [[0, 0, "Right"]]}]}}'),
+        "a second song, for which data.sme is not": (song.parent / "second.sm", SONG.format("", "")),
+        "dancetutor.yaml above": (pack / "dancetutor.yaml", SETTINGS.format("R")),
+        "dancetutor.yaml changed": (pack / "dancetutor.yaml", SETTINGS.format("L")),
+        "dancetutor.yaml beside it": (song.parent / "dancetutor.yaml", "rules: {spin: error}\n"),
+    }
+    keys = {"nothing": key_of(song)}
+    for name, (path, text) in changes.items():
+        assert path.name == "second.sm" or path in set(places_of_feet(song))
+        path.write_text(text)
+        keys[name] = key_of(song)
+    assert len(set(keys.values())) == len(keys), keys
+    assert key_of(song) == list(keys.values())[-1]
+
+
+def test_what_is_called_out_counts(song: Path) -> None:
+    settings, base = song.parent / "dancetutor.yaml", song.parent / "base.yaml"
+    base.write_text("rules: {spin: error}\n")
+    settings.write_text("extends: base.yaml\n")
+    before = key(request_of(song))
+    base.write_text("rules: {spin: off}\n")
+    assert key(request_of(song)) != before
