@@ -103,7 +103,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=40, help="charts of the corpus")
     parser.add_argument("--seed", type=int, default=6)
     parser.add_argument("--jobs", type=int, default=default_jobs())
-    parser.add_argument("--preset", default="itg")
+    parser.add_argument("--preset")
     parser.add_argument("--bar", action="store_true", help="she holds the bar")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "motion-report")
     return parser.parse_args()
@@ -154,7 +154,7 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
     return out
 
 
-def measure(_: Any, wanted: Wanted, preset: str, bar: bool) -> Measured:
+def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool) -> Measured:
     """Bake one chart and report on it; runs in a worker process."""
     from dancetutor_cli.bake import mines_of, report
     from dancetutor_cli.commands.animate import as_json

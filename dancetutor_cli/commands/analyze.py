@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.selection import Selection, selection_options
+from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.reports.formats import FORMATS
 from dancetutor_cli.targets import check_file
@@ -37,7 +37,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, allow_dash=True), metavar="PATH...")
 @selection_options
-@click.option("--preset", metavar="NAME|FILE", help="Cost preset of the solver.")
+@preset_option
 @click.option(
     "--format",
     "format_name",
@@ -173,10 +173,10 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     tasks = [run.task(path, data) for path, data in sources]
-    report = open_report(options["format_name"], tasks[0].preset.name)
+    report = open_report(options["format_name"], next(tasks[0].presets.candidates()).name)
     report.begin()
     cache = None if options["no_cache"] else ResultCache(default_folder())
-    for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.preset)):
+    for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.presets)):
         result = run.without_known(raw)
         tally.add(result)
         if options["quiet"]:

@@ -82,7 +82,7 @@ def number(_context: click.Context, _option: click.Parameter, value: float) -> f
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
     gait: str, jobs: int,
-    report_to: str | None, plot: Path | None, character: str, preset: str, **selection: Any,
+    report_to: str | None, plot: Path | None, character: str, preset: str | None, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
 
@@ -91,7 +91,9 @@ def command(
     """
     from dancetutor_cli.character import DANCER, load_character
     from dancetutor_cli.jobs.bake import BakeTask, ask
+    from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.library import one_song
+    from dancetutor_cli.reports.safe import safe
 
     if output is not None:
         check_file(output, SUFFIXES)
@@ -103,8 +105,10 @@ def command(
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
     task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs)
-    tell_of_compiling(preset)
+    tell_of_compiling(choice_for(task.path, preset))
     asked = ask(task)
+    for note in asked.notes:
+        click.echo(f"warning: {safe(note)}", err=True)
     target = output or Path(default_name(asked.song, asked.chart))
     check_file(target, SUFFIXES)
     _bake_and_write(asked, task, target, dances, report_to, plot)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.selection import Selection, selection_options
+from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.targets import check_folder
 
@@ -54,9 +54,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 @click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
-@click.option(
-    "--preset", metavar="NAME|FILE", help="Cost preset of the solver; default: as dancetutor.yaml says, else itg."
-)
+@preset_option
 @selection_options
 def command(
     paths: tuple[Path, ...],
@@ -81,8 +79,8 @@ def command(
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """
     from dancetutor_cli.jobs.annotate import Order
+    from dancetutor_cli.jobs.presets import choice_of
     from dancetutor_cli.library import find_files
-    from dancetutor_cli.play import DEFAULT_PRESET
 
     wanted = styles or (STYLES if strip else STYLES[:1])
     if into_file and "edit" not in wanted:
@@ -103,7 +101,7 @@ def command(
     talk = _Talk(order, check, dry_run)
     talk.begin()
     if not strip:
-        tell_of_compiling(preset or DEFAULT_PRESET)
+        tell_of_compiling(choice_of(preset))
     for outcome in _outcomes(songs, order, jobs):
         talk.tell(outcome)
     return talk.end()

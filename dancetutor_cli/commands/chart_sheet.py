@@ -52,5 +52,5 @@ def _facts(chart: Drawable) -> list[str]:
     if dense.breakdown:
         numbers.append(f"stream {dense.breakdown}")
     if subject.play is not None:
-        numbers.append(f"cost {subject.play.total} ({subject.play.preset})")
+        numbers.append(f"cost {subject.play.total}, preset {subject.play.preset}")
     return facts_of(sorted(chart.counts.items()), numbers)

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from dancetutor_cli.play.preset import Preset
+    from dancetutor_cli.jobs.presets import PresetChoice
 
 
-def tell_of_compiling(preset: Preset | str) -> None:
-    """Say that kernels are being compiled, if they are; only to a terminal, where somebody wonders."""
+def tell_of_compiling(choice: PresetChoice) -> None:
+    """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders."""
     if not sys.stderr.isatty():
         return
-    from dancetutor_cli.play import load_preset
     from dancetutor_cli.play.compiled import is_compiled
 
-    if not is_compiled(load_preset(preset) if isinstance(preset, str) else preset):
+    if not all(is_compiled(preset) for preset in choice.candidates()):
         click.echo("compiling the solver's kernels (once; `dancetutor warmup` does it ahead) ...", err=True)

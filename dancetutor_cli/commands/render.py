@@ -101,6 +101,7 @@ def _render_one(
     path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.jobs.film_request import look_up
+    from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.video.encoder import target_of
 
     kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
@@ -111,7 +112,7 @@ def _render_one(
         check_folder(folder)
     request = film_request(path, options, kind)
     if not quiet:
-        tell_of_compiling(request.preset)
+        tell_of_compiling(choice_for(path, request.preset))
     subject = look_up(request)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     if folder is None:

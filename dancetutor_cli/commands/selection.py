@@ -28,16 +28,13 @@ def selection_options(command: _Command) -> _Command:
 
 
 def preset_option(command: _Command) -> _Command:
-    """Add --preset; the function gets keyword argument `preset`, to be given to `play.load_preset`."""
-    option = click.option("--preset", default=_default_preset, metavar="NAME|FILE", help="Cost preset of the solver.")
+    """Add --preset; the function gets keyword argument `preset`, to be given to `jobs.presets`."""
+    option = click.option(
+        "--preset",
+        metavar="NAME|FILE",
+        help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, itg for others]",
+    )
     return option(command)
-
-
-def _default_preset() -> str:
-    """Looked up when it is needed: presets are read with YAML, which `--help` can do without."""
-    from dancetutor_cli.play import DEFAULT_PRESET
-
-    return DEFAULT_PRESET
 
 
 def section_option(command: _Command) -> _Command:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.jobs.presets import PresetChoice, mismatch, preset_for
 from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, Figures, FileResult
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.model import Finding
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 class Task:
     """What to do with one file. Pickles, so that another process can do it.
 
-    preset : the cost preset
+    presets : which cost preset each chart gets
     want_rows : whether the result shall carry every row, for JSON
     data : the bytes to read in place of the file's, for standard input
     suggest : whether findings shall tell which moved note would remove them
@@ -33,7 +34,7 @@ class Task:
     """
 
     path: Path
-    preset: Preset
+    presets: PresetChoice
     selection: Selection
     settings: Settings
     want_rows: bool = False
@@ -82,7 +83,7 @@ def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartS
 
     for chart in charts:
         overrides, ignores, problems = overrides_for(song, chart)
-        play = solve_chart(chart, task.preset, overrides, margins=True)
+        play = solve_chart(chart, preset_for(chart, task.path, task.presets), overrides, margins=True)
         yield ChartSubject(song, chart, play, load_pad(chart.steps_type), overrides, ignores, problems)
 
 
@@ -92,6 +93,8 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
         yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
+        elif result.mismatch:
+            yield f"{result.label}: {result.mismatch}"
 
 
 def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
@@ -99,7 +102,8 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
     from dancetutor_cli.jobs.rows import json_rows
 
     chart, play = subject.chart, subject.play
-    findings, causes = _findings(subject, task)
+    preset = preset_for(chart, task.path, task.presets)
+    findings, causes = _findings(subject, task, preset)
     return ChartResult(
         index=chart.index,
         steps_type=chart.steps_type,
@@ -114,13 +118,17 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         rows=tuple(json_rows(subject)) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),
         figures=_figures(subject, task) if task.want_figures else None,
-        alternatives=_alternatives(subject, task) if task.alternatives else None,
+        alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,
         causes=causes,
         ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
+        preset=None if play is None else play.preset,
+        mismatch=None if play is None else mismatch(preset, chart.steps_type),
     )
 
 
-def _findings(subject: ChartSubject, task: Task) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
+def _findings(
+    subject: ChartSubject, task: Task, preset: Preset
+) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
     """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
     from dancetutor_cli.lint.check import check_chart
 
@@ -128,19 +136,19 @@ def _findings(subject: ChartSubject, task: Task) -> tuple[tuple[Finding, ...], t
     if task.want_rows or task.suggest:
         from dancetutor_cli.jobs.causes import causes_of, with_causes
 
-        causes = causes_of(subject, task.preset)
+        causes = causes_of(subject, preset)
         findings = with_causes(findings, causes, subject.pad.names if subject.pad else ())
     if task.suggest:
         from dancetutor_cli.jobs.suggest import with_suggestions
 
-        findings = with_suggestions(findings, subject, task.settings, task.preset)
+        findings = with_suggestions(findings, subject, task.settings, preset)
     return findings, causes
 
 
-def _alternatives(subject: ChartSubject, task: Task) -> tuple[AlternativeResult, ...]:
+def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
     from dancetutor_cli.jobs.alternatives import alternatives_of
 
-    return alternatives_of(subject, task.preset, task.alternatives)
+    return alternatives_of(subject, preset, count)
 
 
 def _figures(subject: ChartSubject, task: Task) -> Figures:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
+from dancetutor_cli.jobs.presets import mismatch, preset_for
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.markers.beside import Planned
     from dancetutor_cli.markers.model import Change, Lack
     from dancetutor_cli.markers.plan import Plan
+    from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,7 @@ class Order:
     """What shall be done with every file. Pickles.
 
     named : whether somebody asked for these styles; else files beside the song that are not ours are no error
-    preset : name or file of the cost preset; None: as the nearest dancetutor.yaml says
+    preset : name or file of the cost preset; None: what `jobs.presets` finds for each chart
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
     """
@@ -127,10 +129,17 @@ class _Work:
         from dancetutor_cli.markers import plan as planning
         from dancetutor_cli.markers.model import EDIT
 
-        preset = _configured(self.order.preset).preset(self.item.source)
+        choice = _configured(self.order.preset).presets(self.item.source)
         added = EDIT in self.order.styles and self.order.into_file
         base = self._without_added() if added else self.song
-        feet = list(planning.solve_charts(base, self._charts(base), preset, self.notes, self.problems))
+
+        def preset_of(chart: Chart) -> Preset:
+            return preset_for(chart, self.item.source, choice)
+
+        feet = list(planning.solve_charts(base, self._charts(base), preset_of, self.notes, self.problems))
+        for chart in (one.chart for one in feet):
+            if unfit := mismatch(preset_of(chart), chart.steps_type):
+                self.notes.append(f"{base.path}: {chart.label}: {unfit}")
         plan = planning.mark(base, feet, self.order.styles, self.order.force)
         if added:
             planning.add_charts(base, self.song, plan, feet)
@@ -238,7 +247,7 @@ class _Work:
 
 @cache
 def _configured(preset: str | None) -> LintRun:
-    """Knows the preset of each file; the same for `analyze`, so that both find the same feet."""
+    """Knows the presets of each file's charts; the same for `analyze`, so that both find the same feet."""
     from dancetutor_cli.jobs.lint_run import LintRun, Request
 
     return LintRun(Request(preset=preset))

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.motion.track import Plan
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.preset import Preset
 
 AFTER = 2.5  # seconds after the last row that a section may still reach
 
@@ -28,7 +29,8 @@ AFTER = 2.5  # seconds after the last row that a section may still reach
 class BakeTask:
     """What to bake. Pickles, so that another process can do it.
 
-    preset : of the solver; play_file : a play as JSON instead of the solver's, or None
+    preset : name or file of the solver's costs, None: what `jobs.presets` finds for the chart
+    play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
     bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
     jobs : processes among which the pieces of a long song are shared
@@ -36,7 +38,7 @@ class BakeTask:
 
     path: Path
     selection: Selection
-    preset: str
+    preset: str | None = None
     fps: float = 60.0
     section: str | None = None
     rate: float = 1.0
@@ -48,32 +50,41 @@ class BakeTask:
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A chart, ready to be baked: its play at the asked rate, and the section in seconds, None for all of it."""
+    """A chart, ready to be baked: its play at the asked rate, and the section in seconds, None for all of it.
+
+    notes : lines for people about the request
+    """
 
     song: Song
     chart: Chart
     play: Play
     pad: Pad
     section: tuple[float, float] | None
+    notes: tuple[str, ...] = ()
 
 
 def ask(task: BakeTask) -> Asked:
     """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli import chart as charts
+    from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
 
     if task.section is not None:
         check_part(task.section)
+    choice = choice_for(task.path, task.preset)
     song = charts.load(task.path)
     chart = task.selection.one(song)
-    play, pad = _play(task, song, chart)
+    preset = preset_for(chart, task.path, choice)
+    play, pad = _play(task, song, chart, preset)
     if not (play.limb >= 0).any():
         raise DancetutorError(f"{task.path}: {chart.label}: the chart has no steps, so there is nothing to dance")
     section = None
     if task.section is not None:
-        start, end = part_of(task.section, song, chart, task.preset, float(play.rows.second[-1]) + AFTER)
+        start, end = part_of(task.section, song, chart, preset, float(play.rows.second[-1]) + AFTER)
         section = (start / task.rate, end / task.rate)
     rows = replace(play.rows, second=play.rows.second / task.rate)
-    return Asked(song, chart, replace(play, rows=rows), pad, section)
+    unfit = mismatch(preset, chart.steps_type)
+    notes = () if unfit is None else (f"{chart.label}: {unfit}",)
+    return Asked(song, chart, replace(play, rows=rows), pad, section, notes)
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
@@ -127,12 +138,12 @@ def plan_asked(asked: Asked, task: BakeTask) -> Plan:
     return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate, bar=task.bar, gait=task.gait)
 
 
-def _play(task: BakeTask, song: Song, chart: Chart) -> tuple[Play, Pad]:
+def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Play, Pad]:
     from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset, prepare
+    from dancetutor_cli.play import prepare
 
-    preset, pad = load_preset(task.preset), load_pad(chart.steps_type)
+    pad = load_pad(chart.steps_type)
     if pad is None:
         raise UsageError(
             f"{task.path}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake"

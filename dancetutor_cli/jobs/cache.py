@@ -43,7 +43,7 @@ class ResultCache:
         except OSError:
             return None
         digest = hashlib.sha256(data)
-        wanted = (task.preset, task.selection, task.suggest, task.alternatives, task.want_figures)
+        wanted = (task.presets, task.selection, task.suggest, task.alternatives, task.want_figures)
         asked = f"{task.path}|{task.path.absolute()}|{wanted}"
         for part in (_program(), asked, task.settings.fingerprint(), *self._beside(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))

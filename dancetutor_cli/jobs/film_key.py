@@ -28,7 +28,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
     parts |= {
         "path": hashlib.sha256(subject.song.data).hexdigest(),
         "selection": subject.chart.index,  # however it was chosen
-        "preset": _preset(request.preset),
+        "preset": _plain(subject.preset),  # whoever chose it, with all that it extends
         "character": _character(request.character),
         "feet": feet_fingerprint(request.path),
         "findings": _findings(request.path),
@@ -50,13 +50,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Path):
         return file_hash(value)
     return value
-
-
-def _preset(name: str) -> Any:
-    """What a preset says, with those that it extends."""
-    from dancetutor_cli.play import load_preset
-
-    return _plain(load_preset(name))
 
 
 def _character(name: str) -> str:

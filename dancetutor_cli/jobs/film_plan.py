@@ -53,10 +53,9 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
     from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset
 
     song, chart, clock = subject.song, subject.chart, subject.clock
-    play, ignores = solve_with_feet(song, chart, load_preset(request.preset))
+    play, ignores = solve_with_feet(song, chart, subject.preset)
     pad = load_pad(chart.steps_type)
     if play is None or pad is None:
         raise UsageError(f"{request.path}: no pad is known for steps type '{chart.steps_type}'")

@@ -18,6 +18,7 @@ from dancetutor_cli.video.film_look import FilmLook
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.play.preset import Preset
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
 
@@ -40,7 +41,8 @@ class Practice:
 class Request:
     """What film is wanted. Pickles, so that another process can prepare it.
 
-    path : the chart file; selection : which chart; preset : name or file of the cost preset
+    path : the chart file; selection : which chart
+    preset : name or file of the cost preset; None: what `jobs.presets` finds for the chart
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
@@ -52,7 +54,7 @@ class Request:
     selection: Selection
     look: FilmLook
     fps: int = 30
-    preset: str = "thesis"
+    preset: str | None = None
     section: str | None = None
     sync: float = 0.0
     mute: bool = False
@@ -67,11 +69,13 @@ class Request:
 class Subject:
     """The chart that a request is about, read and checked.
 
+    preset : with which the feet are found
     music : the song's file, None for a film without; section : whether only a part is wanted
     """
 
     song: Song
     chart: Chart
+    preset: Preset
     clock: Clock
     music: Path | None
     section: bool
@@ -89,15 +93,20 @@ class Subject:
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     from dancetutor_cli import chart as charts
+    from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
 
     if request.section is not None:
         check_part(request.section)
+    choice = choice_for(request.path, request.preset)
     song = charts.load(request.path)
     chart = request.selection.one(song)
+    preset = preset_for(chart, request.path, choice)
     music, warnings = (None, ()) if request.mute else find_music(song, chart)
-    start, end = _section(request, song, chart)
+    if unfit := mismatch(preset, chart.steps_type):
+        warnings = (*warnings, f"{chart.label}: {unfit}")
+    start, end = _section(request, song, chart, preset)
     clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
-    return Subject(song, chart, clock, music, request.section is not None, warnings)
+    return Subject(song, chart, preset, clock, music, request.section is not None, warnings)
 
 
 def parse_rates(text: str) -> tuple[float, ...]:
@@ -134,11 +143,11 @@ def whole_song(chart: Chart) -> tuple[float, float]:
     return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
 
 
-def _section(request: Request, song: Song, chart: Chart) -> tuple[float, float]:
+def _section(request: Request, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:
     whole = whole_song(chart)
     if request.section is None:
         return whole
-    return part_of(request.section, song, chart, request.preset, whole[1])
+    return part_of(request.section, song, chart, preset, whole[1])
 
 
 def find_music(song: Song, chart: Chart) -> tuple[Path | None, tuple[str, ...]]:

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
+from dancetutor_cli.jobs.presets import PresetChoice, choice_of
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.library.feet_files import places_of_feet
@@ -21,9 +21,6 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
-
-if TYPE_CHECKING:
-    from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +52,7 @@ class LintRun:
     request: Request
     _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
     _sources: dict[Path, Path | None] = field(default_factory=dict)
-    _presets: dict[str, Preset] = field(default_factory=dict)
+    _choices: dict[int, PresetChoice] = field(default_factory=dict)
     _baseline: Baseline | None = None
     _found: list[Key] = field(default_factory=list)
 
@@ -74,14 +71,12 @@ class LintRun:
             self._sources[folder] = find_settings_file(folder)
         return self._sources[folder]
 
-    def preset(self, path: Path) -> Preset:
-        """The cost preset for a file; UsageError if there is no such preset."""
-        from dancetutor_cli.play import DEFAULT_PRESET, load_preset
-
-        name = self.request.preset or self.configuration(path).preset or DEFAULT_PRESET
-        if name not in self._presets:
-            self._presets[name] = load_preset(name)
-        return self._presets[name]
+    def presets(self, path: Path) -> PresetChoice:
+        """What is said about the cost presets of a file's charts; UsageError or FileError if one cannot be loaded."""
+        configuration = self.configuration(path)
+        if id(configuration) not in self._choices:  # one object for all files of a source, see `_by_source`
+            self._choices[id(configuration)] = choice_of(self.request.preset, configuration)
+        return self._choices[id(configuration)]
 
     def needs(self, path: Path) -> Iterator[Path]:
         """What else the findings in a file depend on, there or not: what the author said elsewhere, settings, baseline.
@@ -95,8 +90,9 @@ class LintRun:
         with suppress(DancetutorError):
             configuration = self.configuration(path)
             yield from configuration.sources
-            if preset := self.request.preset or configuration.preset:
-                yield Path(preset)
+            yield from (Path(preset) for _, preset in configuration.presets)
+            if self.request.preset:
+                yield Path(self.request.preset)
             baseline = self.request.baseline or configuration.baseline
             if baseline is not None and not self.request.update_baseline:
                 yield baseline
@@ -106,7 +102,7 @@ class LintRun:
         settings = self.configuration(path).settings
         request = self.request
         return Task(
-            path, self.preset(path), request.selection, settings, request.want_rows, data, request.suggest,
+            path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
             request.alternatives, request.want_figures,
         )  # fmt: skip
 

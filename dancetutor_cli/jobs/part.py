@@ -9,6 +9,7 @@ from dancetutor_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.play.preset import Preset
 
 SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
 AROUND = 8  # beats before and after a finding
@@ -23,7 +24,7 @@ def check_part(text: str) -> None:
         check_section(text)
 
 
-def part_of(text: str, song: Song, chart: Chart, preset: str, end: float) -> tuple[float, float]:
+def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> tuple[float, float]:
     """First and last second of a part.
 
     Parameters
@@ -40,16 +41,15 @@ def part_of(text: str, song: Song, chart: Chart, preset: str, end: float) -> tup
     return parse_section(text, chart.timing, end)
 
 
-def _around_finding(song: Song, chart: Chart, preset: str, rule: str, number: int) -> tuple[float, float]:
+def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
     import numpy as np
 
     from dancetutor_cli.jobs.callouts import findings_of
     from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import load_preset
 
-    play, ignores = solve_with_feet(song, chart, load_preset(preset))
+    play, ignores = solve_with_feet(song, chart, preset)
     findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores=ignores))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):

@@ -76,6 +76,7 @@ class ChartResult:
     playable : False if the steps type has no pad; then there are no rows and no cost
     arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
     ambiguous : beat of each row with ties, and "resolved" or "open", see `play.model.Ambiguity`; None likewise
+    preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
     """
 
     index: int
@@ -94,6 +95,8 @@ class ChartResult:
     alternatives: tuple[AlternativeResult, ...] | None = None
     causes: tuple[Cause, ...] | None = None
     ambiguous: tuple[tuple[float, str], ...] | None = None
+    preset: str | None = None
+    mismatch: str | None = None
 
     @property
     def label(self) -> str:

@@ -9,6 +9,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 from typing import Any
 
+from dancetutor_cli.chart import names
+from dancetutor_cli.errors import did_you_mean
+
 FILE_NAME = "dancetutor.yaml"
 _WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
 
@@ -44,7 +47,7 @@ class Condition:
     """When a layer holds; an empty part always does.
 
     paths : shell patterns, relative to the folder of the configuration `root`
-    steps_types, difficulties : lower case
+    steps_types : shell patterns in lower case; difficulties : names of today in lower case
     meters : least and greatest meter
     """
 
@@ -74,7 +77,7 @@ class Condition:
     def holds_for_chart(self, steps_type: str, difficulty: str, meter: int) -> bool:
         """Whether steps type, difficulty and meter fit."""
         return (
-            (not self.steps_types or steps_type.lower() in self.steps_types)
+            (not self.steps_types or any(fnmatchcase(steps_type.lower(), pattern) for pattern in self.steps_types))
             and (not self.difficulties or difficulty.lower() in self.difficulties)
             and (self.meters is None or self.meters[0] <= meter <= self.meters[1])
         )
@@ -88,10 +91,29 @@ def condition_of(when: Any, folder: Path, place: tuple[str | int, ...]) -> Condi
     return Condition(
         root=str(folder.absolute()),
         paths=tuple(texts_of(when, "path")),
-        steps_types=tuple(text.lower() for text in texts_of(when, "steps-type")),
-        difficulties=tuple(text.lower() for text in texts_of(when, "difficulty")),
+        steps_types=tuple(_steps_type(text, (*place, "steps-type")) for text in texts_of(when, "steps-type")),
+        difficulties=tuple(_difficulty(text, (*place, "difficulty")) for text in texts_of(when, "difficulty")),
         meters=_meters(when["meter"], (*place, "meter")) if "meter" in when else None,
     )
+
+
+def _steps_type(text: str, place: tuple[str | int, ...]) -> str:
+    """A steps type or a shell pattern of such, that fits one at least."""
+    pattern = names.steps_type(text)
+    if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
+        near = did_you_mean(pattern, names.COLUMNS)
+        there = ", ".join(sorted({f"{known.partition('-')[0]}-*" for known in names.COLUMNS}))
+        raise SettingError(place, f"'{text}' is no steps type{near}; there are {there}")
+    return pattern
+
+
+def _difficulty(text: str, place: tuple[str | int, ...]) -> str:
+    """A difficulty under today's name; old ones ("Heavy", "Oni") are known as everywhere."""
+    name, known = names.difficulty(text, "", 0, old=True)
+    if not known:
+        near = did_you_mean(text, names.DIFFICULTIES)
+        raise SettingError(place, f"'{text}' is no difficulty{near}; there are {', '.join(names.DIFFICULTIES)}")
+    return name.lower()
 
 
 def _meters(value: Any, place: tuple[str | int, ...]) -> tuple[int, int]:

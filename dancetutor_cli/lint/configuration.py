@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import yaml
 
-from dancetutor_cli.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.errors import DancetutorError, FileError, UsageError, did_you_mean
 from dancetutor_cli.library.settings_file import Condition, SettingError, check_keys, condition_of, texts_of
 from dancetutor_cli.lint.registry import all_rules, matching, named_singly, rule_named
 from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
@@ -31,18 +31,29 @@ _TOP_KEYS = (
     "overrides",
     "feet",
 )
-_OVERRIDE_KEYS = ("when", "select", "ignore", "rules")
+_OVERRIDE_KEYS = ("when", "preset", "select", "ignore", "rules")
 
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Everything a configuration file may say. `sources` : the files it was read from, with what they extend."""
+    """Everything a configuration file may say.
+
+    sources : the files it was read from, with what they extend
+    preset : name or file of the cost preset for all charts, None: nothing is said
+    overridden : (condition, the preset of the charts for which it holds); later ones win, and all of them over `preset`
+    """
 
     settings: Settings
     sources: tuple[Path, ...] = ()
     preset: str | None = None
+    overridden: tuple[tuple[Condition, str], ...] = ()
     fail_on: str | None = None
     baseline: Path | None = None
+
+    @property
+    def presets(self) -> tuple[tuple[Condition, str], ...]:
+        """All that is said about presets; of the conditions that hold for a chart the last one counts."""
+        return self.overridden if self.preset is None else ((Condition(), self.preset), *self.overridden)
 
 
 def load_configuration(source: str | Path | None) -> Configuration:
@@ -58,6 +69,9 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         if not equals:
             raise UsageError(f"--set {text}: write it as KEY=VALUE, for example DT201.severity=error")
         parsed = yaml.safe_load(value)
+        if key == "preset":  # not confined: the user's own word
+            configuration = replace(configuration, preset=str(parsed), overridden=())
+            continue
         rule, dot, option = key.partition(".")
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
@@ -137,12 +151,18 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configur
 def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Configuration:
     check_keys(data, _TOP_KEYS, ())
     settings = base.settings.with_layer(_layer(data, Condition(), ()))
+    preset, overridden = base.preset, base.overridden
+    if data.get("preset") is not None:  # of all charts: what the extended file says about some of them is over
+        preset, overridden = _preset(data["preset"], folder, ("preset",)), ()
     for number, entry in enumerate(_list(data, "overrides")):
         place = ("overrides", number)
         if not isinstance(entry, Mapping):
             raise SettingError(place, f"an override is a mapping of {', '.join(_OVERRIDE_KEYS)}")
         check_keys(entry, _OVERRIDE_KEYS, place)
-        settings = settings.with_layer(_layer(entry, condition_of(entry.get("when"), folder, (*place, "when")), place))
+        when = condition_of(entry.get("when"), folder, (*place, "when"))
+        settings = settings.with_layer(_layer(entry, when, place))
+        if entry.get("preset") is not None:
+            overridden = (*overridden, (when, _preset(entry["preset"], folder, (*place, "preset"))))
     if data.get("feet"):
         _check_feet(data, folder)
     fail_on = data.get("fail-on", base.fail_on)
@@ -152,10 +172,25 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Config
     stream_rows = data.get("stream-rows", settings.stream_rows)
     if not isinstance(stream_rows, int) or stream_rows < 1:
         raise SettingError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
-    preset = data.get("preset", base.preset)
-    if preset is not None and (folder / str(preset)).is_file():
-        preset = str(folder / str(preset))
-    return Configuration(replace(settings, stream_rows=stream_rows), base.sources, preset, fail_on, baseline)
+    settings = replace(settings, stream_rows=stream_rows)
+    return Configuration(settings, base.sources, preset, overridden, fail_on, baseline)
+
+
+def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
+    """A preset's name, or the path of its file, which lies in the folder of the configuration or below it."""
+    from dancetutor_cli.play import preset_names
+
+    name = str(value)
+    if name in preset_names():
+        return name
+    path = folder / name
+    if path.suffix.lower() not in (".yaml", ".yml") and not path.is_file():
+        there = ", ".join(preset_names())
+        near = did_you_mean(name, preset_names())
+        raise SettingError(place, f"there is no preset '{name}'{near}; there are: {there}, or name a .yaml file")
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise SettingError(place, f"'{name}' leads out of the folder of this file; put the preset beside it")
+    return str(path)
 
 
 def _check_feet(data: Mapping[str, Any], folder: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from dancetutor_cli.chart import parse
@@ -33,7 +33,11 @@ class Plan:
 
 
 def solve_charts(
-    song: Song, charts: Sequence[Chart], preset: Preset, notes: list[str], problems: list[Lack]
+    song: Song,
+    charts: Sequence[Chart],
+    preset_of: Callable[[Chart], Preset],
+    notes: list[str],
+    problems: list[Lack],
 ) -> Iterator[ChartFeet]:
     """The feet of each chart that has a pad; contradictions in what people said about them go to `problems`."""
     from dancetutor_cli.play import solve_chart
@@ -42,7 +46,7 @@ def solve_charts(
     for chart in charts:
         overrides, _, wrong = overrides_for(song, chart)
         problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
-        play = solve_chart(chart, preset, overrides)
+        play = solve_chart(chart, preset_of(chart), overrides)
         if play is None:
             padless.add(chart.steps_type)
             continue

@@ -12,19 +12,19 @@ if TYPE_CHECKING:
     from dancetutor_cli.play.causes import Blame, blame
     from dancetutor_cli.play.kbest import Alternative, alternatives
     from dancetutor_cli.play.model import Ambiguity, Limb, Part, Play, Rows, StepKind
-    from dancetutor_cli.play.preset import DEFAULT_PRESET, Preset, load_preset, preset_names
+    from dancetutor_cli.play.preset import DEFAULT_PRESET, Preset, default_preset, load_preset, preset_names
     from dancetutor_cli.play.rows import prepare
     from dancetutor_cli.play.solver import solve, solve_chart
 
 __all__ = [
     "DEFAULT_PRESET", "Alternative", "Ambiguity", "Blame", "Limb", "Part", "Play", "Preset", "Rows", "StepKind",
-    "alternatives", "blame", "load_preset", "prepare", "preset_names", "solve", "solve_chart",
+    "alternatives", "blame", "default_preset", "load_preset", "prepare", "preset_names", "solve", "solve_chart",
 ]  # fmt: skip
 _MODULES = {
     "kbest": ("Alternative", "alternatives"),
     "causes": ("Blame", "blame"),
     "model": ("Ambiguity", "Limb", "Part", "Play", "Rows", "StepKind"),
-    "preset": ("DEFAULT_PRESET", "Preset", "load_preset", "preset_names"),
+    "preset": ("DEFAULT_PRESET", "Preset", "default_preset", "load_preset", "preset_names"),
     "rows": ("prepare",),
     "solver": ("solve", "solve_chart"),
 }

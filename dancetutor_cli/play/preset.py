@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.play.vocabulary import MODELS, Model
 from dancetutor_cli.resources import config_path
 
 DEFAULT_PRESET = "itg"
+_DEFAULTS = {"pump": "pump"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000
-_KEYS = ("extends", "model", "roll-window", "switches", "weights", "times")
+_KEYS = ("extends", "model", "pads", "roll-window", "switches", "weights", "times")
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +28,7 @@ class Preset:
     model : which rules it is about, a key of `vocabulary.MODELS`
     roll_window : seconds a roll may go unpressed
     switches, weights, times : (name, value) in the order of the model; costs are whole numbers, times milliseconds
+    pads : for which it was made: steps types ("pump-double") or their first words ("pump"); empty: for any
     """
 
     name: str
@@ -34,6 +37,12 @@ class Preset:
     switches: tuple[tuple[str, bool], ...]
     weights: tuple[tuple[str, int], ...]
     times: tuple[tuple[str, int], ...] = ()
+    pads: tuple[str, ...] = ()
+
+    def is_for(self, steps_type: str) -> bool:
+        """Whether it was made for the pads of a steps type; it works on all of them."""
+        name = steps_type.lower()
+        return not self.pads or name in self.pads or name.partition("-")[0] in self.pads
 
     def switch(self, name: str) -> bool:
         """A switch by name."""
@@ -52,7 +61,7 @@ class Preset:
             if unknown := set(new) - {name for name, _ in old}:
                 raise KeyError(", ".join(sorted(unknown)))
         changed = [tuple((name, new.get(name, value)) for name, value in old) for old, new in both]
-        return Preset(self.name, self.model, self.roll_window, changed[1], changed[0], self.times)  # type: ignore[arg-type]
+        return replace(self, switches=changed[1], weights=changed[0])  # type: ignore[arg-type]
 
 
 def preset_names() -> list[str]:
@@ -60,18 +69,25 @@ def preset_names() -> list[str]:
     return sorted(path.stem for path in config_path("presets").glob("*.yaml"))
 
 
-def load_preset(name_or_path: str | Path) -> Preset:
+def default_preset(steps_type: str) -> str:
+    """Name of the preset for the charts of a steps type when nobody names another one."""
+    return _DEFAULTS.get(steps_type.lower().partition("-")[0], DEFAULT_PRESET)
+
+
+def load_preset(name_or_path: str | Path, *, confined: bool = False) -> Preset:
     """A preset by name, or from a YAML file of one's own.
+
+    confined : a file may only extend what comes with the program or lies in its own folder: it may be a stranger's
 
     A file may say `extends: NAME` and then only what differs. Raises UsageError for an unknown preset, key or value,
     with file, line and the names that exist; FileError if the file cannot be read.
     """
     text = str(name_or_path)
     if text in preset_names():
-        return _load(config_path(f"presets/{text}.yaml"), ())
+        return _load(config_path(f"presets/{text}.yaml"), (), confined)
     path = Path(name_or_path)
     if path.suffix.lower() in (".yaml", ".yml") or path.is_file():
-        return _load(path, ())
+        return _load(path, (), confined)
     near = did_you_mean(text, preset_names())
     raise UsageError(f"there is no preset '{text}'{near}; there are: {', '.join(preset_names())}, or give a .yaml file")
 
@@ -81,10 +97,10 @@ def _read(path: Path) -> MarkedYaml:
     return read(path)
 
 
-def _load(path: Path, seen: tuple[Path, ...]) -> Preset:
+def _load(path: Path, seen: tuple[Path, ...], confined: bool) -> Preset:
     source = _read(path) if path.is_relative_to(config_path("presets")) else read(path)
     _only(source, (), _KEYS)
-    base = _base(source, (*seen, path.absolute()))
+    base = _base(source, (*seen, path.absolute()), confined)
     model_name = str(source.data.get("model", base.model if base else ""))
     if model_name not in MODELS:
         raise _wrong(source, ("model",), f"'model' must be one of {', '.join(MODELS)}, or extend a preset")
@@ -98,10 +114,11 @@ def _load(path: Path, seen: tuple[Path, ...]) -> Preset:
         switches=_values(source, "switches", model.switches, dict(base.switches) if base else {}),
         weights=_values(source, "weights", model.weights, dict(base.weights) if base else {}),
         times=_values(source, "times", model.times, dict(base.times) if base else {}),
+        pads=_pads(source, base),
     )
 
 
-def _base(source: MarkedYaml, seen: tuple[Path, ...]) -> Preset | None:
+def _base(source: MarkedYaml, seen: tuple[Path, ...], confined: bool) -> Preset | None:
     name = source.data.get("extends")
     if name is None:
         return None
@@ -109,11 +126,13 @@ def _base(source: MarkedYaml, seen: tuple[Path, ...]) -> Preset | None:
     path = config_path(f"presets/{name}.yaml") if name in preset_names() else beside
     if path.absolute() in seen:
         raise _wrong(source, ("extends",), f"'{name}' extends itself")
+    if confined and path == beside and not path.resolve().is_relative_to(source.path.parent.resolve()):
+        raise _wrong(source, ("extends",), f"'{name}' leads out of the folder of this file; put it beside it")
     if not path.is_file():
         raise _wrong(
             source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"
         )
-    return _load(path, seen)
+    return _load(path, seen, confined)
 
 
 def _values(
@@ -134,6 +153,20 @@ def _values(
                 source, (group, name), f"'{name}' must be a whole number from 0 to {MAX_WEIGHT}, not {value!r}"
             )
     return tuple((name, data.get(name, base.get(name))) for name in known)
+
+
+def _pads(source: MarkedYaml, base: Preset | None) -> tuple[str, ...]:
+    value = source.data.get("pads", list(base.pads) if base else [])
+    words = sorted({name.partition("-")[0] for name in COLUMNS})
+    if not isinstance(value, list):
+        raise _wrong(source, ("pads",), "'pads' must be a list of steps types or their first words, as [dance]")
+    for number, name in enumerate(value):
+        if name not in words and name not in COLUMNS:
+            near = did_you_mean(str(name), (*words, *COLUMNS))
+            raise _wrong(
+                source, ("pads", number), f"'{name}' is no steps type{near}; their first words are: {', '.join(words)}"
+            )
+    return tuple(value)
 
 
 def _roll_window(source: MarkedYaml, base: Preset | None) -> float:
@@ -161,4 +194,4 @@ def _wrong(source: MarkedYaml, keys: tuple[str | int, ...], message: str) -> Usa
     return UsageError(str(source.error(keys, message)))
 
 
-__all__ = ["DEFAULT_PRESET", "Model", "Preset", "load_preset", "preset_names"]
+__all__ = ["DEFAULT_PRESET", "Model", "Preset", "default_preset", "load_preset", "preset_names"]

@@ -68,4 +68,5 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         **{name: figures.tech.get(name, 0) if figures else 0 for name in TECH_COUNTS},
         **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
         "findings": len(chart.findings) if chart else 0,
+        "preset": safe(chart.preset or "") if chart else "",
     }

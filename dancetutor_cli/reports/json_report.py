@@ -15,27 +15,36 @@ SCHEMA = 1
 
 
 class JsonReport:
-    """Writes one JSON object, UTF-8; every file is a line of its own inside `files`."""
+    """Writes one JSON object, UTF-8; every file is a line of its own inside `files`.
+
+    preset : what the head names where the first file has no chart with a preset
+    """
 
     def __init__(self, stream: IO[bytes], preset: str) -> None:
         self._stream = stream
         self._preset = preset
-        self._separator = ""
+        self._files = 0
 
     def begin(self) -> None:
-        """Open the object."""
-        head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": self._preset}
-        self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
+        """The head waits for the first file, whose preset it names."""
 
     def add(self, result: FileResult) -> None:
         """Write one file."""
-        self._write(f"{self._separator}\n {json.dumps(file_object(result), ensure_ascii=False)}")
-        self._separator = ","
+        if not self._files:
+            self._head(next((chart.preset for chart in result.charts if chart.preset), self._preset))
+        self._write(f"{',' if self._files else ''}\n {json.dumps(file_object(result), ensure_ascii=False)}")
+        self._files += 1
 
     def end(self, tally: Tally) -> None:
         """Close the object."""
+        if not self._files:
+            self._head(self._preset)
         self._write("\n]}\n")
         self._stream.flush()
+
+    def _head(self, preset: str) -> None:
+        head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": preset}
+        self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
 
     def _write(self, text: str) -> None:
         self._stream.write(text.encode("utf-8", "replace"))
@@ -63,6 +72,7 @@ def chart_object(chart: ChartResult) -> dict[str, Any]:
         "cost": chart.cost,
         "rows": list(chart.rows or ()),
         "findings": [finding_object(finding) for finding in chart.findings],
+        "preset": chart.preset,
         "doublesteps": [asdict(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),

@@ -24,7 +24,9 @@ class JsonLinesReport:
         """Write the findings of one file."""
         for entry in entries(result):
             chart = entry.chart
-            named = {name: getattr(chart, name, None) for name in ("index", "steps_type", "difficulty", "meter")}
+            named = {
+                name: getattr(chart, name, None) for name in ("index", "steps_type", "difficulty", "meter", "preset")
+            }
             line = {"path": entry.path, **named, **finding_object(entry.finding), "fingerprint": entry.fingerprint}
             self._stream.write(json.dumps(line, ensure_ascii=False).encode("utf-8", "replace").decode("utf-8") + "\n")
 

@@ -56,7 +56,8 @@ class TextReport:
 
     def _chart(self, result: FileResult, chart: ChartResult) -> None:
         name = f"  {safe(chart.description)}" if safe(chart.description) else ""
-        self._line("\n", self._paint(safe(chart.label), "bold"), name)
+        preset = f"  {safe(chart.mismatch or f'preset {chart.preset}')}" if chart.preset else ""
+        self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset, "dim"))
         if chart.playable:
             self._stream.write(chart_table(chart, self._console))
             self._alternatives(chart)

@@ -90,7 +90,7 @@ def test_what_is_wrong_is_told_with_its_line(song: Song, text: str, line: int, w
 def findings(song: Song) -> list[tuple[str, float | None]]:
     run = LintRun(Request(select=["DT2", "DT111"]))
     task = run.task(song.path)
-    result = analyze_file(Task(song.path, task.preset, task.selection, task.settings))
+    result = analyze_file(Task(song.path, task.presets, task.selection, task.settings))
     return [(finding.rule, finding.beat) for finding, chart in result.all_findings() if chart and chart.index == 0]
 
 

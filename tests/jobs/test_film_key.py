@@ -75,7 +75,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "selection": [Selection(index=1)],
         "look": [replace(look, **{name: value}) for name, value in looks.items()],
         "fps": [24],
-        "preset": ["itg", str(folder / "mine.yaml")],
+        "preset": ["thesis", str(folder / "mine.yaml")],
         "section": ["0:1"],
         "sync": [0.009],
         "mute": [True],

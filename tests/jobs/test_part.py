@@ -14,6 +14,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import parse_rates
 from dancetutor_cli.jobs.part import FASTEST, SLOWEST, check_part, part_of
+from dancetutor_cli.play import load_preset
 from dancetutor_cli.resources import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
@@ -27,7 +28,7 @@ def song() -> charts.Song:
 
 def part(song: charts.Song, text: str) -> tuple[float, float]:
     check_part(text)
-    return part_of(text, song, song.charts[3], "itg", ENDS)
+    return part_of(text, song, song.charts[3], load_preset("itg"), ENDS)
 
 
 def test_every_form_that_help_names_is_read(song: charts.Song) -> None:

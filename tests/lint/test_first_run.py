@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.play import compiled, load_preset
 
 
@@ -43,10 +44,10 @@ def test_kernels_older_than_the_program_count_for_nothing(cache: Path) -> None:
 def test_only_a_terminal_is_told(
     cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tell_of_compiling(load_preset("itg"))
+    tell_of_compiling(PresetChoice())
     assert capsys.readouterr().err == ""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    tell_of_compiling(load_preset("itg"))
+    tell_of_compiling(PresetChoice())
     assert capsys.readouterr().err.startswith("compiling the solver's kernels (once;")
     shutil.rmtree(cache)
 

@@ -16,6 +16,7 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet import Overrides
 from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.jobs.result import TECH_COUNTS
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.jobs.tech_counts import tech_counts
@@ -117,13 +118,12 @@ def nps_and_breakdown(song_path: Path, index: int) -> tuple[float, str]:
 
 
 def test_real_charts_are_counted_the_same_from_their_json(corpus: Path) -> None:
-    settings, preset = load_configuration(None).settings, load_preset("itg")
+    settings = load_configuration(None).settings
     sums: Counter[str] = Counter()
     breakdowns = 0
     for path in sorted(corpus.rglob("*.sm"))[::9]:
-        result = analyze_file(
-            Task(path, preset, Selection("dance-single,dance-double"), settings, want_rows=True, want_figures=True)
-        )
+        which = Selection("dance-single,dance-double")
+        result = analyze_file(Task(path, PresetChoice(), which, settings, want_rows=True, want_figures=True))
         for chart in result.charts:
             assert chart.rows is not None
             expected = counted(chart.rows, chart.steps_type)
@@ -202,9 +202,7 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
     path.write_text(
         "#TITLE:T;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n;\n"
     )
-    result = analyze_file(
-        Task(path, load_preset("itg"), Selection(), load_configuration(None).settings, want_figures=True)
-    )
+    result = analyze_file(Task(path, PresetChoice(), Selection(), load_configuration(None).settings, want_figures=True))
     stream = io.StringIO()
     report = CsvReport(stream, io.StringIO())
     report.begin()

@@ -12,6 +12,7 @@ import pytest
 from dancetutor_cli import chart as reader
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_selection
 from dancetutor_cli.lint.registry import all_rules
@@ -55,7 +56,7 @@ def test_every_warning_of_the_odd_files_becomes_a_finding(hostile: Path) -> None
         except FileError:
             continue
         warned = {(w.code, w.line) for w in song.warnings} | {(w.code, w.line) for c in song.charts for w in c.warnings}
-        result = analyze_file(Task(path, preset, Selection(), settings))
+        result = analyze_file(Task(path, PresetChoice(preset), Selection(), settings))
         told = [(finding.rule, finding.line) for finding, _ in result.all_findings()]
         for code, line in warned:
             rules = [rule.code for rule in all_rules().values() if code in rule.codes]

@@ -13,6 +13,8 @@ from dancetutor_cli.play.rows import roll_gap
 from dancetutor_cli.play.vocabulary import MODELS
 from dancetutor_cli.resources import config_path
 
+NAMES = ["ddr", "itg", "pump", "stamina", "thesis"]
+
 
 def written(folder: Path, text: str) -> Path:
     path = folder / "mine.yaml"
@@ -21,7 +23,7 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_presets_that_come_along() -> None:
-    assert play.preset_names() == ["ddr", "itg", "stamina", "thesis"]
+    assert play.preset_names() == NAMES
     assert play.DEFAULT_PRESET == "itg"
     for name in play.preset_names():
         preset = play.load_preset(name)
@@ -65,11 +67,13 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
         ("extends: thesis\nswitches:\n  allow-doublestep: 1\n", 3, "true or false"),
         ("extends: thesis\nroll-window: 0\n", 2, "seconds"),
         ("extends: itg\nmodel: thesis\n", 2, "'itg'"),
-        ("extends: no-such\n", 1, "there are: ddr, itg, stamina, thesis"),
+        ("extends: no-such\n", 1, f"there are: {', '.join(NAMES)}"),
         ("extends: mine.yaml\n", 1, "extends itself"),
         ("model: thesis\nroll-window: 0.35\n", None, "'switches' lacks 'allow-doublestep'"),
         ("roll-window: 0.35\n", None, "'model' must be one of thesis, itg"),
         ("extends: thesis\nweights: 7\n", 2, "mapping"),
+        ("extends: itg\npads: dance\n", 2, "list of steps types"),
+        ("extends: itg\npads:\n - dance\n - danse\n", 4, "'danse' is no steps type (did you mean dance?); their firs"),
     ],
 )
 def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, line: int | None, words: str) -> None:
@@ -81,8 +85,34 @@ def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, li
     assert "\n" not in str(caught.value)
 
 
+def test_a_preset_knows_for_which_pads_it_was_made(tmp_path: Path) -> None:
+    made = {name: play.load_preset(name).pads for name in NAMES}
+    assert made == {"pump": ("pump",), **dict.fromkeys(("ddr", "itg", "stamina", "thesis"), ("dance",))}
+    mine = play.load_preset(written(tmp_path, "extends: itg\npads: [pump-double, dance]\n"))
+    assert [mine.is_for(kind) for kind in ("dance-solo", "pump-double", "pump-single")] == [True, True, False]
+    assert play.load_preset(written(tmp_path, "extends: pump\n")).pads == ("pump",)
+    assert play.load_preset(written(tmp_path, "extends: itg\npads: []\n")).is_for("kb7-single")
+
+
+def test_the_default_goes_by_the_steps_type() -> None:
+    kinds = ("dance-single", "dance-solo", "pump-single", "PUMP-halfdouble", "kb7-single")
+    assert [play.default_preset(kind) for kind in kinds] == ["itg", "itg", "pump", "pump", "itg"]
+
+
+def test_a_strangers_preset_extends_nothing_outside_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "base.yaml").write_text("extends: itg\nweights: {spin: 7}\n")
+    (tmp_path / "inside").mkdir()
+    path = written(tmp_path / "inside", "extends: ../base.yaml\n")
+    assert play.load_preset(path).weight("spin") == 7
+    with pytest.raises(UsageError, match="leads out of the folder"):
+        play.load_preset(path, confined=True)
+    (tmp_path / "inside" / "link.yaml").symlink_to(tmp_path / "base.yaml")
+    with pytest.raises(UsageError, match="leads out of the folder"):
+        play.load_preset(written(tmp_path / "inside", "extends: link.yaml\n"), confined=True)
+
+
 def test_an_unknown_preset_names_those_that_exist(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="ddr, itg, stamina, thesis"):
+    with pytest.raises(UsageError, match=", ".join(NAMES)):
         play.load_preset("gpt")
     with pytest.raises(DancetutorError, match="cannot be read"):
         play.load_preset(tmp_path / "none.yaml")
