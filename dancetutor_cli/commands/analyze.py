@@ -175,7 +175,8 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     tasks = [run.task(path, data) for path, data in sources]
     report = open_report(options["format_name"], next(tasks[0].presets.candidates()).name)
     report.begin()
-    cache = None if options["no_cache"] else ResultCache(default_folder())
+    folder = None if options["no_cache"] else default_folder()
+    cache = None if folder is None else ResultCache(folder)
     for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.presets)):
         result = run.without_known(raw)
         tally.add(result)

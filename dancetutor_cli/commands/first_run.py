@@ -1,4 +1,4 @@
-"""A word about the first run, which is silent for up to a minute while numba compiles."""
+"""A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute."""
 
 from __future__ import annotations
 
@@ -10,9 +10,20 @@ import click
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.presets import PresetChoice
 
+_NOT_KEPT = "nothing compiled is kept, and each run compiles again; set NUMBA_CACHE_DIR to a folder that can be written"
+
 
 def tell_of_compiling(choice: PresetChoice) -> None:
-    """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders."""
+    """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
+
+    That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
+    """
+    from dancetutor_cli.kernel_folder import kernel_folder
+
+    folder = kernel_folder()
+    if folder.fault:
+        where = f"compiled kernels are kept in {folder.root or 'the installation'}" if folder.kept else _NOT_KEPT
+        click.echo(f"note: {folder.fault}: {where}", err=True)
     if not sys.stderr.isatty():
         return
     from dancetutor_cli.play.compiled import is_compiled

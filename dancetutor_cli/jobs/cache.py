@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ from pathlib import Path
 import dancetutor_cli
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.result import FileResult
+from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
@@ -92,17 +92,12 @@ class ResultCache:
         return self._folder / key[:2] / key[2:]
 
 
-def default_folder() -> Path:
-    """Where this system keeps caches; DANCETUTOR_CACHE names another folder."""
+def default_folder() -> Path | None:
+    """Where this system keeps caches; DANCETUTOR_CACHE names another folder. None: nowhere."""
     if named := os.environ.get("DANCETUTOR_CACHE"):
         return Path(named) / "analyze"
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "dancetutor" / "analyze"
+    folder = users_folder("dancetutor")
+    return None if folder is None else folder / "analyze"
 
 
 @cache

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 from dancetutor_cli.errors import DancetutorError
 
 GIGABYTE = 1e9
+_NOTHING = "nothing compiled yet; the first render takes a minute longer"
 _ROOM = 2 * GIGABYTE  # a long song at best quality takes less
 
 
@@ -108,23 +108,18 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
+    from dancetutor_cli.kernel_folder import VARIABLE, kernel_folder
     from dancetutor_cli.resources import PACKAGE
 
-    files = list(PACKAGE.rglob("*.nbi"))
-    folder = PACKAGE
-    try:
-        with tempfile.TemporaryFile(dir=folder):
-            writable = True
-    except OSError:
-        writable = False
-    if files:
-        return Check("numba cache", "ok", f"{len(files)} kernels compiled")
-    mend = (
-        "dancetutor warmup"
-        if writable
-        else "set NUMBA_CACHE_DIR to a folder that can be written, then dancetutor warmup"
-    )
-    return Check("numba cache", "without", "nothing compiled yet; the first render takes a minute longer", mend)
+    folder = kernel_folder()
+    roots = {PACKAGE, folder.root or PACKAGE}
+    count = sum(1 for root in roots for _ in root.rglob("*.nbi"))
+    where = f"in {folder.root or PACKAGE}" if folder.kept else "and none can be kept"
+    message = (f"{count} kernels compiled" if count else _NOTHING) + f", {where}"
+    if folder.fault:
+        mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
+        return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
+    return Check("numba cache", "ok" if count else "without", message, "" if count else "dancetutor warmup")
 
 
 def _font() -> Check:

@@ -7,8 +7,9 @@ the song.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
 
 Array = NDArray[np.float64]
 REACH = 4  # nodes that a term touches at most, if nothing else is said: third differences

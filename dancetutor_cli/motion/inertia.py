@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
 
 Array = NDArray[np.float64]
 MOVE_FREQUENCY = 2.0  # per second: moves are about so fast, and the lag is that at this frequency

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from dancetutor_cli.kernels import njit
 
 Vec = tuple[float, float, float]
 Quat = tuple[float, float, float, float]

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.motion.banded import BandedLeastSquares, _factor, _solve_one
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.motion.limbs import Vec, add, dot, length, qrot, scale, sub
 from dancetutor_cli.motion.paths import cubic
 from dancetutor_cli.motion.settings import HairSettings

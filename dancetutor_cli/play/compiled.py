@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
+from dancetutor_cli.kernel_folder import kernel_folder
 from dancetutor_cli.play.preset import Preset
 
 _HERE = Path(__file__).parent
@@ -13,16 +13,17 @@ _HERE = Path(__file__).parent
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known.
 
-    numba keeps an index `MODULE.KERNEL-LINE.pyXY.nbi` for each kernel, beside the module or below NUMBA_CACHE_DIR, and
-    starts anew when the module is newer.
+    There is an index `MODULE.KERNEL-LINE.pyXY.nbi` for each kernel, which counts for nothing when the module is newer.
     """
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    folder = Path(given) if given else _HERE / "__pycache__"
-    if not given and not os.access(_HERE, os.W_OK):
-        return True  # numba looks for a place of its own
+    written = kernel_folder()
+    folders = {written.of_module(_HERE / "kernel.py"), _HERE / "__pycache__"}
     try:
-        return all(
-            any(index.stat().st_mtime >= (_HERE / f"{module}.py").stat().st_mtime for index in folder.rglob(pattern))
+        return written.kept and all(
+            any(
+                index.stat().st_mtime >= (_HERE / f"{module}.py").stat().st_mtime
+                for folder in folders
+                for index in folder.glob(pattern)
+            )
             for module, pattern in (("kernel", "kernel.*.nbi"), ("explore", f"explore.explore_{preset.model}-*.nbi"))
         )
     except OSError:

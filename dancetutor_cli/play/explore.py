@@ -12,8 +12,8 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.itg_moves import expand_itg

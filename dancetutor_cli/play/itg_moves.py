@@ -8,8 +8,8 @@ Large functions are inlined by numba, because it compiles each function again wi
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.play.itg_costs import (
     EVENT_HAND,
     EVENT_HOLDSWITCH,

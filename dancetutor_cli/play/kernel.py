@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.explore import source_stamp

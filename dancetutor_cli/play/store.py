@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
 
 STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN = range(6)  # places in `counts`
 NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, SIDE, pack, turn, unpack
 from dancetutor_cli.play.tables import (
     ACTION,

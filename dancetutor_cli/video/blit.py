@@ -10,8 +10,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
 
 Frame = NDArray[np.uint8]
 Sprite = NDArray[np.uint8]

@@ -8,8 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import int32, njit, uint32
+from numba import int32, uint32
 from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
 
 # Weights of red, green and blue in 1/65536: BT.709, luma 16..235 and chroma 16..240 of 255.
 _KR, _KB = 0.2126, 0.0722

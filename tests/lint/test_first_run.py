@@ -10,14 +10,22 @@ import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.presets import PresetChoice
+from dancetutor_cli.kernel_folder import kernel_folder
 from dancetutor_cli.play import compiled, load_preset
 
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    (tmp_path / "play_0123").mkdir()
-    return tmp_path / "play_0123"
+    """Where kernels of modules that came without any are kept."""
+    here = tmp_path / "play"
+    here.mkdir()
+    for path in Path(compiled.__file__).parent.glob("*.py"):
+        shutil.copy2(path, here)
+    monkeypatch.setattr(compiled, "_HERE", here)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    folder = kernel_folder().of_module(here / "kernel.py")
+    folder.mkdir()
+    return folder
 
 
 def fill(cache: Path, *names: str, seconds: float) -> None:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.camera import Camera
 from dancetutor_cli.video.cpu.surfaces import palette, surface
 from dancetutor_cli.video.look import Look

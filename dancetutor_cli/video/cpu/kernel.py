@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-import numba
+from dancetutor_cli.kernels import njit
 
 F = TypeVar("F")
-_njit: Any = numba.njit  # what it says of its options has not the one of its own that is used here
+_njit: Any = njit  # what it says of its options has not the one of its own that is used here
 
 
 def kernel(function: F) -> F:
-    """`numba.njit`, cached, without reference counts where this version of numba can leave them out."""
+    """A kept kernel, without reference counts where this version of numba can leave them out."""
     try:
         compiled: F = _njit(cache=True, _nrt=False)(function)
     except (KeyError, TypeError):  # the option may go

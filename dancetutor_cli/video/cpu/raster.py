@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.cpu.kernel import kernel
 
 SNAP = 16.0

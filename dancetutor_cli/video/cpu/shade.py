@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.cpu.kernel import kernel
 from dancetutor_cli.video.look import ToonLook
 from dancetutor_cli.video.textures import LEVELS

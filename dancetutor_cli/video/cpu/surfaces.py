@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.look import RGB, StageLook
 from dancetutor_cli.video.stage import PANEL, Stage, pad_extent
 

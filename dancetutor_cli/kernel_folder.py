@@ -1,0 +1,101 @@
+"""Where compiled kernels are kept: found out without importing numba.
+
+Beside the modules where that can be written, else in the user's cache, else in a temporary folder of the user's own:
+compiling takes the better part of a minute, and an installation may be read-only and its user without a home.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import stat
+import sys
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from dancetutor_cli.resources import PACKAGE
+
+VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choice
+
+
+@dataclass(frozen=True, slots=True)
+class KernelFolder:
+    """Where new kernels go. root : a folder, or None: beside the modules, in their `__pycache__`
+
+    kept : False if nothing can be written anywhere, so that each run compiles again
+    fault : why the usual place is not used, in words for people; "" if it is
+    """
+
+    root: Path | None
+    kept: bool = True
+    fault: str = ""
+
+    def of_module(self, source: Path) -> Path:
+        """The folder for the kernels of a module's file; below a root the folder that numba gives it."""
+        if self.root is None:
+            return source.parent / "__pycache__"
+        digest = hashlib.sha1(str(source.parent).encode("utf-8", "surrogateescape"), usedforsecurity=False)
+        return self.root / f"{source.parent.name}_{digest.hexdigest()}"
+
+
+def kernel_folder() -> KernelFolder:
+    """Where this process keeps its kernels; looked for once, as long as `NUMBA_CACHE_DIR` stays what it is."""
+    return _kernel_folder(os.environ.get(VARIABLE))
+
+
+@cache
+def _kernel_folder(named: str | None) -> KernelFolder:
+    users = users_folder("dancetutor")
+    places = [Path(named) if named else None, PACKAGE / "__pycache__", users and users / "kernels"]
+    for place in places:
+        if place is not None and _usable(place):
+            fault = f"{named} ({VARIABLE}) cannot be written" if named and place != places[0] else ""
+            return KernelFolder(None if place == places[1] else place, fault=fault)
+    refused = [f"{named} ({VARIABLE})"] if named else []
+    refused += [f"the installation ({PACKAGE})", f"the user's cache ({places[2] or 'no home folder'})"]
+    temporary = _temporary()
+    return KernelFolder(temporary, temporary is not None, f"{' and '.join(refused)} cannot be written")
+
+
+def users_folder(name: str) -> Path | None:
+    """Where this system keeps a user's caches; None for a user without a home, as in a container."""
+    try:
+        if sys.platform == "win32":
+            return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / name
+        if sys.platform == "darwin":
+            return Path.home() / "Library" / "Caches" / name
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / name
+    except RuntimeError:
+        return None
+
+
+def _usable(folder: Path) -> bool:
+    """Whether files can be put there; makes the folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def _temporary() -> Path | None:
+    """A folder for temporary files that only this user can write: the machine code of others must not be run."""
+    owner = os.getuid() if hasattr(os, "getuid") else "user"
+    try:
+        folder = Path(tempfile.gettempdir()) / f"dancetutor-kernels-{owner}"
+        with suppress(FileExistsError):
+            folder.mkdir(mode=0o700)
+        return folder if _is_ours(folder) and _usable(folder) else None
+    except OSError:
+        return None
+
+
+def _is_ours(folder: Path) -> bool:
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode):
+        return False
+    return not hasattr(os, "getuid") or (status.st_uid == os.getuid() and not status.st_mode & 0o077)

@@ -1,0 +1,115 @@
+"""How kernels are compiled, and their machine code kept: `njit` of this module in place of numba's.
+
+numba gives up where it finds no folder that it can write, and where a file that it has written is cut short. Here both
+only mean that a kernel is compiled again: what is kept has a checksum, and a folder that can only be read is read.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numba
+from numba.core import caching as _caching
+
+from dancetutor_cli.kernel_folder import kernel_folder
+
+caching: Any = _caching  # has types in some versions only
+_DIGEST = 32  # bytes of SHA-256
+_plain: Any = numba.njit  # what it says of its options has not all that are used here
+
+
+def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
+    """`numba.njit`; with `cache=True` the kernel is kept as this module's first lines say."""
+    if function is None:
+        return lambda later: _njit(later, **options)
+    kept = options.pop("cache", False)
+    compiled = _plain(**options)(function)
+    if kept and kernel_folder().kept:
+        compiled._cache = _KernelCache(function)
+    return compiled
+
+
+if TYPE_CHECKING:
+    from numba import njit as njit  # a kernel has the types that it says, as with numba's own
+else:
+    njit = _njit
+
+
+class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """The index and the data of one kernel, each behind its checksum; what does not fit it is not there."""
+
+    def _load_index(self) -> dict[Any, str]:
+        found = _checked(Path(self._index_path))
+        if found is None or found[0] != (self._version, self._source_stamp):
+            return {}
+        overloads: dict[Any, str] = found[1]
+        return overloads
+
+    def _save_index(self, overloads: dict[Any, str]) -> None:
+        self._write(self._index_path, ((self._version, self._source_stamp), overloads))
+
+    def _load_data(self, name: str) -> Any:
+        return _checked(Path(self._data_path(name)))
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._write(self._data_path(name), data)
+
+    def _write(self, path: str, content: Any) -> None:
+        data = self._dump(content)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(data).digest() + data)
+
+
+def _checked(path: Path) -> Any:
+    """What a file of ours holds; None if it is not there, or not what was written."""
+    try:
+        whole = path.read_bytes()
+    except OSError:
+        return None
+    data = whole[_DIGEST:]
+    return pickle.loads(data) if hashlib.sha256(data).digest() == whole[:_DIGEST] else None
+
+
+class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
+    """Puts the kernels of a module where `kernel_folder` says."""
+
+    def __init__(self, function: Any, source: str) -> None:
+        super().__init__(function, source)
+        self._cache_path = str(kernel_folder().of_module(Path(source)))
+
+
+class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (_Locator,)
+
+
+class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
+    """The kept kernels of one function: in the folder that is written, or as they came with the installation."""
+
+    _impl_class = _Implementation
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        stamp, base = self._impl.locator.get_source_stamp(), self._impl.filename_base
+        beside = str(Path(function.__code__.co_filename).parent / "__pycache__")
+        self._cache_file = _File(self._cache_path, base, stamp)
+        self._installed = None if beside == self._cache_path else _File(beside, base, stamp)
+
+    def _load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            found = super()._load_overload(sig, target_context)
+            if found is None and self._installed is not None:
+                data = self._installed.load(self._index_key(sig, target_context.codegen()))
+                found = None if data is None else self._impl.rebuild(target_context, data)
+        except Exception:  # whatever a file of another version of numba or of the processor raises
+            return None
+        return found
+
+    def _save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super()._save_overload(sig, data)
+        except OSError:  # a full disk: the kernel is there, only not kept
+            return

@@ -1,0 +1,145 @@
+"""Kernels are kept where there is room, and a kept file that is damaged only means that they are compiled again."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dancetutor_cli import kernel_folder
+from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.jobs.doctor import _cache
+from dancetutor_cli.jobs.presets import PresetChoice
+
+MODULE = """
+from dancetutor_cli.kernels import njit
+
+@njit(cache=True)
+def double(x):
+    return 2 * x
+"""
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Ask anew where kernels go, now and after the test."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    kernel_folder._kernel_folder.cache_clear()
+    yield
+    kernel_folder._kernel_folder.cache_clear()
+
+
+@pytest.fixture
+def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An installation and a home in which nothing can be written, by root neither; the folder for temporary files."""
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(kernel_folder, "PACKAGE", tmp_path / "file" / "package")
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
+        monkeypatch.setenv(name, str(tmp_path / "file" / "home"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
+    (tmp_path / "tmp").mkdir()
+    return tmp_path / "tmp"
+
+
+def loaded(path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location("some_kernels", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_read_only_installation_and_home_leave_a_temporary_folder(
+    nowhere: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = kernel_folder.kernel_folder()
+    assert folder.kept and folder.root is not None and folder.root.parent == nowhere
+    if os.name != "nt":
+        assert folder.root.stat().st_mode & 0o777 == 0o700
+    tell_of_compiling(PresetChoice())
+    (line,) = capsys.readouterr().err.splitlines()
+    assert str(folder.root) in line and "cannot be written" in line
+    check = _cache()
+    assert check.state == "without" and "cannot be written" in check.message and "NUMBA_CACHE_DIR" in check.mend
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the temporary folder of Windows is the user's own")
+def test_a_temporary_folder_of_somebody_else_is_not_used(nowhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = kernel_folder.kernel_folder().root
+    assert first is not None
+    first.chmod(0o777)
+    kernel_folder._kernel_folder.cache_clear()
+    assert not kernel_folder.kernel_folder().kept
+    tell_of_compiling(PresetChoice())
+    assert "compiles again" in capsys.readouterr().err
+
+
+def test_a_user_without_a_home_has_no_cache_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", none)
+    assert kernel_folder.users_folder("dancetutor") is None
+
+
+def test_the_folder_that_is_asked_for_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
+    assert kernel_folder.kernel_folder() == kernel_folder.KernelFolder(tmp_path / "mine")
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file" / "mine"))
+    assert "mine" in kernel_folder.kernel_folder().fault
+
+
+def test_a_damaged_file_is_compiled_again_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    source = tmp_path / "some_kernels.py"
+    source.write_text(MODULE)
+    assert loaded(source).double(4) == 8
+    files = sorted((tmp_path / "cache").glob("*/*"))
+    assert [path.suffix for path in files] == [".nbc", ".nbi"]
+    whole = [path.read_bytes() for path in files]
+    assert loaded(source).double.stats.cache_hits == {}
+    for path, data in zip(files, whole, strict=True):
+        flipped = bytearray(data)
+        flipped[len(data) // 2] ^= 1
+        for damaged in (b"", data[:7], data[: len(data) // 2], data[:-1], bytes(flipped)):
+            path.write_bytes(damaged)
+            module = loaded(source)
+            assert module.double(4) == 8
+            assert not module.double.stats.cache_hits  # compiled anew ...
+            again = loaded(source)
+            assert again.double(4) == 8
+            assert again.double.stats.cache_hits  # ... and kept
+
+
+def test_kernels_that_came_with_a_read_only_installation_are_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = tmp_path / "some_kernels.py"
+    source.write_text(MODULE)
+    assert loaded(source).double(4) == 8
+    assert list((tmp_path / "__pycache__").glob("*.nbc"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "elsewhere"))
+    module = loaded(source)
+    assert module.double(4) == 8
+    assert module.double.stats.cache_hits
+
+
+def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
+    """The program itself, whose installation is made read-only for it: a kernel that nobody can keep still runs."""
+    (tmp_path / "some_kernels.py").write_text(MODULE)
+    code = (
+        "from pathlib import Path; from dancetutor_cli import kernel_folder as k\n"
+        "k._usable = lambda folder: False\n"
+        "import some_kernels; print(some_kernels.double(4), k.kernel_folder().kept)"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "8 False\n", "")
