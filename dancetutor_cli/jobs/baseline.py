@@ -26,7 +26,8 @@ class Baseline:
     path: Path
     known: Counter[Key] = field(default_factory=Counter)
     _left: Counter[Key] = field(default_factory=Counter)
-    _seen_files: set[str] = field(default_factory=set)
+    _ran: dict[tuple[str, str], set[str]] = field(default_factory=dict)
+    _whole: dict[str, set[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._left = Counter(self.known)
@@ -43,18 +44,28 @@ class Baseline:
         self._left[key] -= 1
         return True
 
-    def saw(self, file: str) -> None:
-        """Remember that a file was analysed whole, so that entries of it that matched nothing are unused."""
-        self._seen_files.add(self._relative(file))
+    def saw(self, file: str, chart: str, rules: Iterable[str]) -> None:
+        """Remember which rules ran on a chart, or with chart "" on the file as a whole: theirs can be unused."""
+        self._ran.setdefault((self._relative(file), chart), set()).update(rules)
+
+    def saw_all_charts(self, file: str) -> None:
+        """Remember that every chart of a file was analysed: entries of any other chart are of one that is gone."""
+        name = self._relative(file)
+        self._whole[name] = set().union(*(rules for (of, _), rules in self._ran.items() if of == name))
 
     def unused(self) -> list[Key]:
-        """Entries of analysed files that no finding matched: the finding is gone, the entry can go too."""
-        return sorted(key for key, count in self._left.items() if count > 0 and key[0] in self._seen_files)
+        """Entries that no finding matched though their rule ran: the finding is gone, the entry can go too."""
+        return sorted(key for key, count in self._left.items() if count > 0 and self._could_match(key))
 
     def replaced(self, keys: Iterable[Key]) -> Baseline:
-        """A baseline with these findings for the analysed files, and the old entries of all others."""
-        kept = Counter({key: count for key, count in self.known.items() if key[0] not in self._seen_files})
+        """A baseline with these findings, and the old entries of all charts and rules that were not looked at."""
+        kept = Counter({key: count for key, count in self.known.items() if not self._could_match(key)})
         return Baseline(self.path, kept + Counter(keys))
+
+    def _could_match(self, key: Key) -> bool:
+        file, chart, rule, _ = key
+        ran = self._ran.get((file, chart))
+        return rule in (self._whole.get(file, set()) if ran is None else ran)
 
     def write(self) -> None:
         """Write the file, sorted, one entry a line."""

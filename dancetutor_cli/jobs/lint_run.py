@@ -124,8 +124,7 @@ class LintRun:
         baseline = self._baseline
         if baseline is None or result.error is not None:
             return result
-        if not result.unselected:
-            baseline.saw(result.path)
+        self._tell_what_ran(baseline, result)
         found = [(f, chart, baseline.key(result.path, _name(chart), f)) for f, chart in result.all_findings()]
         self._found += [key for _, _, key in found]
         known = self.request.update_baseline  # what is written now is known from now on
@@ -133,19 +132,34 @@ class LintRun:
         charts = tuple(replace(chart, findings=tuple(f for f, of in left if of is chart)) for chart in result.charts)
         return replace(result, findings=tuple(f for f, of in left if of is None), charts=charts)
 
+    def _tell_what_ran(self, baseline: Baseline, result: FileResult) -> None:
+        path = Path(result.path).absolute()
+        settings = self.configuration(Path(result.path)).settings
+        baseline.saw(result.path, "", settings.for_file(path))
+        for chart in result.charts:
+            rules = settings.for_chart(path, chart.steps_type, chart.difficulty, chart.meter)
+            baseline.saw(result.path, _name(chart), rules)
+        if not result.unselected:
+            baseline.saw_all_charts(result.path)
+
     def close_baseline(self) -> list[str]:
         """Write the baseline if that was asked for; lines to be said about it."""
         if self._baseline is None:
             return []
         path = self._baseline.path
         if self.request.update_baseline:
-            self._baseline.replaced(self._found).write()
-            return [f"{path}: {len(self._found)} finding{'' if len(self._found) == 1 else 's'} written"]
-        return [
-            f"{path}: entry is no longer needed: {file} {chart} {rule} "
-            + (f"beat {place / 48:g}" if chart else f"line {place}")
-            for file, chart, rule, place in self._baseline.unused()
-        ]
+            new = self._baseline.replaced(self._found)
+            new.write()
+            others = sum(new.known.values()) - len(self._found)
+            kept = f", {others} of other files and rules kept" if others else ""
+            return [f"{path}: {len(self._found)} finding{'' if len(self._found) == 1 else 's'} written{kept}"]
+        unused = self._baseline.unused()
+        if not unused:
+            return []
+        what = "1 entry is" if len(unused) == 1 else f"{len(unused)} entries are"
+        file, chart, rule, place = unused[0]
+        first = f"{file} {chart} {rule} " + (f"beat {place / 48:g}" if chart else f"line {place}")
+        return [f"{path}: {what} no longer needed (the first: {first}); --update-baseline takes them out"]
 
 
 def _name(chart: ChartResult | None) -> str:

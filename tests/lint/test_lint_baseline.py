@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from dancetutor_cli.__main__ import main
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.baseline import Baseline, load_baseline
 from dancetutor_cli.lint.model import Finding
@@ -40,14 +41,14 @@ def test_unused_entries_of_analysed_files_are_reported(tmp_path: Path) -> None:
     keys = [("x.sm", CHART, "DT202", 48), ("x.sm", CHART, "DT202", 96), ("y.sm", CHART, "DT202", 48)]
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
     baseline.absorbs(keys[0])
-    baseline.saw(str(tmp_path / "x.sm"))
+    baseline.saw(str(tmp_path / "x.sm"), CHART, ["DT202"])
     assert baseline.unused() == [keys[1]]
 
 
 def test_an_update_keeps_the_files_that_were_not_analysed(tmp_path: Path) -> None:
     keys = [("x.sm", CHART, "DT202", 48), ("y.sm", CHART, "DT202", 48)]
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
-    baseline.saw(str(tmp_path / "x.sm"))
+    baseline.saw(str(tmp_path / "x.sm"), CHART, ["DT201", "DT202"])
     assert sorted(baseline.replaced([("x.sm", CHART, "DT201", 0)]).known) == [("x.sm", CHART, "DT201", 0), keys[1]]
 
 
@@ -70,3 +71,54 @@ def test_what_is_wrong_with_the_file_is_said(text: str, said: str, tmp_path: Pat
 def test_a_missing_baseline_says_how_to_make_one(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="--update-baseline"):
         load_baseline(tmp_path / "b.json")
+
+
+def test_an_update_keeps_entries_of_rules_and_charts_that_were_not_looked_at(tmp_path: Path) -> None:
+    other = "dance-single Easy"
+    keys = [("x.sm", CHART, "DT202", 48), ("x.sm", CHART, "DT204", 48), ("x.sm", other, "DT202", 48)]
+    baseline = Baseline(tmp_path / "b.json").replaced(keys)
+    baseline.saw(str(tmp_path / "x.sm"), CHART, ["DT202"])
+    assert baseline.unused() == keys[:1]
+    assert set(baseline.replaced([]).known) == set(keys[1:])
+    baseline.saw_all_charts(str(tmp_path / "x.sm"))  # so there is no Easy any more
+    assert sorted(baseline.replaced([]).known) == keys[1:2]
+
+
+SONG = "#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:{}:9::\n{}\n;\n"
+
+
+@pytest.mark.parametrize("how", ["select", "ignore", "configuration", "difficulty"])
+def test_an_update_of_a_part_leaves_the_rest(how: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """What broke: with --select, --ignore or `ignore:` the entries of rules that did not run were deleted."""
+    song, known = tmp_path / "x.sm", tmp_path / "b.json"
+    notes = "1000\n0100\n0010\n0001\n" * 4 + "1000\n1000\n0001\n0001\n"
+    song.write_text("".join(SONG.format(difficulty, notes) for difficulty in ("Hard", "Easy")).replace(";#", ";\n#"))
+    assert run("analyze", song, "--baseline", known, "--update-baseline") == 0
+    before = load_baseline(known).known
+    rules = {rule for _, _, rule, _ in before}
+    assert len(rules) > 1 and len({chart for _, chart, _, _ in before}) > 1
+    first = sorted(rules)[0]
+    options = {"select": ["--select", first], "ignore": ["--ignore", first], "difficulty": ["--difficulty", "hard"]}
+    if how == "configuration":
+        (tmp_path / "dancetutor.yaml").write_text(f"ignore: [{first}]\n")
+    capfd.readouterr()
+    assert run("analyze", song, "--baseline", known, *options.get(how, [])) == 0
+    assert "no longer needed" not in capfd.readouterr().err
+    assert run("analyze", song, "--baseline", known, "--update-baseline", *options.get(how, [])) == 0
+    assert load_baseline(known).known == before
+
+
+def test_entries_that_are_gone_are_counted_in_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    song, known = tmp_path / "x.sm", tmp_path / "b.json"
+    song.write_text(SONG.format("Hard", "1000\n1000\n0001\n0001\n"))
+    entries = [("x.sm", "dance-single Hard C", "DT202", beat) for beat in range(500)]
+    Baseline(known).replaced(entries).write()
+    run("analyze", song, "--baseline", known)
+    (line,) = [text for text in capfd.readouterr().err.splitlines() if "no longer needed" in text]
+    assert "500 entries" in line
+
+
+def run(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as stop:
+        main([str(argument) for argument in arguments])
+    return int(str(stop.value.code))
