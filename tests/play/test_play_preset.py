@@ -13,7 +13,7 @@ from dancetutor_cli.play.rows import roll_gap
 from dancetutor_cli.play.vocabulary import MODELS
 from dancetutor_cli.resources import config_path
 
-NAMES = ["ddr", "itg", "pump", "stamina", "thesis"]
+NAMES = ["beginner", "ddr", "itg", "pump", "stamina", "thesis"]
 
 
 def written(folder: Path, text: str) -> Path:
@@ -87,7 +87,11 @@ def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, li
 
 def test_a_preset_knows_for_which_pads_it_was_made(tmp_path: Path) -> None:
     made = {name: play.load_preset(name).pads for name in NAMES}
-    assert made == {"pump": ("pump",), **dict.fromkeys(("ddr", "itg", "stamina", "thesis"), ("dance",))}
+    assert made == {
+        "pump": ("pump",),
+        "beginner": ("dance", "pump"),
+        **dict.fromkeys(("ddr", "itg", "stamina", "thesis"), ("dance",)),
+    }
     mine = play.load_preset(written(tmp_path, "extends: itg\npads: [pump-double, dance]\n"))
     assert [mine.is_for(kind) for kind in ("dance-solo", "pump-double", "pump-single")] == [True, True, False]
     assert play.load_preset(written(tmp_path, "extends: pump\n")).pads == ("pump",)
