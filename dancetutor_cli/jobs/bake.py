@@ -81,10 +81,14 @@ def ask(task: BakeTask) -> Asked:
     if task.section is not None:
         start, end = part_of(task.section, song, chart, preset, float(play.rows.second[-1]) + AFTER)
         section = (start / task.rate, end / task.rate)
-    rows = replace(play.rows, second=play.rows.second / task.rate)
     unfit = mismatch(preset, chart.steps_type)
     notes = () if unfit is None else (f"{chart.label}: {unfit}",)
-    return Asked(song, chart, replace(play, rows=rows), pad, section, notes)
+    return Asked(song, chart, at_rate(play, task.rate), pad, section, notes)
+
+
+def at_rate(play: Play, rate: float) -> Play:
+    """A play whose seconds are those of the music as it is heard at a rate: at half speed notes come twice as late."""
+    return replace(play, rows=replace(play.rows, second=play.rows.second / rate))
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:

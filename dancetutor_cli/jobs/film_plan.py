@@ -69,8 +69,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     start, end = clock.passes[0].start, clock.passes[-1].end
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
-    motion = _motion(request, chart, play, pad, (start, end))
-    character, motion = _fitted(request.character, motion)
+    character, motions = _fitted(request.character, _motions(request, subject, play, pad))
     plan = FilmPlan(
         look=request.look,
         clock=clock,
@@ -83,7 +82,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         speeds=parse_speeds(timing_tag(song, chart, "SPEEDS"), chart.timing.seconds_of_beats).at(seconds),
         fastest_bpm=fastest_bpm(chart),
         directions=directions_of(pad),
-        motion=motion,
+        motions=motions,
         pad=pad,
         rows=step_rows(play),
         character=character,
@@ -237,21 +236,36 @@ def bpm_text(chart: Chart) -> str:
     return low if low == high else f"{low}-{high}"
 
 
-def _motion(request: Request, chart: Chart, play: Play, pad: Pad, span: tuple[float, float]) -> Motion | None:
+def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
+    """The dancer's motion at each rate of the film, on the clock that is heard there: she falls as fast as all do."""
     if request.look.layout.dancer is None:
-        return None
+        return {}
     from dancetutor_cli.bake import bake
+    from dancetutor_cli.jobs.bake import at_rate
 
-    return bake(chart, play, pad, fps=request.fps, section=span, bar=request.bar, gait=request.gait)
+    passes = subject.clock.passes
+    return {
+        rate: bake(
+            subject.chart,
+            at_rate(play, rate),
+            pad,
+            fps=request.fps,
+            section=(passes[0].start / rate, passes[-1].end / rate),
+            rate=rate,
+            bar=request.bar,
+            gait=request.gait,
+        )
+        for rate in sorted({one.rate for one in passes})
+    }
 
 
-def _fitted(name: str, motion: Motion | None) -> tuple[Character | None, Motion | None]:
-    """The character who dances and the motion for its skeleton; None for the dancer, whom whoever draws has at hand."""
+def _fitted(name: str, motions: dict[float, Motion]) -> tuple[Character | None, dict[float, Motion]]:
+    """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand."""
     from dancetutor_cli.character import DANCER, load_character
 
-    if motion is None or name == DANCER:
-        return None, motion
+    if not motions or name == DANCER:
+        return None, motions
     from dancetutor_cli.character.retarget import retarget
 
     character = load_character(name)
-    return character, retarget(motion, character)
+    return character, {rate: retarget(motion, character) for rate, motion in motions.items()}

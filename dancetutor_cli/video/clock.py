@@ -28,6 +28,19 @@ class Pass:
 
 
 @dataclass(frozen=True, slots=True)
+class Moment:
+    """What a frame shows: a second of the music, and the rate at which it is played there."""
+
+    second: float
+    rate: float = 1.0
+
+    @property
+    def heard(self) -> float:
+        """The second in the music as it is heard: at half speed everything comes at twice its second."""
+        return self.second / self.rate
+
+
+@dataclass(frozen=True, slots=True)
 class Clock:
     """Maps film seconds to music seconds over one or more passes. fps : frames per second of the film."""
 
@@ -59,6 +72,11 @@ class Clock:
                 return one.start + film * one.rate, number
             film -= one.seconds
         return self.passes[-1].end, len(self.passes) - 1
+
+    def moment(self, frame: int) -> Moment:
+        """The second of the music that a frame shows, with the rate of its pass."""
+        second, number = self.at(frame)
+        return Moment(second, self.passes[number].rate)
 
 
 @dataclass(frozen=True, slots=True)

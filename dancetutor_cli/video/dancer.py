@@ -1,7 +1,8 @@
-"""The dancer's part of the picture: from a motion and a second of the music to a state for the renderer."""
+"""The dancer's part of the picture: from her motions and a moment of the music to a state for the renderer."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,8 @@ from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.blit import Frame
-from dancetutor_cli.video.camera import WHOLE, Region
+from dancetutor_cli.video.camera import WHOLE, Region, with_pan_range
+from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.diagram import Foot
 from dancetutor_cli.video.follow import Follow, is_wide
 from dancetutor_cli.video.look import default_look
@@ -29,15 +31,16 @@ if TYPE_CHECKING:
 
 
 class Dancer:
-    """Draws the dancer at any second. Made in the process that draws: it may hold a GL context.
+    """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
 
+    motions : hers at each rate, in seconds of the music as it is heard at that rate
     region : share of the picture that she fills
     stands : the camera may not follow her, because something else in the picture is drawn for one place
     """
 
     def __init__(
         self,
-        motion: Motion,
+        motions: Mapping[float, Motion],
         pad: PadLike,
         lights: PanelLights,
         size: tuple[int, int],
@@ -48,27 +51,28 @@ class Dancer:
         region: Region = WHOLE,
         stands: bool = False,
     ) -> None:
-        self.motion, self.lights = motion, lights
+        self.motions, self.lights = motions, lights
+        self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
         floor = -default_look().stage.pad_height
-        self.scene = Scene(with_bar(character or load_dancer(), motion.bar, floor), pad)
+        self.scene = Scene(with_bar(character or load_dancer(), self._bar, floor), pad)
         self.camera: Camera = self.scene.camera(camera, size, region)
-        self._follow = None if stands else self._follower(camera, size, region)
+        self._follow = {} if stands else self._followers(camera, size, region)
         self.renderer = renderer.create(self.scene, size, quality, kind)
-        skeleton, names = self.scene.character.skeleton, motion.skeleton.names
-        self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in names])
-        self._theirs = np.array([names.index(skeleton.names[j]) for j in self._ours])
+        skeleton = self.scene.character.skeleton
+        self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
+        self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])
 
-    def frame(self, second: float, joints: NDArray[np.float64]) -> Frame:
-        """The picture at `second` of the music, uint8 (h, w, 3); overwritten by the next call."""
-        lit, by = self._lit(second)
-        return self.renderer.frame(FrameState(joints, self.view(second), lit, by))
+    def frame(self, moment: Moment, joints: NDArray[np.float64]) -> Frame:
+        """The picture at a moment of the music, uint8 (h, w, 3); overwritten by the next call."""
+        lit, by = self._lit(moment.second)
+        return self.renderer.frame(FrameState(joints, self.view(moment), lit, by))
 
-    def view(self, second: float) -> Camera:
-        """The camera at `second`: the standing one, or the one that follows her across a wide pad."""
-        return self.camera if self._follow is None else self._follow.at(second)
+    def view(self, moment: Moment) -> Camera:
+        """The camera at a moment: the standing one, or the one that follows her across a wide pad."""
+        return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
 
-    def _follower(self, camera: str, size: tuple[int, int], region: Region) -> Follow | None:
-        """The camera that goes with her across a wide pad, if it looks along the pad's short side.
+    def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
+        """The camera that goes with her across a wide pad, for each rate, if it looks along the pad's short side.
 
         It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
         """
@@ -76,14 +80,18 @@ class Dancer:
         along = abs(float(self.camera.axes()[0][0])) > look.follow.along
         named = camera in look.cameras
         if not (named and along and is_wide(self.scene)) or self.camera.feet_only:
-            return None
+            return {}
         if region == WHOLE:
             region = look.follow.region
-        return Follow(self.scene, camera, size, self.motion.times, self.motion.root, region)
+        found = {r: Follow(self.scene, camera, size, m.times, m.root, region) for r, m in self.motions.items()}
+        low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
+        for follow in found.values():  # what stands is drawn once for all of them
+            follow.camera = with_pan_range(follow.camera, min(low), max(high))
+        return found
 
     def still(self) -> Frame:
         """The room without the dancer."""
-        joints = self.joints(np.zeros(1))[0]
+        joints = self.joints([Moment(0.0, next(iter(self.motions)))])[0]
         joints[:, 1, 3] += 1000.0
         nobody = np.zeros(self.scene.panels)
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
@@ -100,19 +108,22 @@ class Dancer:
         heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
         return Foot(heel, toe, mark.height)
 
-    def joints(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-        """World matrices (f, j, 4, 4) of the character's joints at `seconds` (f,).
+    def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        """World matrices (f, j, 4, 4) of the character's joints at f moments.
 
         Joints go by name: a character's file may order them its own way.
         """
         skeleton = self.scene.character.skeleton
-        sampled, root = sample(self.motion, seconds)
-        rotations = np.zeros((len(seconds), len(skeleton.names), 4))
+        rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
         rotations[..., 0] = 1.0
-        rotations[:, self._ours] = sampled[:, self._theirs]
+        rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
+        for one in np.unique(rate):
+            here = np.flatnonzero(rate == one)
+            sampled, root[here] = sample(self.motions[float(one)], heard[here])
+            rotations[here[:, None], self._ours] = sampled[:, self._theirs]
         out = joint_matrices(skeleton, rotations, root)
-        if self.motion.bar is not None:
-            out[:, skeleton.index(JOINT)] = bar_matrix(self.motion.bar)
+        if self._bar is not None:
+            out[:, skeleton.index(JOINT)] = bar_matrix(self._bar)
         return out
 
     def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -44,7 +44,8 @@ class FilmPlan:
     directions : per column, degrees clockwise from up, None for a middle panel
     character : who dances, the motion is for its skeleton; None for the project's own dancer
     speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
-    motion : the dancer's, or None where the layout has none; rows : the play's, for the next rows' pads
+    motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
+        the layout has no dancer; rows : the play's, for the next rows' pads
     callouts : words in the picture; cues : moves for the subtitles
     """
 
@@ -58,7 +59,7 @@ class FilmPlan:
     beats: NDArray[np.float64]
     fastest_bpm: float
     directions: tuple[float | None, ...]
-    motion: Motion | None
+    motions: Mapping[float, Motion]
     pad: PadLike | None
     rows: StepRows | None = None
     callouts: tuple[Callout, ...] = ()
@@ -159,11 +160,11 @@ class Film:
 
         plan, look = self.plan, self.plan.look
         left, top, right, bottom = self._box("dancer")
-        assert self.layout.dancer is not None and plan.motion is not None and plan.pad is not None
+        assert self.layout.dancer is not None and plan.motions and plan.pad is not None
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
         return dancer.Dancer(
-            plan.motion, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character,
+            plan.motions, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character,
             self.layout.dancer.region, stands=self.layout.screen is not None,
         )  # fmt: skip
 
@@ -191,9 +192,9 @@ class Film:
         second, run = self.plan.clock.at(number)
         beat = float(self.plan.beats[number])
         picture = self.base.copy()
-        if self.layout.dancer and self.plan.motion is not None:
+        if self.layout.dancer and self.plan.motions:
             left, top, right, bottom = self._box("dancer")
-            picture[top:bottom, left:right] = self._room(number, second, beat)
+            picture[top:bottom, left:right] = self._room(number, beat)
         if self.highway and not self.layout.screen:
             self.highway.draw(picture, second, beat, self._speed(number))
         large, small = self._diagrams
@@ -221,15 +222,15 @@ class Film:
         block = number // BLOCK
         if block != self._block:
             frames = range(block * BLOCK, min((block + 1) * BLOCK, self.plan.clock.frames))
-            self._block_joints = self._dancer.joints(np.array([self.plan.clock.at(k)[0] for k in frames]))
+            self._block_joints = self._dancer.joints([self.plan.clock.moment(k) for k in frames])
             self._block = block
         joints: NDArray[np.float64] = self._block_joints[number - block * BLOCK]
         return joints
 
-    def _room(self, number: int, second: float, beat: float) -> Frame:
+    def _room(self, number: int, beat: float) -> Frame:
         """The dancer in her room, with the screen if the layout has one."""
-        screen = self._screen
-        frame = self._dancer.frame(second, self._joints(number))
+        screen, moment = self._screen, self.plan.clock.moment(number)
+        frame, second = self._dancer.frame(moment, self._joints(number)), moment.second
         if screen is not None and self.highway is not None:
             shown = self.screen_base.copy()
             self.highway.draw(shown, second, beat, self._speed(number))

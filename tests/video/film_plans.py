@@ -55,6 +55,6 @@ def film_plan(
         beats=shown,
         fastest_bpm=BPM,
         directions=DIRECTIONS,
-        motion=None,
+        motions={},
         pad=None,
     )

@@ -12,6 +12,7 @@ from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.dancer import Dancer
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import Presses
@@ -41,17 +42,17 @@ def dancer(pad_name: str, camera: str, stands: bool = False) -> Dancer:
     pad = load_pad(pad_name)
     assert pad is not None
     lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
-    return Dancer(
-        Motion(skeleton, 10.0, times, rotations, root, ()), pad, lights, (96, 96), camera, "draft", "cpu", stands=stands
-    )
+    motions = {rate: Motion(skeleton, 10.0, times / rate, rotations, root, ()) for rate in (0.5, 1.0)}
+    return Dancer(motions, pad, lights, (96, 96), camera, "draft", "cpu", stands=stands)
 
 
+@pytest.mark.parametrize("rate", [1.0, 0.5])
 @pytest.mark.parametrize("camera", ["back", "front"])
-def test_the_camera_goes_with_her_in_doubles(camera: str) -> None:
+def test_the_camera_goes_with_her_in_doubles(camera: str, rate: float) -> None:
     who = dancer("dance-double", camera)
     for second, x in ((2.0, 0.5), (18.0, -0.5)):
         place = np.array([[x, 0.9, 0.0]])
-        assert abs(who.view(second).project(place, (96, 96))[0, 0] - 48) < 12
+        assert abs(who.view(Moment(second, rate)).project(place, (96, 96))[0, 0] - 48) < 12
         assert abs(who.camera.project(place, (96, 96))[0, 0] - 48) > 12
 
 
@@ -67,7 +68,7 @@ def test_the_camera_goes_with_her_in_doubles(camera: str) -> None:
 )
 def test_other_cameras_stand(pad: str, camera: str, stands: bool) -> None:
     who = dancer(pad, camera, stands)
-    assert who.view(2.0) == who.view(18.0) == who.camera
+    assert who.view(Moment(2.0)) == who.view(Moment(18.0)) == who.camera
 
 
 def test_the_followed_frame_is_the_same_whoever_draws_it(tmp_path: Path) -> None:

@@ -1,0 +1,64 @@
+"""A film at another rate: she dances to the music as it is heard, so she falls as fast as everybody falls."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.jobs.film_plan import Prepared, prepare
+from dancetutor_cli.jobs.film_request import Practice, Request, look_up
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.rig.kinematics import joint_matrices, world_transforms
+from dancetutor_cli.rig.mass import centre_of_mass
+from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+
+RATES = (0.5, 1.0)
+JUMPS = "1001\n0000\n0110\n0000\n1001\n0000\n0110\n0000\n"
+FPS = 60
+
+
+@pytest.fixture(scope="module")
+def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two jumps each second."""
+    path = tmp_path_factory.mktemp("rate") / "jumps.sm"
+    notes = ",\n".join(["0000\n", *[JUMPS] * 4])
+    path.write_text(f"#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :\n{notes};\n")
+    return path
+
+
+@pytest.fixture(scope="module")
+def prepared(song: Path) -> Prepared:
+    look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
+    request = Request(song, Selection(), look, fps=FPS, section="3:7", mute=True, practice=Practice(RATES))
+    return prepare(request, look_up(request))
+
+
+def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -> None:
+    film, clock = Film(prepared.plan), prepared.plan.clock
+    for run, rate in enumerate(RATES):
+        task = BakeTask(song, Selection(), "thesis", fps=FPS, section="3:7", rate=rate)
+        motion = bake_asked(ask(task), task)
+        frames = [k for k in range(clock.frames) if clock.at(k)[1] == run]
+        heard = np.array([clock.at(k)[0] for k in frames]) / rate
+        expected = joint_matrices(load_dancer().skeleton, *sample(motion, heard))
+        shown = np.array([film._joints(k) for k in frames])
+        np.testing.assert_allclose(shown, expected, atol=1e-9)
+
+
+def test_she_falls_in_the_film_as_everybody_does(prepared: Prepared) -> None:
+    clock = prepared.plan.clock
+    for run, rate in enumerate(RATES):
+        motion = prepared.plan.motions[rate]
+        moments = [clock.moment(k) for k in range(clock.frames) if clock.at(k)[1] == run]
+        heard = np.array([moment.heard for moment in moments])
+        rotations, root = sample(motion, heard)
+        mass = centre_of_mass(motion.skeleton, *world_transforms(motion.skeleton, rotations, root))
+        falls = np.diff(mass[:, 1], n=2) * FPS**2  # in seconds of the film
+        assert np.median(np.sort(falls)[:20]) == pytest.approx(-9.81, rel=0.03)
