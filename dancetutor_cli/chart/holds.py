@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Kind, ReadWarning
 
 TAIL = 100  # the cell '3', which is no note of its own
+_KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
 _MOST = 20  # warnings of one sort; the rest is only counted
 
 
@@ -19,8 +20,8 @@ class Cells:
 
     tick: NDArray[np.int64]
     column: NDArray[np.int64]
-    kind: NDArray[np.int64]
-    line: NDArray[np.int64]
+    kind: NDArray[np.uint8]
+    line: NDArray[np.int32]
     end: NDArray[np.int64]
 
     def __getitem__(self, which: NDArray[np.intp] | NDArray[np.bool_]) -> Cells:
@@ -34,21 +35,14 @@ def joined(cells: Cells, warnings: list[ReadWarning]) -> Cells:
     tap or a second head inside a hold deletes the first head. A tail looks only at earlier ticks: on the tick of a
     head it comes first.
     """
-    is_tail = cells.kind == TAIL
-    cells = cells[np.lexsort((~is_tail, cells.tick, cells.column))]  # stable: file order within a tick
-    is_tail = cells.kind == TAIL
-    if len(cells.tick) > 1:
-        last = np.ones(len(cells.tick), dtype=bool)
-        last[:-1] = (np.diff(cells.tick) != 0) | (np.diff(cells.column) != 0) | (is_tail[1:] != is_tail[:-1])
-        lost = ~last & ~is_tail
-        if lost.any():
-            count = int(lost.sum())
-            text = f"{count} {'note is' if count == 1 else 'notes are'} lost: a later row falls on the same 192nd"
-            warnings.append(ReadWarning("row-collision", text, int(cells.line[lost].min())))
-        cells = cells[last]
-    acting = np.flatnonzero(cells.kind != Kind.KEYSOUND)
+    cells = cells[np.argsort(cells.column.astype(np.int8), kind="stable")]  # file order is that of ticks
+    if ((cells.tick[1:] == cells.tick[:-1]) & (cells.column[1:] == cells.column[:-1])).any():
+        cells = _last_of_each(cells, warnings)
+    acting = np.flatnonzero(cells.kind != _KEYSOUND)
     kind, column = cells.kind[acting], cells.column[acting]
-    head, tail = (kind == Kind.HOLD) | (kind == Kind.ROLL), kind == TAIL
+    head, tail = (kind == _HOLD) | (kind == _ROLL), kind == TAIL
+    if not head.any() and not tail.any():
+        return cells
     pair = np.flatnonzero(head[:-1] & tail[1:] & (column[:-1] == column[1:]))
     cells.end[acting[pair]] = cells.tick[acting[pair + 1]]
     open_head, lone_tail = head.copy(), tail.copy()
@@ -64,7 +58,22 @@ def joined(cells: Cells, warnings: list[ReadWarning]) -> Cells:
     return cells[keep]
 
 
-def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.int64]) -> None:
+def _last_of_each(cells: Cells, warnings: list[ReadWarning]) -> Cells:
+    """Of several cells on one tick of a column the last, and the last tail before it; sorted by column, then tick."""
+    is_tail = cells.kind == TAIL
+    cells = cells[np.lexsort((~is_tail, cells.tick, cells.column))]  # stable: file order within a tick
+    is_tail = cells.kind == TAIL
+    last = np.ones(len(cells.tick), dtype=bool)
+    last[:-1] = (np.diff(cells.tick) != 0) | (np.diff(cells.column) != 0) | (is_tail[1:] != is_tail[:-1])
+    lost = ~last & ~is_tail
+    if lost.any():
+        count = int(lost.sum())
+        text = f"{count} {'note is' if count == 1 else 'notes are'} lost: a later row falls on the same 192nd"
+        warnings.append(ReadWarning("row-collision", text, int(cells.line[lost].min())))
+    return cells[last]
+
+
+def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.integer]) -> None:
     """One warning a line, the first 20; one more says how many others there are."""
     warnings.extend(ReadWarning(code, text, line) for line in lines[:_MOST].tolist())
     if len(lines) > _MOST:

@@ -16,17 +16,20 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, No
 from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.timing import Timing
 
-_LF, _COMMA, _AMPERSAND, _BRACKET = 10, 44, 38, 91
+_LF, _CR, _COMMA, _AMPERSAND, _BRACKET = 10, 13, 44, 38, 91
+_BLANKS = b"\r\n\t "
 _UNKNOWN = 101
 _PLAYERS = 2
 _TOO_SHORT = "the row has fewer than {} columns; missing ones are read as empty"
 _TOO_LONG = "the row is longer than {} columns; the rest is ignored"
 _BLANK = np.zeros(256, dtype=bool)
-_BLANK[[9, 10, 13, 32]] = True
+_BLANK[list(_BLANKS)] = True
 _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
+_COUNTS = np.ones(256, dtype=bool)
+_COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +49,10 @@ class LineIndex:
         self._breaks = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == _LF)
 
     def __call__(self, offset: int) -> int:
-        return int(np.searchsorted(self._breaks, offset, side="left")) + 1
+        return int(self._breaks.searchsorted(offset)) + 1
 
     def many(self, offsets: NDArray[np.int64]) -> NDArray[np.int32]:
-        return (np.searchsorted(self._breaks, offsets, side="left") + 1).astype(np.int32)
+        return (self._breaks.searchsorted(offsets) + 1).astype(np.int32)
 
 
 def width_of_first_row(data: bytes, span: tuple[int, int]) -> int:
@@ -91,15 +94,40 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     if len(players) > 1:
         both = (np.concatenate([getattr(p, name) for p in players]) for name in Cells.__slots__)
         cells = Cells(*both)
-    cells = cells[np.lexsort((cells.column, cells.tick))]
+        cells = cells[np.argsort(cells.column, kind="stable")]
+    cells = cells[np.argsort(cells.tick, kind="stable")]  # by column already
     if len(players) > 1 and len(cells.tick) > 1:
         same = (np.diff(cells.tick) == 0) & (np.diff(cells.column) == 0)
         cells = cells[np.append(~same, True)]
-    judged = timing.judged(cells.tick) & (cells.kind != Kind.FAKE) & (cells.kind != Kind.KEYSOUND)
+    judged = timing.judged(cells.tick) & _COUNTS[cells.kind]
     return NoteTable(
-        cells.tick, cells.column.astype(np.int16), cells.kind.astype(np.uint8), cells.end,
-        cells.line.astype(np.int32), judged,
+        cells.tick, cells.column.astype(np.int16), cells.kind, cells.end, cells.line, judged,
     )  # fmt: skip
+
+
+def _rows_of(view: NDArray[np.uint8], lo: int, hi: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where the rows of the value between two offsets start and end: lines, or what commas cut from them, trimmed."""
+    here = view[lo:hi]
+    cuts = np.flatnonzero((here == _LF) | (here == _COMMA))
+    first, last = np.empty(len(cuts) + 1, dtype=np.int64), np.empty(len(cuts) + 1, dtype=np.int64)
+    first[0], first[1:] = 0, cuts + 1
+    last[:-1], last[-1] = cuts, hi - lo
+    full = last > first
+    first, last = first[full], last[full]
+    last -= here[last - 1] == _CR
+    full = last > first
+    if not full.all():
+        first, last = first[full], last[full]
+    ragged = np.flatnonzero(_BLANK[here[first]] | _BLANK[here[last - 1]])
+    if len(ragged):
+        empty = np.zeros(len(first), dtype=bool)
+        for row in ragged.tolist():
+            text = here[first[row] : last[row]].tobytes().rstrip(_BLANKS)
+            last[row] = first[row] + len(text)
+            first[row] = last[row] - len(text.lstrip(_BLANKS))
+            empty[row] = not text
+        first, last = first[~empty], last[~empty]
+    return first + lo, last + lo
 
 
 class _Grid:
@@ -110,19 +138,13 @@ class _Grid:
         lo, hi = part
         here = view[lo:hi]
         commas = np.flatnonzero(here == _COMMA) + lo
-        cuts = np.flatnonzero((here == _LF) | (here == _COMMA)) + lo
-        solid = np.flatnonzero(~_BLANK[here]) + lo
-        solid = solid[view[solid] != _COMMA]
-        i = np.searchsorted(solid, np.concatenate([[lo], cuts]))
-        j = np.append(i[1:], len(solid))
-        rows = j > i
-        self.first, self.last = solid[i[rows]], solid[j[rows] - 1] + 1
+        self.first, self.last = _rows_of(view, lo, hi)
         opens, closes = np.append(lo, commas + 1), np.append(commas, hi)
         real = closes > opens  # zero bytes between two commas are no measure
         real[0] &= closes[0] > begin
         self.anchor = opens[real]
-        self.row_first = np.searchsorted(self.first, self.anchor)
-        self.row_count = np.searchsorted(self.first, closes[real]) - self.row_first
+        self.row_first = self.first.searchsorted(self.anchor)
+        self.row_count = self.first.searchsorted(closes[real]) - self.row_first
         self.measure = np.repeat(np.arange(len(self.anchor)), self.row_count)
         count = self.row_count[self.measure]
         scaled = TICKS_PER_MEASURE * (np.arange(len(self.first)) - self.row_first[self.measure])
@@ -135,13 +157,17 @@ class _Grid:
         """The non-empty cells, in file order."""
         width = self.last - self.first
         index = self.first[:, None] + np.arange(columns)
+        regular = bool((width == columns).all())
         short, long = width < columns, width > columns
-        if short.any():
+        if not regular and short.any():
             index = np.minimum(index, len(self.view) - 1)
         kinds = _KIND[self.view[index]] if len(self.first) else np.zeros((0, columns), np.uint8)
-        if short.any():
+        if not regular:
             kinds[np.arange(columns) >= width[:, None]] = Kind.EMPTY
-        odd = (kinds == _UNKNOWN).any(axis=1)
+        unknown = kinds == _UNKNOWN
+        if not unknown.any() and regular and not escapes:
+            return self._found(kinds)
+        odd = unknown.any(axis=1)
         odd[long] |= self.view[self.first[long] + columns] == _BRACKET
         if escapes:
             odd |= np.isin(np.arange(len(odd)), self._rows_at(sorted(escapes)))
@@ -160,10 +186,14 @@ class _Grid:
             (long & ~odd, "long-row", _TOO_LONG.format(columns)),
         ):
             report(warnings, code, text, self.line[which].astype(np.int64))
-        at_row, column = np.nonzero(kinds)
-        end = np.full(len(at_row), -1, dtype=np.int64)
-        kind = kinds[at_row, column].astype(np.int64)
-        return Cells(self.tick[at_row], column, kind, self.line[at_row].astype(np.int64), end)
+        return self._found(kinds)
+
+    def _found(self, kinds: NDArray[np.uint8]) -> Cells:
+        """The cells of a grid of kinds that hold something."""
+        cell = np.flatnonzero(kinds)
+        row, column = np.divmod(cell, max(kinds.shape[1], 1))
+        end = np.full(len(cell), -1, dtype=np.int64)
+        return Cells(self.tick[row], column, kinds.ravel()[cell], self.line[row], end)
 
     def _rows_at(self, offsets: list[int]) -> NDArray[np.intp]:
         return np.searchsorted(self.first, np.array(offsets), side="right") - 1

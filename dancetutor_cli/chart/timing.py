@@ -114,7 +114,8 @@ class _Knots:
 
     tick : int64, ascending; before, note, after : float64, the second there before everything, of a note, after
     everything (delay, note, stop); rate : float64, seconds per tick from there on, 0 in a warp; first_rate : that
-    before the first knot; exact : per knot the delay, the stop and the rate as fractions.
+    before the first knot; stops : whether a note ever has a stop behind it; exact : per knot the delay, the stop and
+    the rate as fractions.
     """
 
     def __init__(self, timing: Timing) -> None:
@@ -145,16 +146,18 @@ class _Knots:
             self.exact.append((delay, stop, rate))
         self.tick = np.array(order, dtype=np.int64)
         self.before, self.note, self.after = (np.array([t[i] / _FIXED for t in times]) for i in range(3))
+        self.stops = bool((self.note != self.after).any())
         self.rate = np.array([float(r) for _, _, r in self.exact])
         self.first_rate = float(self.exact_first_rate)
 
     def seconds(self, ticks: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
-        i = np.searchsorted(self.tick, ticks, side="right") - 1
-        k = np.maximum(i, 0)
+        k = self.tick[1:].searchsorted(ticks, side="right")
         away = ticks - self.tick[k]
-        later = np.where(away == 0, self.note[k], self.after[k] + away * self.rate[k])
-        out: NDArray[np.float64] = np.where(i < 0, self.before[0] + away * self.first_rate, later)
-        return out
+        out: NDArray[np.float64] = self.after[k] + away * self.rate[k]
+        if self.stops:
+            out = np.where(away == 0, self.note[k], out)
+        early = ticks < self.tick[0]
+        return np.where(early, self.before[0] + away * self.first_rate, out) if early.any() else out
 
     def ticks(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         i = np.searchsorted(self.after, seconds, side="right") - 1

@@ -47,7 +47,7 @@ def _facts(chart: Drawable) -> list[str]:
     from dancetutor_cli.reports.sheet.page import facts_of, length_of
 
     subject, dense = chart.subject, chart.density
-    numbers = [f"{len(subject.step_rows())} rows", f"{length_of(subject)} long"]
+    numbers = [f"{len(subject.step_rows)} rows", f"{length_of(subject)} long"]
     numbers += [f"{dense.mean:.1f} rows/s, at most {dense.peak:.1f}"]
     if dense.breakdown:
         numbers.append(f"stream {dense.breakdown}")

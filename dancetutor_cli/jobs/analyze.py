@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -111,9 +110,9 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         meter=chart.meter,
         description=chart.description,
         playable=play is not None,
-        row_count=len(subject.step_rows()),
+        row_count=len(subject.step_rows),
         cost=0 if play is None else play.total,
-        counts=Counter(name for names in (play.moves if play else ()) for name in names),
+        counts=subject.counts,
         findings=findings if play is None else with_excerpts(findings, play),
         rows=tuple(json_rows(subject)) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),

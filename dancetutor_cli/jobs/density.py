@@ -11,7 +11,8 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
 
 _SHORTEST = 0.12  # seconds: a measure that warps or gimmicks leave less of has no speed anyone could play
-_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
+_IS_STEP = np.zeros(256, dtype=bool)
+_IS_STEP[[Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]] = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +35,17 @@ class Density:
 def density(chart: Chart, stream_rows: int) -> Density:
     """Measure a chart; a measure with at least `stream_rows` rows counts as stream."""
     notes = chart.notes
-    ticks = np.unique(notes.tick[notes.judged & np.isin(notes.kind, _STEPS)])
+    ticks = notes.tick[notes.judged & _IS_STEP[notes.kind]]  # ascending
     if not len(ticks):
         return Density(0.0, 0.0, "", 0, ())
+    ticks = np.append(ticks[:-1][ticks[1:] != ticks[:-1]], ticks[-1])
     counts = np.bincount(np.maximum(ticks, 0) // TICKS_PER_MEASURE)
-    edges = chart.timing.seconds(np.arange(len(counts) + 1, dtype=np.int64) * TICKS_PER_MEASURE)
-    lengths = np.diff(edges)
+    edges = np.arange(len(counts) + 3, dtype=np.int64) * TICKS_PER_MEASURE
+    edges[-2:] = ticks[[0, -1]]
+    seconds = chart.timing.seconds(edges)
+    lengths = seconds[1:-2] - seconds[:-3]
     rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > _SHORTEST)
-    first, last = chart.timing.seconds(ticks[[0, -1]])
+    first, last = seconds[-2:].tolist()
     mean = (len(ticks) - 1) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows
     return Density(

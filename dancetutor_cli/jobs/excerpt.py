@@ -2,74 +2,68 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.lint.model import ExcerptRow, Finding
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Limb, Part, Play, StepKind
+from dancetutor_cli.play.model import Part, Play
 
 ROWS = 4
 _BEFORE = 2
+_NOTES = np.frombuffer(b" 1L244", dtype=np.uint8)  # by StepKind: nothing, tap, lift, hold, roll, tap of a roll
+_MINE, _HELD = b"M|"
+_LETTERS = np.frombuffer(b"? LR<> lr<>", dtype=np.uint8)  # by Limb, from -2 on; from 5 on those of toes
 _TOE = int(Part.TOE)
-_NOTES: dict[int, str] = {
-    StepKind.TAP: "1", StepKind.LIFT: "L", StepKind.HOLD: "2", StepKind.ROLL: "4", StepKind.ROLL_TAP: "4",
-}  # fmt: skip
-_LETTERS: dict[int, str] = {
-    Limb.LEFT_FOOT: "L", Limb.RIGHT_FOOT: "R", Limb.LEFT_HAND: "<", Limb.RIGHT_HAND: ">", Limb.UNPLAYED: "?",
-}  # fmt: skip
 _ARROWS = {(-1, 0): "←", (0, -1): "↓", (0, 1): "↑", (1, 0): "→", (-1, -1): "↙", (-1, 1): "↖", (0, 0): "■",
            (1, 1): "↗", (1, -1): "↘"}  # fmt: skip
 
 
 def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...]:
-    """The findings, those with a beat together with the rows around it."""
-    drawer = _Drawer(play)
-    return tuple(
-        finding
-        if finding.beat is None
-        else replace(finding, excerpt=drawer.around(round(finding.beat * TICKS_PER_BEAT)))
-        for finding in findings
+    """The findings, those with a beat together with the rows around it: up to four, two of them before it."""
+    ticks = np.array([round(finding.beat * TICKS_PER_BEAT) for finding in findings if finding.beat is not None])
+    if not len(ticks):
+        return tuple(findings)
+    at = play.rows.tick.searchsorted(ticks)
+    first = np.maximum(np.minimum(at - _BEFORE, len(play.rows) - ROWS), 0).tolist()
+    here = np.where(np.isin(ticks, play.rows.tick), at, -1).tolist()
+    count = min(ROWS, len(play.rows))
+    shown = np.unique([row + more for row in first for more in range(count)]).astype(np.int64)
+    drawn = dict(zip(shown.tolist(), _drawn(play, shown), strict=True))
+    excerpts = (
+        tuple([drawn[row]._replace(here=True) if row == this else drawn[row] for row in range(start, start + count)])
+        for start, this in zip(first, here, strict=True)
     )
+    return tuple([f if f.beat is None else f.with_excerpt(next(excerpts)) for f in findings])
 
 
-class _Drawer:
-    """Draws rows of a play, each once."""
+def _drawn(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
+    """Some rows, as if the finding were about none of them."""
+    rows, c = play.rows, play.limb.shape[1]
+    kinds = rows.steps[shown]
+    notes = np.where(kinds > 0, _NOTES[kinds], np.where(rows.mines[shown], _MINE, _held(play, shown)))
+    toes = 5 * (play.part[shown] == _TOE)
+    letters = np.where(kinds > 0, _LETTERS[play.limb[shown] + 2 + toes], ord(" "))
+    note_text, limb_text = (array.astype(np.uint8).tobytes().decode("ascii") for array in (notes, letters))
+    for place, tick in enumerate(rows.tick[shown].tolist()):
+        cells = slice(place * c, place * c + c)
+        yield ExcerptRow(round(tick / TICKS_PER_BEAT, 6), note_text[cells], limb_text[cells], here=False)
 
-    def __init__(self, play: Play) -> None:
-        self._play = play
-        self._ticks: list[int] = play.rows.tick.tolist()
-        self._heads = [np.flatnonzero(ends >= 0).tolist() for ends in play.rows.hold_end.T]
-        self._drawn: dict[int, tuple[float, str, str]] = {}
 
-    def around(self, tick: int) -> tuple[ExcerptRow, ...]:
-        """Up to four rows around a tick: two before it if there are."""
-        at = bisect_left(self._ticks, tick)
-        first = max(0, min(at - _BEFORE, len(self._ticks) - ROWS))
-        last = min(first + ROWS, len(self._ticks))
-        return tuple(ExcerptRow(*self._row(row), here=self._ticks[row] == tick) for row in range(first, last))
-
-    def _row(self, row: int) -> tuple[float, str, str]:
-        if row not in self._drawn:
-            rows, play, notes, limbs = self._play.rows, self._play, "", ""
-            steps, mines = rows.steps[row].tolist(), rows.mines[row].tolist()
-            pressed = zip(play.limb[row].tolist(), play.part[row].tolist(), strict=True)
-            for column, (limb, part) in enumerate(pressed):
-                kind = steps[column]
-                letter = _LETTERS[limb] if kind else " "
-                limbs += letter.lower() if part == _TOE else letter
-                notes += _NOTES[kind] if kind else "M" if mines[column] else "|" if self._held(row, column) else " "
-            self._drawn[row] = round(self._ticks[row] / TICKS_PER_BEAT, 6), notes, limbs
-        return self._drawn[row]
-
-    def _held(self, row: int, column: int) -> bool:
-        """Whether a hold that began in one of the rows before is still down."""
-        before = bisect_left(self._heads[column], row) - 1
-        return before >= 0 and bool(self._play.rows.hold_end[self._heads[column][before], column] > self._ticks[row])
+def _held(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each cell of some rows the character of a hold that began in a row before and is still down, or a blank."""
+    rows = play.rows
+    out = np.full((len(shown), play.limb.shape[1]), ord(" "))
+    for column in np.flatnonzero((rows.hold_end >= 0).any(axis=0)).tolist():
+        ends = rows.hold_end[:, column]
+        heads = np.flatnonzero(ends >= 0)
+        before = heads.searchsorted(shown) - 1
+        down = (before >= 0) & (ends[heads[before]] > rows.tick[shown])
+        out[down, column] = _HELD
+    return out
 
 
 def arrows(pad: Pad) -> str:

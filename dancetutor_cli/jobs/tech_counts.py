@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.jobs.result import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play.model import Limb, Part, StepKind
+from dancetutor_cli.pads import Pad
+from dancetutor_cli.play.model import Part, Play, StepKind
 
 _JACK, _DOUBLESTEP, _FOOTSWITCH = 176, 235, 300  # milliseconds between two rows, the game's own limits
-Flags = NDArray[np.bool_]
+_TOE = int(Part.TOE)
+_WRITTEN = np.ones(len(StepKind), dtype=bool)
+_WRITTEN[[StepKind.NONE, StepKind.ROLL_TAP]] = False
 
 
 @dataclass(frozen=True)
@@ -27,18 +30,20 @@ class _Steps:
     """Rows with steps that a foot presses, n; columns c. -1: none.
 
     row : of the play; gap : (n - 1,) milliseconds from one to the next, free of float noise; count : steps in the row
-    foot : (n, c) 0 left, 1 right; heel, toe : (n, 2) column that a foot presses
-    x : (n, 2) place of the foot, NaN without; of a bracket between its panels; heel_x : that of the heel
+    heel, toe : for each foot (n,) the column that it presses
+    x : for each foot (n,) its place, NaN without; of a bracket between its panels; heel_x : that of the heel
+    cell : steps of feet, in order: row * c + column; foot : who presses it
     """
 
     row: NDArray[np.int64]
     gap: NDArray[np.int64]
     count: NDArray[np.int64]
+    heel: list[NDArray[np.int64]]
+    toe: list[NDArray[np.int64]]
+    x: list[NDArray[np.float64]]
+    heel_x: list[NDArray[np.float64]]
+    cell: NDArray[np.int64]
     foot: NDArray[np.int8]
-    heel: NDArray[np.int64]
-    toe: NDArray[np.int64]
-    x: NDArray[np.float64]
-    heel_x: NDArray[np.float64]
 
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
@@ -46,42 +51,58 @@ def tech_counts(subject: ChartSubject) -> dict[str, int]:
     found = dict.fromkeys(TECH_COUNTS, 0)
     if subject.play is None or subject.pad is None:
         return found
-    steps = _steps_of(subject)
+    steps = _steps_of(subject.play, subject.pad)
     if len(steps.row):
-        found |= _switches(steps, subject.pad.arrows) | _repeats(steps, subject) | _crossovers(steps)
-        found["Brackets"] = int(((steps.heel >= 0) & (steps.toe >= 0)).sum())
+        found |= _switches(steps, subject.pad) | _repeats(steps, subject.play) | _crossovers(steps)
+        found["Brackets"] = sum(int(((steps.heel[f] >= 0) & (steps.toe[f] >= 0)).sum()) for f in (0, 1))
     return found
 
 
-def _steps_of(subject: ChartSubject) -> _Steps:
-    play, pad = subject.play, subject.pad
-    assert play is not None and pad is not None
-    written = (play.rows.steps != StepKind.NONE) & (play.rows.steps != StepKind.ROLL_TAP)
-    row = np.flatnonzero(written.any(axis=1))
-    written = written[row]
-    limb = np.where(written, play.limb[row], -1)
-    foot = np.where(limb <= Limb.RIGHT_FOOT, limb, -1).astype(np.int8)
-    toe = play.part[row] == Part.TOE
-    heels = np.stack([_first((foot == f) & ~toe) for f in (0, 1)], axis=1)
-    toes = np.stack([_first((foot == f) & toe) for f in (0, 1)], axis=1)
+def _steps_of(play: Play, pad: Pad) -> _Steps:
+    steps, c = play.rows.steps.ravel(), len(pad)
+    cell = np.flatnonzero(_WRITTEN[steps])
+    at, column = np.divmod(cell, c)
+    first = np.ones(len(at), dtype=bool)
+    first[1:] = at[1:] != at[:-1]
+    row, number = at[first], np.cumsum(first) - 1
+    limb, toe = play.limb.ravel()[cell], play.part.ravel()[cell] == _TOE
     places = np.append(pad.panels[:, 0], np.nan)  # column -1: no place
-    x = np.where(toes >= 0, (places[heels] + places[toes]) / 2, places[heels])
+    heels, toes, x, heel_x = [], [], [], []
+    for foot in (0, 1):
+        mine = limb == foot
+        heel, toe_of = _first(number, column, mine & ~toe, len(row)), _first(number, column, mine & toe, len(row))
+        heels.append(heel)
+        toes.append(toe_of)
+        heel_x.append(places[heel])
+        x.append(np.where(toe_of >= 0, (heel_x[foot] + places[toe_of]) / 2, heel_x[foot]))
+    waited = np.cumsum(play.rows.milliseconds)[row]
+    feet = (limb == 0) | (limb == 1)
     return _Steps(
-        row, np.diff(np.cumsum(play.rows.milliseconds)[row]), written.sum(axis=1), foot, heels, toes, x, places[heels]
-    )
+        row, waited[1:] - waited[:-1], np.bincount(number, minlength=len(row)), heels, toes, x, heel_x,
+        (number * c + column)[feet], limb[feet],
+    )  # fmt: skip
 
 
-def _first(flags: Flags) -> NDArray[np.int64]:
-    """The first column with a flag in each row, or -1."""
-    return np.where(flags.any(axis=1), flags.argmax(axis=1), -1)
+def _first(
+    number: NDArray[np.int64], column: NDArray[np.int64], which: NDArray[np.bool_], rows: int
+) -> NDArray[np.int64]:
+    """The column of the first of some steps in each row, or -1."""
+    found = np.full(rows, -1, dtype=np.int64)
+    steps = np.flatnonzero(which)[::-1]
+    found[number[steps]] = column[steps]  # of several the one that comes last counts: the first column
+    return found
 
 
-def _switches(steps: _Steps, arrows: NDArray[np.float64]) -> dict[str, int]:
+def _switches(steps: _Steps, pad: Pad) -> dict[str, int]:
     """Panels taken over, by where their arrows point."""
-    soon = steps.gap < _FOOTSWITCH
-    now, before = steps.foot[1:], steps.foot[:-1]
-    per_panel = ((now >= 0) & (before >= 0) & (now != before) & soon[:, None]).sum(axis=0)
-    across, along = arrows[: len(per_panel)].T
+    c = len(pad)
+    before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)  # who pressed a cell's panel in the row before
+    before[steps.cell + c] = steps.foot
+    before = before[steps.cell]
+    other = np.flatnonzero((before >= 0) & (before != steps.foot))
+    row, column = np.divmod(steps.cell[other], c)
+    per_panel = np.bincount(column[steps.gap[row - 1] < _FOOTSWITCH], minlength=c)
+    across, along = pad.arrows.T
     up, down = int(per_panel[along > 0].sum()), int(per_panel[along < 0].sum())
     left, right = (int(per_panel[(along == 0) & side].sum()) for side in (across < 0, across > 0))
     middle = int(per_panel[(along == 0) & (across == 0)].sum())
@@ -91,19 +112,23 @@ def _switches(steps: _Steps, arrows: NDArray[np.float64]) -> dict[str, int]:
     }  # fmt: skip
 
 
-def _repeats(steps: _Steps, subject: ChartSubject) -> dict[str, int]:
+def _repeats(steps: _Steps, play: Play) -> dict[str, int]:
     """The same foot in two single rows one after the other: on its panel, or on another."""
-    assert subject.play is not None
-    gap = steps.gap[:, None]
-    now, before = steps.heel[1:], steps.heel[:-1]
-    again = (now >= 0) & (before >= 0) & ((steps.count[1:] == 1) & (steps.count[:-1] == 1))[:, None]
-    moved = (again & (now != before) & (gap < _DOUBLESTEP)).any(axis=1)
-    forced = sum("forced-doublestep" in subject.play.moves[row] for row in steps.row[1:][moved].tolist())
+    single = steps.count == 1
+    near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
+    jacks, doublesteps = 0, []
+    for heel in steps.heel:
+        now, before = heel[1:], heel[:-1]
+        again = near & (now >= 0) & (before >= 0)
+        same = now == before
+        jacks += int((again & same & (steps.gap < _JACK)).sum())
+        doublesteps += steps.row[1:][again & ~same].tolist()
+    forced = sum("forced-doublestep" in play.moves[row] for row in doublesteps)
     return {
-        "Jacks": int((again & (now == before) & (gap < _JACK)).sum()),
-        "Doublesteps": int(moved.sum()),
+        "Jacks": jacks,
+        "Doublesteps": len(doublesteps),
         "ForcedDoublesteps": forced,
-        "UnforcedDoublesteps": int(moved.sum()) - forced,
+        "UnforcedDoublesteps": len(doublesteps) - forced,
     }
 
 
@@ -111,13 +136,16 @@ def _crossovers(steps: _Steps) -> dict[str, int]:
     """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
     half = full = 0
     for foot, outward in ((0, -1.0), (1, 1.0)):
-        x, other = steps.x[:, foot] * outward, steps.x[:, 1 - foot] * outward
-        stepped, others = steps.heel[:, foot], steps.heel[:, 1 - foot]
-        crossed = (stepped[1:] >= 0) & (stepped[:-1] < 0) & (others[:-1] >= 0) & (x[1:] < other[:-1])
-        at = np.flatnonzero(crossed) + 1
+        x, other = steps.x[foot], steps.x[1 - foot]
+        stepped, others = steps.heel[foot], steps.heel[1 - foot]
+        beyond = x[1:] > other[:-1] if foot == 0 else x[1:] < other[:-1]
+        at = np.flatnonzero((stepped[1:] >= 0) & (stepped[:-1] < 0) & (others[:-1] >= 0) & beyond) + 1
+        if not len(at):
+            continue
         earlier = np.where(at > 1, stepped[at - 2], -1)
         moved = (at == 1) | ((earlier >= 0) & (earlier != stepped[at]))
-        outside = (at > 1) & (earlier >= 0) & (steps.heel_x[at - 2, foot] * outward > other[at - 1])
+        came_from = steps.heel_x[foot][at - 2] * outward
+        outside = (at > 1) & (earlier >= 0) & (came_from > other[at - 1] * outward)
         full += int((moved & outside).sum())
         half += int((moved & ~outside).sum())
     return {"Crossovers": half + full, "HalfCrossovers": half, "FullCrossovers": full}

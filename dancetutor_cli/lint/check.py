@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.model import Finding
@@ -23,9 +24,8 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about the file as a whole, in order of line and rule."""
     findings: list[Finding] = []
     for code, options in settings.for_file(subject.song.path.absolute()).items():
-        rule = all_rules()[code]
-        if issubclass(rule, FileRule | ReaderRule):
-            findings += rule(options).check(subject)
+        if code in _rules_of_files():
+            findings += _rules_of_files()[code](options).check(subject)
     return _in_order(findings)
 
 
@@ -35,15 +35,24 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     chart = subject.chart
     rules = settings.for_chart(subject.song.path.absolute(), chart.steps_type, chart.difficulty, chart.meter)
     for code, options in rules.items():
-        rule = all_rules()[code]
-        if issubclass(rule, ChartRule | ReaderRule):
-            findings += rule(options).check(subject)
+        if code in _rules_of_charts():
+            findings += _rules_of_charts()[code](options).check(subject)
     return _in_order(finding for finding in findings if not _silenced(finding, subject))
+
+
+@cache
+def _rules_of_files() -> Mapping[str, type[FileRule] | type[ReaderRule]]:
+    return {code: rule for code, rule in all_rules().items() if issubclass(rule, FileRule | ReaderRule)}
+
+
+@cache
+def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
+    return {code: rule for code, rule in all_rules().items() if issubclass(rule, ChartRule | ReaderRule)}
 
 
 def _silenced(finding: Finding, subject: ChartSubject) -> bool:
     """Whether the author said, in an editor or in dancetutor.yaml, that this finding is not wanted in this row."""
-    if finding.beat is None:
+    if finding.beat is None or not (subject.ignores.codes or subject.ignores.rules):
         return False
     tick, code = round(finding.beat * 48), _EDITOR_CODES.get(finding.rule)
     known = subject.ignores

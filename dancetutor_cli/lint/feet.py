@@ -16,6 +16,7 @@ from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.play.model import Limb, Play, StepKind
 
 _EPSILON = 1e-6
+_RIGHT, _NONE, _HOLD, _ROLL_TAP = int(Limb.RIGHT_FOOT), int(StepKind.NONE), int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
@@ -31,8 +32,11 @@ class Presses:
     def of(self, limb: int) -> Presses:
         """Those of one limb; of a bracket only its first panel."""
         mine = np.flatnonzero(self.limb == limb)
-        mine = mine[np.diff(self.row[mine], prepend=-1) > 0]
-        return Presses(self.row[mine], self.column[mine], self.limb[mine])
+        row = self.row[mine]
+        if (row[1:] == row[:-1]).any():
+            mine = mine[np.diff(row, prepend=-1) > 0]
+            row = self.row[mine]
+        return Presses(row, self.column[mine], self.limb[mine])
 
 
 class Feet:
@@ -47,11 +51,44 @@ class Feet:
         self._timing = timing
 
     @cached_property
+    def _pressed(self) -> Presses:
+        """All presses, a roll's virtual taps too."""
+        limbs = self._play.limb.ravel()
+        cell = np.flatnonzero(limbs >= 0)
+        row, column = np.divmod(cell, self._play.limb.shape[1])
+        return Presses(row, column, limbs[cell])
+
+    @cached_property
     def presses(self) -> Presses:
         """All presses of the play."""
-        steps, limbs = self._play.rows.steps, self._play.limb
-        row, column = np.nonzero((limbs >= 0) & (steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
-        return Presses(row, column, limbs[row, column])
+        p, steps = self._pressed, self._play.rows.steps.ravel()
+        kind = steps[p.row * self._play.limb.shape[1] + p.column]
+        real = (kind != _NONE) & (kind != _ROLL_TAP)
+        return p if real.all() else Presses(p.row[real], p.column[real], p.limb[real])
+
+    @cached_property
+    def _of_feet(self) -> tuple[Presses, Presses]:
+        return self.presses.of(0), self.presses.of(1)
+
+    @cached_property
+    def _has_mines(self) -> bool:
+        return bool(self._play.rows.mines.any())
+
+    @cached_property
+    def stepped(self) -> NDArray[np.int64]:
+        """Rows with a step, also if nobody presses it."""
+        return np.flatnonzero(self._play.rows.steps.any(axis=1))
+
+    @cached_property
+    def _crossed_runs(self) -> list[tuple[int, int]]:
+        crossed = np.abs(self._play.facing) > 90 + _EPSILON
+        if not crossed.any():
+            return []
+        flags = np.zeros(len(self.stepped) + 2, dtype=bool)
+        flags[1:-1] = crossed[self.stepped]
+        edges = np.flatnonzero(flags[1:] != flags[:-1]).reshape(-1, 2)
+        first, after = edges[:, 0], edges[:, 1]
+        return list(zip(self.stepped[first].tolist(), (after - first).tolist(), strict=True))
 
     def limb_name(self, row: int, column: int) -> str:
         """ "left foot", "right hand" ... of what presses a cell."""
@@ -59,30 +96,31 @@ class Feet:
 
     def crossed_runs(self) -> Iterator[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
-        stepped = np.flatnonzero(self._play.rows.steps.any(axis=1))
-        flags = np.abs(self._play.facing[stepped]) > 90 + _EPSILON
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-        for first, after in edges.reshape(-1, 2).tolist():
-            yield int(stepped[first]), after - first
+        yield from self._crossed_runs
 
     def half_turns(self) -> Iterator[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
-        turn = np.diff(self._play.facing, prepend=self._play.facing[:1])
-        yield from np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON).tolist()
+        facing = self._play.facing
+        turn = facing[1:] - facing[:-1]
+        if len(turn) and max(turn.max(), -turn.min()) >= 180 - 2 * _EPSILON:
+            yield from (np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON) + 1).tolist()
 
     def same_foot_runs(self, length: int, max_seconds: float) -> Iterator[int]:
         """Rows in which one foot steps, alone, for the `length`-th time in a row and always on a new panel.
 
         A step while the other foot is held down does not count: there is no choice.
         """
-        rows, columns = np.nonzero(self._play.limb >= 0)  # a roll's taps are steps that come between, too
-        seconds = self._play.rows.second
-        first = np.flatnonzero(np.diff(rows, prepend=-1))  # the first press of every row
-        alone = np.diff(np.append(first, len(rows))) == 1
-        row, column = rows[first], columns[first]
-        limb = self._play.limb[row, column]
-        follows = alone[1:] & alone[:-1] & (limb[1:] == limb[:-1]) & (limb[1:] <= Limb.RIGHT_FOOT)
-        follows &= (column[1:] != column[:-1]) & (np.diff(seconds[row]) <= max_seconds + _EPSILON)
+        p, seconds = self._pressed, self._play.rows.second  # a roll's taps are steps that come between, too
+        new = np.ones(len(p.row) + 1, dtype=bool)
+        np.not_equal(p.row[1:], p.row[:-1], out=new[1:-1])
+        alone = np.flatnonzero(new[1:] & new[:-1])  # presses that are the only one of their row
+        row, column, limb = p.row[alone], p.column[alone], p.limb[alone]
+        next_row = np.cumsum(new[:-1])[alone]
+        follows = (limb[1:] == limb[:-1]) & (limb[1:] <= _RIGHT) & (column[1:] != column[:-1])
+        follows &= next_row[1:] - next_row[:-1] == 1
+        if not follows.any():
+            return
+        follows &= np.diff(seconds[row]) <= max_seconds + _EPSILON
         count, last = 1, -1
         for place in (np.flatnonzero(follows) + 1).tolist():
             forced = "forced-doublestep" in self._play.moves[row[place]]
@@ -96,16 +134,13 @@ class Feet:
         self,
     ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
         """For each foot its steps on a new panel: rows, columns, ways (panel widths), times (s) since its last step."""
-        for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
-            steps = self.presses.of(foot)
-            way = np.hypot(*np.diff(self._panels[steps.column], axis=0).T)
+        between = self._panels[:, None] - self._panels[None]
+        distances = np.hypot(between[..., 0], between[..., 1])
+        for steps in self._of_feet:
+            way, second = distances[steps.column[1:], steps.column[:-1]], self._play.rows.second[steps.row]
             moved = np.flatnonzero(way > _EPSILON)
-            yield (
-                steps.row[1:][moved],
-                steps.column[1:][moved],
-                way[moved],
-                np.diff(self._play.rows.second[steps.row])[moved],
-            )
+            times = second[1:] - second[:-1]
+            yield steps.row[1:][moved], steps.column[1:][moved], way[moved], times[moved]
 
     def releases(self, min_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a hold which the same limb left too soon for another panel."""
@@ -129,28 +164,30 @@ class Feet:
         It is held by its other panel; or the other foot holds one, and the step was at most `max_seconds` before or no
         other panel is free.
         """
+        if not self._has_mines:
+            return
         rows, play = self._play.rows, self._play
-        mines = np.argwhere(rows.mines).tolist()
-        heads = [self._heads_of(foot) for foot in (0, 1)] if mines else []
-        for row, column in mines:
-            for foot in (0, 1):
-                own, other = (self._holding(heads[limb], row) for limb in (foot, 1 - foot))
-                bracket = own is not None and rows.steps[own, column] and play.limb[own, column] == foot
-                stands = other is not None and row > 0 and play.feet[row - 1, foot] == column
-                if bracket or (
-                    stands and (self._just_stepped(foot, row, max_seconds) or self._all_mined(row, 1 - foot))
-                ):
-                    yield row, column, foot
+        row, column = np.nonzero(rows.mines)
+        holding = [
+            self._holding(foot, row) for foot in (0, 1)
+        ]  # the row of the hold that is down in a later row, or -1
+        near = np.zeros((len(row), 2), dtype=bool)
+        brackets = np.zeros((len(row), 2), dtype=bool)
+        for foot in (0, 1):
+            own, other = holding[foot], holding[1 - foot]
+            brackets[:, foot] = (own >= 0) & (rows.steps[own, column] > 0) & (play.limb[own, column] == foot)
+            stands = (other >= 0) & (row > 0) & (play.feet[row - 1, foot] == column)
+            near[:, foot] = stands | brackets[:, foot]
+        for mine, foot in np.argwhere(near).tolist():
+            at = int(row[mine])
+            if brackets[mine, foot] or self._just_stepped(foot, at, max_seconds) or self._all_mined(at, 1 - foot):
+                yield at, int(column[mine]), foot
 
     def _just_stepped(self, foot: int, row: int, max_seconds: float) -> bool:
         """Whether the last step of a foot before a row was at most so long ago."""
-        steps, seconds = self._steps_of_feet[foot], self._play.rows.second
-        at = int(np.searchsorted(steps, row)) - 1
+        steps, seconds = self._of_feet[foot].row, self._play.rows.second
+        at = int(steps.searchsorted(row)) - 1
         return at >= 0 and bool(seconds[row] - seconds[steps[at]] <= max_seconds + _EPSILON)
-
-    @cached_property
-    def _steps_of_feet(self) -> list[NDArray[np.int64]]:
-        return [self.presses.of(foot).row for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
 
     def _all_mined(self, row: int, other: int) -> bool:
         """Whether every panel that the other foot does not hold has a mine."""
@@ -158,41 +195,47 @@ class Feet:
         mined[self._play.feet[row, other]] = True
         return bool(mined.all())
 
-    def _heads_of(self, foot: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Rows in which a foot presses a hold, and the ticks at which it may let go."""
+    def _holding(self, foot: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """For each of some rows the row before in which a foot pressed a hold that is still down, or -1."""
         holds = np.where(self._play.limb == foot, self._play.rows.hold_end, -1).max(axis=1)
-        row = np.flatnonzero(holds >= 0)
-        return row, holds[row]
-
-    def _holding(self, heads: tuple[NDArray[np.int64], NDArray[np.int64]], row: int) -> int | None:
-        """The row of the hold that is down in a later row, or None."""
-        at = int(np.searchsorted(heads[0], row)) - 1
-        return int(heads[0][at]) if at >= 0 and heads[1][at] > self._play.rows.tick[row] else None
+        heads = np.flatnonzero(holds >= 0)
+        if not len(heads):
+            return np.full(len(rows), -1)
+        at = heads.searchsorted(rows) - 1
+        down = (at >= 0) & (holds[heads[at]] > self._play.rows.tick[rows])
+        return np.where(down, heads[at], -1)
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a foot's hold on its panel, of each mine that comes so soon."""
+        if not self._has_mines:
+            return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
-            feet = (play.limb[:, column] == Limb.LEFT_FOOT) | (play.limb[:, column] == Limb.RIGHT_FOOT)
-            ends = rows.hold_end[feet & (rows.steps[:, column] == StepKind.HOLD), column]
-            seconds = self._timing.seconds(ends)
-            for row in np.flatnonzero(rows.mines[:, column]).tolist():
-                before = int(np.searchsorted(ends, rows.tick[row], side="right")) - 1
-                late = float(rows.second[row] - seconds[before]) if before >= 0 else np.inf
-                if late <= max_seconds + _EPSILON:
-                    yield row, column, late
+            limb = play.limb[:, column]
+            ends = rows.hold_end[((limb == 0) | (limb == 1)) & (rows.steps[:, column] == _HOLD), column]
+            if not len(ends):
+                continue
+            mines = np.flatnonzero(rows.mines[:, column])
+            before = ends.searchsorted(rows.tick[mines], side="right") - 1
+            mines, before = mines[before >= 0], before[before >= 0]
+            late = rows.second[mines] - self._timing.seconds(ends)[before]
+            soon = late <= max_seconds + _EPSILON
+            for row, seconds in zip(mines[soon].tolist(), late[soon].tolist(), strict=True):
+                yield row, column, seconds
 
     def mines_before_steps(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since a mine on the same panel, of each step for which a foot has to come."""
+        if not self._has_mines:
+            return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
-            steps = np.flatnonzero((rows.steps[:, column] > 0) & (rows.steps[:, column] != StepKind.ROLL_TAP))
-            for mine in np.flatnonzero(rows.mines[:, column]).tolist():
-                at = int(np.searchsorted(steps, mine))
-                if at == len(steps):
-                    continue
-                row = int(steps[at])
-                seconds, limb = float(rows.second[row] - rows.second[mine]), int(play.limb[row, column])
-                stood = row > 0 and limb in (0, 1) and play.feet[row - 1, limb] == column
-                if seconds <= max_seconds + _EPSILON and not stood:
-                    yield row, column, seconds
+            kinds = rows.steps[:, column]
+            steps, mines = np.flatnonzero((kinds > 0) & (kinds != _ROLL_TAP)), np.flatnonzero(rows.mines[:, column])
+            at = steps.searchsorted(mines)
+            mines, row = mines[at < len(steps)], steps[at[at < len(steps)]]
+            late = rows.second[row] - rows.second[mines]
+            soon = late <= max_seconds + _EPSILON
+            for step, seconds in zip(row[soon].tolist(), late[soon].tolist(), strict=True):
+                limb = int(play.limb[step, column])
+                if not (step > 0 and limb in (0, 1) and play.feet[step - 1, limb] == column):
+                    yield step, column, seconds

@@ -47,9 +47,15 @@ class Finding:
     excerpt: tuple[ExcerptRow, ...] = ()
     suggestion: str | None = None
 
+    def with_excerpt(self, rows: tuple[ExcerptRow, ...]) -> Finding:
+        """The same with the rows around it; many times quicker than `dataclasses.replace`."""
+        values: tuple[Any, ...] = _VALUES(self)
+        return Finding(*(*values[:_EXCERPT], rows, *values[_EXCERPT + 1 :]))
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle as a call: ten times quicker to read back than what frozen dataclasses do, and there are many."""
         return Finding, _VALUES(self)
 
 
+_EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
 _VALUES = attrgetter(*(field.name for field in fields(Finding)))

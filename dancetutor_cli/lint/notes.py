@@ -12,6 +12,8 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
 _KINDS = {"mine": Kind.MINE, "roll": Kind.ROLL, "hold": Kind.HOLD, "lift": Kind.LIFT, "fake": Kind.FAKE,
           "keysound": Kind.KEYSOUND}  # fmt: skip
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
+_IS_STEP, _IS_JUDGED = np.zeros(256, dtype=bool), np.zeros(256, dtype=bool)  # by kind; whether the games judge it
+_IS_STEP[list(_STEPS)] = _IS_JUDGED[[*_STEPS, Kind.MINE]] = True
 
 
 class Notes:
@@ -23,17 +25,18 @@ class Notes:
     def off_grid(self, grid: Sequence[int]) -> Iterator[tuple[int, int, int]]:
         """Tick, line and number of rows of every run of rows with steps that no quantisation of `grid` has."""
         notes = self._chart.notes
-        ticks, first = np.unique(notes.tick[np.isin(notes.kind, _STEPS)], return_index=True)
-        lines = notes.line[np.isin(notes.kind, _STEPS)][first]
-        odd = np.ones(len(ticks), dtype=bool)
-        for quantisation in grid:
-            odd &= ticks % max(TICKS_PER_MEASURE // quantisation, 1) != 0
-        yield from _runs(odd, ticks, lines)
+        if not _off(grid)[notes.tick % TICKS_PER_MEASURE].any():
+            return
+        steps = _IS_STEP[notes.kind]
+        ticks, first = np.unique(notes.tick[steps], return_index=True)
+        yield from _runs(_off(grid)[ticks % TICKS_PER_MEASURE], ticks, notes.line[steps][first])
 
     def unjudged(self) -> Iterator[tuple[int, int, int]]:
         """Tick, line and number of the notes of every run that lies in a warp or a fake segment."""
         notes = self._chart.notes
-        hidden = ~notes.judged & np.isin(notes.kind, (*_STEPS, Kind.MINE))
+        if notes.judged.all():
+            return
+        hidden = ~notes.judged & _IS_JUDGED[notes.kind]
         yield from _runs(hidden, notes.tick, notes.line)
 
     def of_kind(self, kind: str) -> list[tuple[int, int]]:
@@ -42,10 +45,18 @@ class Notes:
         if kind in _KINDS:
             found = notes.kind == _KINDS[kind]
             return list(zip(notes.tick[found].tolist(), notes.line[found].tolist(), strict=True))
-        steps = np.isin(notes.kind, _STEPS) & notes.judged
+        steps = _IS_STEP[notes.kind] & notes.judged
         ticks, first, counts = np.unique(notes.tick[steps], return_index=True, return_counts=True)
         rows = counts >= 3 if kind == "hand" else counts == 2
         return list(zip(ticks[rows].tolist(), notes.line[steps][first][rows].tolist(), strict=True))
+
+
+def _off(grid: Sequence[int]) -> NDArray[np.bool_]:
+    """For each tick of a measure whether no quantisation of `grid` has it."""
+    off = np.ones(TICKS_PER_MEASURE, dtype=bool)
+    for quantisation in grid:
+        off[:: max(TICKS_PER_MEASURE // quantisation, 1)] = False
+    return off
 
 
 def _runs(

@@ -60,9 +60,8 @@ class ReaderRule(Rule):
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each warning that is claimed."""
-        for code, message, place in subject.warnings():
-            if code in self.codes:
-                yield self.finding(message, place)
+        for message, place in subject.warnings(self.codes):
+            yield self.finding(message, place)
 
 
 class MoveRule(ChartRule):
@@ -77,8 +76,8 @@ class MoveRule(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with the move."""
-        longest = self.options.get("max_seconds", math.inf)
-        for row in subject.rows_with_any(self.move):
+        rows, longest = subject.rows_with_any(self.move), self.options.get("max_seconds", math.inf)
+        for row in rows:
             if subject.pause(row) <= longest + 1e-6:
                 yield self.finding(self.message(subject, row), subject.at_row(row))
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -17,6 +18,8 @@ from dancetutor_cli.lint.notes import Notes
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.model import Ambiguity, Limb, Play, StepKind
 
+_LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
+
 
 @dataclass(frozen=True)
 class FileSubject:
@@ -24,10 +27,11 @@ class FileSubject:
 
     song: Song
 
-    def warnings(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """Code, message and place of what the reader warned of about the song."""
+    def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Message and place of what the reader warned of about the song, if the warning has one of these codes."""
         for warning in self.song.warnings:
-            yield warning.code, warning.message, self.place(warning.line)
+            if warning.code in codes:
+                yield warning.message, self.place(warning.line)
 
     def tag_place(self, name: str) -> dict[str, Any]:
         """Where a tag of the song stands, if it is found as written."""
@@ -66,39 +70,53 @@ class ChartSubject:
         return Notes(self.chart)
 
     @cached_property
-    def _rows_by_move(self) -> Mapping[str, list[int]]:
-        index: dict[str, list[int]] = {}
-        for row, names in enumerate(self.play.moves if self.play else ()):
+    def counts(self) -> Mapping[str, int]:
+        """Name of the move -> rows of the play in which it happens."""
+        counts: dict[str, int] = {}
+        for names, rows in self._kinds_of_row.items():
             for name in names:
-                index.setdefault(name, []).append(row)
-        return index
+                counts[name] = counts.get(name, 0) + rows
+        return counts
+
+    @cached_property
+    def _kinds_of_row(self) -> Mapping[tuple[str, ...], int]:
+        """Moves that happen together in a row -> how often."""
+        return Counter(self.play.moves if self.play else ())
+
+    def _rows_with(self, moves: Collection[str]) -> list[int]:
+        kinds = {names for names in self._kinds_of_row if any(name in moves for name in names)}
+        return [row for row, names in enumerate(self.play.moves) if names in kinds] if self.play and kinds else []
 
     @property
     def row_count(self) -> int:
         """Rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
 
-    def warnings(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
-        """Code, message and place of what the reader warned of about the chart."""
+    def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Message and place of what the reader warned of about the chart, if the warning has one of these codes."""
         for warning in self.chart.warnings:
-            yield warning.code, warning.message, self.at_line(warning.line)
+            if warning.code in codes:
+                yield warning.message, self.at_line(warning.line)
 
     def rows_with(self, move: str) -> list[int]:
         """Rows of the play in which a move of this name happens, in order."""
-        return self._rows_by_move.get(move, [])
+        return self._rows_with((move,)) if move in self.counts else []
 
     def rows_with_any(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
-        kinds = (name for name in self._rows_by_move if name == move or name.startswith(f"{move}-"))
-        return sorted({row for name in kinds for row in self._rows_by_move[name]})
+        kinds = [name for name in self.counts if name.startswith(move) and name[len(move) :][:1] in ("", "-")]
+        return self._rows_with(kinds) if kinds else []
 
-    def step_rows(self) -> list[int]:
+    @cached_property
+    def step_rows(self) -> NDArray[np.int64]:
         """Rows of the play with at least one step."""
-        return [] if self.play is None else np.flatnonzero(self.play.rows.steps.any(axis=1)).tolist()
+        if self.feet is not None:
+            return self.feet.stepped
+        return np.flatnonzero(self.play.rows.steps.any(axis=1)) if self.play else np.zeros(0, dtype=np.int64)
 
     @cached_property
     def _pauses(self) -> NDArray[np.float64]:
-        rows = np.array(self.step_rows(), dtype=np.int64)
+        rows = self.step_rows
         found = np.full(self.row_count, np.inf)
         if self.play is not None:
             found[rows[1:]] = np.diff(self.play.rows.second[rows])
@@ -111,8 +129,8 @@ class ChartSubject:
     def is_jump(self, row: int) -> bool:
         """Whether both feet press in this row."""
         assert self.play is not None
-        limbs = self.play.limb[row]
-        return bool((limbs == Limb.LEFT_FOOT).any() and (limbs == Limb.RIGHT_FOOT).any())
+        limbs = self.play.limb[row].tolist()
+        return _LEFT in limbs and _RIGHT in limbs
 
     def tempos(self) -> list[float]:
         """Every BPM of the chart's timing between its first and its last note."""
@@ -132,21 +150,25 @@ class ChartSubject:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
         if self.play is None or self.play.margin is None:
             return
-        rows = np.array(self.step_rows(), dtype=np.int64)
+        rows = self.step_rows
         tied = self.play.margin[rows] == 0
-        for first in rows[tied & ~np.concatenate([[False], tied[:-1]])].tolist():
+        first_of_run = tied.copy()
+        first_of_run[1:] &= ~tied[:-1]
+        for first in rows[first_of_run].tolist():
             known = self.play.ambiguity
             yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:
         """Time from the first to the last row with a step."""
-        rows = self.step_rows()
-        return 0.0 if self.play is None or not rows else float(np.ptp(self.play.rows.second[[rows[0], rows[-1]]]))
+        rows = self.step_rows
+        if self.play is None or not len(rows):
+            return 0.0
+        return abs(float(self.play.rows.second[rows[-1]] - self.play.rows.second[rows[0]]))
 
     def pressed(self, row: int) -> list[int]:
         """Note columns that have a step in a row of the play."""
         assert self.play is not None
-        return [int(column) for column in np.flatnonzero(self.play.rows.steps[row])]
+        return [column for column, kind in enumerate(self.play.rows.steps[row].tolist()) if kind]
 
     def foot_name(self, row: int) -> str:
         """ "left" or "right": the foot that presses the first panel of a row which only one foot steps."""
@@ -165,7 +187,7 @@ class ChartSubject:
         line = int(self.play.rows.line[row])
         if line > 0 or not len(self.chart.rows.tick):
             return max(line, self.chart.line)
-        written = int(np.searchsorted(self.chart.rows.tick, self.play.rows.tick[row], side="right")) - 1
+        written = int(self.chart.rows.tick.searchsorted(self.play.rows.tick[row], side="right")) - 1
         return int(self.chart.rows.line[max(written, 0)])
 
     def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
@@ -187,7 +209,7 @@ class ChartSubject:
         line = self.chart.line if line is None else line
         place: dict[str, Any] = {"line": line, "column": 1, "chart": self.chart.index}
         rows = self.chart.rows
-        found = int(np.searchsorted(rows.line, line))
+        found = int(rows.line.searchsorted(line))
         if found < len(rows.line) and rows.line[found] == line:
             tick = int(rows.tick[found])
             place |= {"beat": tick / TICKS_PER_BEAT, "measure": int(rows.measure[found])}
@@ -213,13 +235,17 @@ class ChartSubject:
     def _text_column(self, line: int, note_column: int) -> int:
         """1-based column of a note's character on its line; keysounds and blanks before it are counted."""
         rows = self.chart.rows
-        found = int(np.searchsorted(rows.line, line))
+        found = int(rows.line.searchsorted(line))
         if found >= len(rows.line) or rows.line[found] != line:
             return 1
         start, end = int(rows.start[found]), int(rows.end[found])
         line_start = self.song.data.rfind(b"\n", 0, start) + 1
-        places = list(_note_offsets(self.song.data[start:end]))
-        inside = places[note_column] if note_column < len(places) else 0
+        text = self.song.data[start:end]
+        if b"[" in text:
+            places = list(_note_offsets(text))
+            inside = places[note_column] if note_column < len(places) else 0
+        else:
+            inside = note_column if note_column < len(text) else 0
         return start - line_start + inside + 1
 
 

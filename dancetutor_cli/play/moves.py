@@ -23,6 +23,8 @@ _JACK, _CANDLE, _GALLOP, _STREAM, _DRILL = (
     1 << EVENTS.index(name) for name in ("jack", "candle", "gallop", "stream", "drill")
 )
 
+_NONE, _LEFT, _RIGHT = int(Limb.NONE), int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
+_NO_FOOT, _ZERO = np.int8(-1), np.zeros(1, dtype=np.int64)
 _SWITCHES = sum(1 << bit for bit, name in enumerate(EVENTS) if "switch" in name)
 
 
@@ -31,105 +33,115 @@ class _Steps:
     """The rows with steps, and in those with one step by a foot: which foot and panel. Arrays of one length.
 
     row : number of the row; foot : 0 left, 1 right, -1 if not one step by a foot; panel : its panel, else -1
+    ticks, seconds : (n - 1,), from each to the next; both : (n - 1,), whether a foot alone steps in this and the next
     """
 
     row: NDArray[np.int64]
-    foot: NDArray[np.int64]
+    foot: NDArray[np.int8]
     panel: NDArray[np.int64]
+    ticks: NDArray[np.int64]
+    seconds: NDArray[np.float64]
+    both: NDArray[np.bool_]
 
 
 def name_moves(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.int32]) -> tuple[tuple[str, ...], ...]:
     """Per row the names of what happens, sorted. `limb` : (n, c); `events` : (n,), bits of `EVENTS` from the solver."""
     found = events.astype(np.int64)
-    steps = _single_steps(limb)
-    found[steps.row[:1]] &= ~_SWITCHES  # the starting stance is no step that another foot could take over
-    if len(steps.row) > 1:
-        found[steps.row[1:][_jacks(steps)]] |= _JACK
-        found[steps.row[2:][_candles(steps, pad)]] |= _CANDLE
-        found[steps.row[1:][_gallops(steps, rows)]] |= _GALLOP
-        found[steps.row[_streams(steps, rows)]] |= _STREAM
-        found[steps.row[_drills(steps, rows)]] |= _DRILL
-    names = {bits: _names(bits) for bits in set(found.tolist())}
-    return tuple([names[bits] for bits in found.tolist()])
+    steps = _single_steps(rows, limb)
+    row = steps.row
+    found[row[:1]] &= ~_SWITCHES  # the starting stance is no step that another foot could take over
+    if len(row) > 1:
+        other = steps.both & (steps.foot[1:] != steps.foot[:-1])
+        found[row[1:][_jacks(steps)]] |= _JACK
+        found[row[2:][_candles(steps, other, pad)]] |= _CANDLE
+        found[row[1:][_gallops(steps, other)]] |= _GALLOP
+        found[row[_streams(steps)]] |= _STREAM
+        found[row[_drills(steps, other)]] |= _DRILL
+    return tuple([_names(bits) for bits in found.tolist()])
 
 
+@cache
 def _names(bits: int) -> tuple[str, ...]:
     return tuple(sorted(name for bit, name in enumerate(EVENTS) if bits >> bit & 1))
 
 
-def _single_steps(limb: NDArray[np.int8]) -> _Steps:
-    stepped = limb != Limb.NONE
-    count = stepped.sum(axis=1)
-    row = np.flatnonzero(count)
-    panel = stepped[row].argmax(axis=1)
-    foot = limb[row, panel].astype(np.int64)
-    single = (count[row] == 1) & ((foot == Limb.LEFT_FOOT) | (foot == Limb.RIGHT_FOOT))
-    return _Steps(row, np.where(single, foot, -1), np.where(single, panel, -1))
+def _single_steps(rows: Rows, limb: NDArray[np.int8]) -> _Steps:
+    cell = np.flatnonzero(limb != _NONE)
+    at, column = np.divmod(cell, limb.shape[1])
+    first = np.flatnonzero(at[1:] != at[:-1]) + 1
+    first = np.concatenate([_ZERO[: len(at)], first])
+    row, panel = at[first], column[first]
+    foot = limb.ravel()[cell[first]]
+    single = (foot == _LEFT) | (foot == _RIGHT)
+    single[:-1] &= first[1:] - first[:-1] == 1
+    single[-1:] &= first[-1:] == len(cell) - 1
+    tick, second = rows.tick[row], rows.second[row]
+    return _Steps(
+        row, np.where(single, foot, _NO_FOOT), np.where(single, panel, -1),
+        tick[1:] - tick[:-1], second[1:] - second[:-1], single[1:] & single[:-1],
+    )  # fmt: skip
 
 
 def _jacks(steps: _Steps) -> NDArray[np.bool_]:
     """Rows from the second on in which the same foot steps on the same panel as in the row before."""
     foot, panel = steps.foot, steps.panel
-    return np.asarray((foot[1:] >= 0) & (foot[1:] == foot[:-1]) & (panel[1:] == panel[:-1]))
+    return np.asarray(steps.both & (foot[1:] == foot[:-1]) & (panel[1:] == panel[:-1]))
 
 
-def _candles(steps: _Steps, pad: Pad) -> NDArray[np.bool_]:
+def _candles(steps: _Steps, other: NDArray[np.bool_], pad: Pad) -> NDArray[np.bool_]:
     """Rows from the third on in which a foot passes from back to front or back, past a step of the other foot."""
-    foot, panel = steps.foot, steps.panel
-    alternate = (foot[2:] >= 0) & (foot[1:-1] >= 0) & (foot[2:] == foot[:-2]) & (foot[2:] != foot[1:-1])
-    way = pad.panels[panel[2:]] - pad.panels[panel[:-2]]
-    least = _threshold("candle", "depth")
-    return np.asarray(alternate & (np.abs(way[:, 0]) < _EPSILON) & (np.abs(way[:, 1]) >= least - _EPSILON))
+    alternate = other[1:] & other[:-1]
+    across = np.abs(pad.panels[:, None] - pad.panels[None])
+    long = (across[..., 0] < _EPSILON) & (across[..., 1] >= _threshold("candle", "depth") - _EPSILON)
+    return np.asarray(alternate & long[steps.panel[2:], steps.panel[:-2]])
 
 
-def _gallops(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
+def _gallops(steps: _Steps, other: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Rows from the second on that follow the row before closely with the other foot, their neighbours well apart."""
-    foot, second = steps.foot, rows.second[steps.row]
-    gap = np.diff(second)
-    around = np.concatenate([[np.inf], gap, [np.inf]])
-    apart = np.minimum(around[:-2], around[2:]) >= _threshold("gallop", "neighbours") * gap - _EPSILON
-    return np.asarray(
-        (foot[1:] >= 0) & (foot[:-1] >= 0) & (foot[1:] != foot[:-1]) & apart & _close(steps, rows, "gallop")
-    )
+    near = other & _close(steps, "gallop")
+    if not near.any():
+        return near
+    around = np.concatenate([[np.inf], steps.seconds, [np.inf]])
+    apart = _threshold("gallop", "neighbours") * steps.seconds - _EPSILON
+    return np.asarray(near & (np.minimum(around[:-2], around[2:]) >= apart))
 
 
-def _streams(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
+def _streams(steps: _Steps) -> NDArray[np.intp]:
     """Rows in a long run of single steps close to each other."""
-    single = steps.foot >= 0
-    return _runs(single[1:] & single[:-1] & _close(steps, rows, "stream"), int(_threshold("stream", "length")))
+    return _in_runs(steps.both & _close(steps, "stream"), int(_threshold("stream", "length")))
 
 
-def _drills(steps: _Steps, rows: Rows) -> NDArray[np.bool_]:
+def _drills(steps: _Steps, other: NDArray[np.bool_]) -> NDArray[np.intp]:
     """Rows in a run in which the feet alternate on two panels, close to each other."""
-    foot, panel = steps.foot, steps.panel
-    linked = (foot[1:] >= 0) & (foot[:-1] >= 0) & (foot[1:] != foot[:-1]) & _close(steps, rows, "drill")
-    linked &= panel[1:] != panel[:-1]
-    back = np.ones(len(linked), dtype=bool)
-    back[1:] = (panel[2:] == panel[:-2]) | ~linked[:-1]  # the second step of a run is on whatever panel
-    drill = np.zeros(len(foot), dtype=bool)
-    start, length = 0, int(_threshold("drill", "length"))
-    for end in np.flatnonzero(np.append(~(linked & back), True)).tolist():
-        if end + 1 - start >= length:
-            drill[start : end + 1] = True
-        start = end if end < len(linked) and linked[end] else end + 1
-    return drill
+    panel = steps.panel
+    linked = other & (panel[1:] != panel[:-1]) & _close(steps, "drill")
+    on = linked.copy()
+    on[1:] &= (panel[2:] == panel[:-2]) | ~linked[:-1]  # the second step of a run is on whatever panel
+    last = np.append(np.flatnonzero(~on), len(on))  # rows with which a run ends
+    first = np.zeros(len(last), dtype=np.int64)
+    first[1:] = last[:-1] + ~linked[last[:-1]]
+    return _spans(first, last, int(_threshold("drill", "length")))
 
 
-def _close(steps: _Steps, rows: Rows, move: str) -> NDArray[np.bool_]:
+def _close(steps: _Steps, move: str) -> NDArray[np.bool_]:
     """Whether each row from the second on follows the one before closely enough for a move."""
-    ticks, seconds = np.diff(rows.tick[steps.row]), np.diff(rows.second[steps.row])
-    near = (ticks <= _threshold(move, "beats") * TICKS_PER_BEAT) & (seconds <= _threshold(move, "seconds") + _EPSILON)
-    return np.asarray(near)
+    most_ticks, most_seconds = _threshold(move, "beats") * TICKS_PER_BEAT, _threshold(move, "seconds") + _EPSILON
+    return np.asarray((steps.ticks <= most_ticks) & (steps.seconds <= most_seconds))
 
 
-def _runs(linked: NDArray[np.bool_], length: int) -> NDArray[np.bool_]:
+def _in_runs(linked: NDArray[np.bool_], length: int) -> NDArray[np.intp]:
     """Which of n rows are in a run of at least `length` rows, by whether each is linked to the one before (n - 1,)."""
-    edges = np.diff(np.concatenate([[False], linked, [False]]).astype(np.int8))
-    inside = np.zeros(len(linked) + 1, dtype=bool)
-    for first, last in zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True):
-        if last - first + 1 >= length:
-            inside[first : last + 1] = True
-    return inside
+    padded = np.zeros(len(linked) + 2, dtype=bool)
+    padded[1:-1] = linked
+    edges = np.flatnonzero(padded[1:] != padded[:-1])
+    return _spans(edges[::2], edges[1::2], length)
+
+
+def _spans(first: NDArray[np.int64], last: NDArray[np.int64], length: int) -> NDArray[np.intp]:
+    """The rows of all spans, first and last row included, that have at least `length` rows."""
+    long = np.flatnonzero(last - first + 1 >= length)
+    spans = [np.arange(a, b + 1) for a, b in zip(first[long].tolist(), last[long].tolist(), strict=True)]
+    return np.concatenate(spans) if spans else np.empty(0, dtype=np.intp)
 
 
 @cache

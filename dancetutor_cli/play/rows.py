@@ -13,6 +13,7 @@ _STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
 _STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL
 # 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat in ticks, longest first
 _ROLL_GAPS = tuple(TICKS_PER_BEAT // part for part in (1, 2, 3, 4, 6, 8, 12, 16))
+_MINE, _HOLD = int(Kind.MINE), int(StepKind.HOLD)
 _EPSILON = 1e-6  # seconds (cost-model.md)
 
 
@@ -26,32 +27,53 @@ def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     roll_window : seconds that a roll may go unpressed; it becomes taps at most so far apart
     """
     notes, c = chart.notes, len(pad)
-    ours = notes.judged & (notes.column < c)
     kinds = _STEP_OF_KIND[notes.kind]
-    step, mine = ours & (kinds > 0), ours & (notes.kind == Kind.MINE)
-    roll_tick, roll_column = _roll_taps(chart, ours & (notes.kind == Kind.ROLL), roll_window)
-    tick = np.unique(np.concatenate([notes.tick[step | mine], roll_tick]))
-    n = len(tick)
-    steps = np.zeros((n, c), dtype=np.uint8)
-    steps[np.searchsorted(tick, roll_tick), roll_column] = StepKind.ROLL_TAP
-    row = np.searchsorted(tick, notes.tick)
-    steps[row[step], notes.column[step]] = kinds[step]  # a real note wins over a virtual one
-    hold_end = np.full((n, c), -1, dtype=np.int64)
-    hold = ours & (notes.kind == Kind.HOLD)
-    hold_end[row[hold], notes.column[hold]] = notes.end[hold]
-    mines = np.zeros((n, c), dtype=bool)
-    mines[row[mine], notes.column[mine]] = True
+    ours = notes.judged & ((kinds > 0) | (notes.kind == _MINE))
+    if notes.column.max(initial=0) >= c:
+        ours &= notes.column < c
+    here = np.flatnonzero(ours)
+    tick, column, kind, written = notes.tick[here], notes.column[here], kinds[here], notes.line[here]
+    known = tick[_is_new(tick)]
+    rolls = here[kind == StepKind.ROLL]
+    if len(rolls):
+        roll_tick, roll_column = _roll_taps(chart, rolls, roll_window)
+        known = np.unique(np.concatenate([known, roll_tick]))
+        row = known.searchsorted(tick)
+    else:
+        row = np.cumsum(_is_new(tick)) - 1
+    n = len(known)
+    cell = row * c + column
+    steps = np.zeros(n * c, dtype=np.uint8)
+    if len(rolls):
+        steps[known.searchsorted(roll_tick) * c + roll_column] = StepKind.ROLL_TAP
+    step = np.flatnonzero(kind)
+    steps[cell[step]] = kind[step]  # a real note wins over a virtual one
+    hold_end = np.full(n * c, -1, dtype=np.int64)
+    hold = np.flatnonzero(kind == _HOLD)
+    hold_end[cell[hold]] = notes.end[here[hold]]
+    mines = np.zeros(n * c, dtype=bool)
+    mines[cell[kind == 0]] = True
     line = np.zeros(n, dtype=np.int32)
-    line[row[step | mine]] = notes.line[step | mine]
-    second = chart.timing.seconds(tick)
-    return Rows(tick, second, line, steps, hold_end, mines, chart.timing.milliseconds(tick))
+    line[row] = written
+    second = chart.timing.seconds(known)
+    return Rows(
+        known, second, line, steps.reshape(n, c), hold_end.reshape(n, c), mines.reshape(n, c),
+        chart.timing.milliseconds(known),
+    )  # fmt: skip
 
 
-def _roll_taps(chart: Chart, rolls: NDArray[np.bool_], window: float) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
+def _is_new(ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether each of some ascending ticks is another one than that before it."""
+    new = np.ones(len(ticks), dtype=bool)
+    np.not_equal(ticks[1:], ticks[:-1], out=new[1:])
+    return new
+
+
+def _roll_taps(chart: Chart, rolls: NDArray[np.intp], window: float) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
     """Tick and column of every virtual tap, heads included."""
     notes = chart.notes
     ticks, columns = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int16)]
-    for note in np.flatnonzero(rolls):
+    for note in rolls.tolist():
         head = int(notes.tick[note])
         taps = np.arange(head, max(int(notes.end[note]), head + 1), roll_gap(chart.timing.bpm_at(head), window))
         ticks.append(taps)

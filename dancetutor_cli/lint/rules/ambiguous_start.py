@@ -39,7 +39,7 @@ class AmbiguousStart(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of rows that are ties, at its first."""
         for row, resolved in subject.ties():
-            begins = row == subject.step_rows()[0]
+            begins = row == subject.step_rows[0]
             if (begins or not resolved) and not subject.is_jump(row):
                 after = "the rows after it are stepped the same way" if resolved else "what follows depends on it"
                 verb = "begin" if begins else "come"
