@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import pickle
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from dancetutor_cli import chart as charts
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
+from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_request import Request as FilmRequest
@@ -24,7 +25,7 @@ from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.jobs.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.play import load_preset, preset_names
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 
@@ -57,6 +58,7 @@ def analyzed(song: Path, given: str | None = None) -> list[str]:
 
 
 def annotated(song: Path, given: str | None = None) -> list[str]:
+    _configured.cache_clear()  # it lives as long as a command
     outcomes = annotate_song([Item(song, song)], Order(("sidecar",), given, Selection()))
     assert [one.error for one in outcomes] == [None]
     data = json.loads(song.with_name("song.dancetutor.json").read_text())
@@ -92,6 +94,54 @@ def test_the_command_line_overrules_all(found: Found, song: Path) -> None:
 def test_the_configuration_overrules_the_pads(found: Found, song: Path) -> None:
     (song.parent.parent / "dancetutor.yaml").write_text("preset: thesis\n")
     assert found(song) == ["thesis"] * 4
+
+
+BY_DIFFICULTY = """\
+preset: stamina
+overrides:
+  - when: {difficulty: Light}
+    preset: beginner
+  - when: {steps-type: "pump-*", meter: "8-"}
+    preset: presets/mine.yaml
+  - when: {path: "elsewhere/*"}
+    preset: thesis
+"""
+
+
+@EVERYWHERE
+def test_the_configuration_goes_by_difficulty_meter_and_pad(found: Found, song: Path) -> None:
+    top = song.parent.parent
+    (top / "dancetutor.yaml").write_text(BY_DIFFICULTY)
+    (top / "presets").mkdir()
+    (top / "presets" / "mine.yaml").write_text("extends: pump\nweights: {spin: 7}\n")
+    assert found(song) == ["beginner", "stamina", "beginner", "mine"]
+
+
+@EVERYWHERE
+def test_later_entries_and_the_file_that_extends_win(found: Found, song: Path) -> None:
+    top = song.parent.parent
+    (top / "base.yaml").write_text(BY_DIFFICULTY.replace("presets/mine.yaml", "ddr"))
+    (top / "dancetutor.yaml").write_text("extends: base.yaml\noverrides:\n  - {when: {meter: 9}, preset: itg}\n")
+    assert found(song) == ["beginner", "itg", "beginner", "itg"]
+    (top / "dancetutor.yaml").write_text("extends: base.yaml\npreset: thesis\n")  # of all charts
+    assert found(song) == ["thesis"] * 4
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("beginner", ["beginner", "itg", "beginner", "pump"]),
+        ("stamina", ["stamina", "stamina", "pump", "pump"]),
+        ("contest", BY_PAD),
+        ("pack", BY_PAD),
+        ("default", BY_PAD),
+    ],
+)
+def test_the_configurations_that_come_along_name_presets(name: str, expected: list[str], song: Path) -> None:
+    data = json.loads(run(song, "--format", "json", "--config", name))
+    assert [chart["preset"] for chart in data["files"][0]["charts"]] == expected
+    (song.parent / "dancetutor.yaml").write_text(f"extends: {name}\n")
+    assert [analyzed(song), animated(song), annotated(song), filmed(song)] == [expected] * 4
 
 
 def test_a_preset_for_other_pads_works_and_says_so(song: Path) -> None:
@@ -193,3 +243,14 @@ def test_the_path_of_a_chart_may_be_relative(song: Path, monkeypatch: pytest.Mon
     chart = charts.load(song).charts[1]
     assert preset_for(chart, Path("song.sm"), choice_for(Path("song.sm"), None)).name == "stamina"
     assert preset_for(chart, Path("song.sm"), PresetChoice()).name == "itg"
+
+
+def test_the_page_about_presets_is_true(song: Path) -> None:
+    page = (Path(__file__).resolve().parent.parent.parent / "docs" / "presets.md").read_text("utf-8")
+    assert sorted(re.findall(r"^\| `(\w+)` \|", page, re.M)) == preset_names()
+    settings, mine = re.findall(r"```yaml\n(.*?)```", page, re.S)
+    top = song.parent.parent
+    (top / "presets").mkdir()
+    (top / "presets" / "mine.yaml").write_text(mine)
+    (top / "dancetutor.yaml").write_text(settings)
+    assert analyzed(song) == ["beginner", "itg", "mine", "mine"]

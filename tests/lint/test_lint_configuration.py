@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.library.settings_file import find_settings_file
+from dancetutor_cli.library.settings_file import Condition, find_settings_file
 from dancetutor_cli.lint.configuration import (
     Configuration,
     default_rules,
@@ -153,6 +153,35 @@ def test_paths_in_the_file_are_relative_to_it(tmp_path: Path) -> None:
     assert configured("preset: stamina\n", tmp_path).preset == "stamina"
 
 
+def test_what_it_says_about_presets_is_in_order(tmp_path: Path) -> None:
+    given = configured("preset: itg\noverrides:\n  - {when: {difficulty: [Oni, heavy]}, preset: ddr}\n", tmp_path)
+    (always, first), (when, second) = given.presets
+    assert (always, first, second) == (Condition(), "itg", "ddr")
+    assert when.holds_for_chart("dance-single", "Hard", 9) and when.holds_for_chart("pump-single", "Challenge", 9)
+    assert not when.holds_for_chart("dance-single", "Easy", 9)
+
+
+def test_a_steps_type_may_be_a_pattern(tmp_path: Path) -> None:
+    text = "overrides:\n  - when: {steps-type: ['PUMP-*', dance-double]}\n    rules: {DT201: error}\n"
+    found = configured(text, tmp_path).settings
+    kinds = ("pump-halfdouble", "dance-double", "dance-single", "lights-cabinet")
+    severities = [found.for_chart(tmp_path / "x.sm", kind, "Hard", 9)["DT201"]["severity"] for kind in kinds]
+    assert severities == ["error", "error", "warning", "warning"]
+
+
+def test_a_link_out_of_the_folder_is_no_preset(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("extends: itg\n")
+    (tmp_path / "pack").mkdir()
+    (tmp_path / "pack" / "mine.yaml").symlink_to(tmp_path / "mine.yaml")
+    with pytest.raises(FileError, match="leads out of the folder"):
+        configured("preset: mine.yaml\n", tmp_path / "pack")
+
+
+def test_the_command_line_may_name_any_preset(tmp_path: Path) -> None:
+    given = with_assignments(load_configuration("stamina"), [f"preset={tmp_path / 'mine.yaml'}"])
+    assert given.presets == ((Condition(), str(tmp_path / "mine.yaml")),)
+
+
 def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
     (tmp_path / "dancetutor.yaml").write_text("{}")
     deep = tmp_path / "a" / "b"
@@ -173,6 +202,17 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
         ("overrides:\n  - rules: {}\n", 2, ["when"]),
         ("overrides:\n  - when: {metre: 3}\n", 2, ["metre", "meter"]),
         ("overrides:\n  - when:\n      meter: hard\n", 3, ["hard", "1-7"]),
+        (
+            "overrides:\n  - when: {difficulty: [Easy, Herd]}\n",
+            2,
+            ["did you mean Hard", "Beginner, Easy, Medium"],
+        ),
+        ("overrides:\n  - when:\n      steps-type: danse-*\n", 3, ["danse-*", "dance-*", "pump-*"]),
+        ("preset: gpt\n", 1, ["gpt", "beginner, ddr, itg, pump, stamina, thesis"]),
+        ("overrides:\n  - when: {meter: 3}\n    preset: begginer\n", 3, ["did you mean beginner", "thesis"]),
+        ("preset: ../mine.yaml\n", 1, ["../mine.yaml", "leads out of the folder"]),
+        ("overrides:\n  - when: {meter: 3}\n    preset: /etc/mine.yaml\n", 3, ["leads out of the folder"]),
+        ("feet:\n  - when: {difficulty: Herd}\n    steps: {16: L}\n", 2, ["Herd", "Beginner, Easy"]),
         ("rules: [\n", 2, ["expected"]),
         ("- a\n", 1, ["mapping"]),
     ],
