@@ -114,7 +114,7 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         cost=0 if play is None else play.total,
         counts=subject.counts,
         findings=findings if play is None else with_excerpts(findings, play),
-        rows=tuple(json_rows(subject)) if task.want_rows else None,
+        rows=json_rows(subject) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),
         figures=_figures(subject, task) if task.want_figures else None,
         alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,

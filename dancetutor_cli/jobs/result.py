@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from dancetutor_cli.lint.model import Finding
 
@@ -70,7 +69,7 @@ class Figures:
 
 @dataclass(frozen=True, slots=True)
 class ChartResult:
-    """One analysed chart. `rows` are the JSON rows of analysis-json.md, None where nobody asked for them.
+    """One analysed chart. `rows` is the JSON text of analysis-json.md's rows, None where nobody asked for it.
 
     counts : name of the move -> rows in which it happens
     playable : False if the steps type has no pad; then there are no rows and no cost
@@ -89,7 +88,7 @@ class ChartResult:
     cost: int
     counts: Mapping[str, int]
     findings: tuple[Finding, ...]
-    rows: tuple[Mapping[str, Any], ...] | None = None
+    rows: str | None = None
     arrows: str = ""
     figures: Figures | None = None
     alternatives: tuple[AlternativeResult, ...] | None = None

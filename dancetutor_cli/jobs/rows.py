@@ -1,53 +1,122 @@
-"""The rows of a play as analysis-json.md describes them."""
+"""The rows of a play as analysis-json.md describes them: text from the start, for there are hundreds of thousands.
+
+Most rows look like others: what a row says besides its time, its line and its margin is written once for all rows of a
+run that share it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from functools import lru_cache
+from itertools import starmap
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play.model import Limb, Part, StepKind
+from dancetutor_cli.play.model import Limb, Part, Play, StepKind
 
-_LIMBS = {limb: limb.name.lower() for limb in Limb if limb >= 0}
-_KINDS = {kind: kind.name.lower() for kind in StepKind}
-_PARTS = {Part.HEEL: "heel", Part.TOE: "toe"}
+_LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
+_KINDS = {int(kind): kind.name.lower() for kind in StepKind}
+_PARTS = {int(Part.HEEL): "heel", int(Part.TOE): "toe"}
+_SMALL, _LARGE = 0.001, 1e9  # numbers beyond are written with an exponent, or with more digits than a float has
+_MOST_KNOWN = 100_000  # texts kept, so that a long run does not fill the memory
 
 
-def json_rows(subject: ChartSubject) -> Iterator[dict[str, Any]]:
-    """One mapping for each row with a step, keys in the documented order; none for a chart without a play.
+def json_rows(subject: ChartSubject) -> str:
+    """The JSON of a list, one object for each row with a step, keys in the documented order; "[]" without a play.
 
     A row of mines alone is there too if it costs something, so that the rows add up to the chart's cost.
     """
     play = subject.play
     if play is None:
-        return
-    feet, facing, limbs, parts = play.feet.tolist(), play.facing.tolist(), play.limb.tolist(), play.part.tolist()
-    ticks, seconds = play.rows.tick.tolist(), play.rows.second.tolist()
-    steps, costs = play.rows.steps.tolist(), play.cost.tolist()
-    margins: list[int] = [-1] * len(ticks) if play.margin is None else play.margin.tolist()
-    for row in np.flatnonzero(play.rows.steps.any(axis=1) | (play.cost != 0).any(axis=1)).tolist():
-        left, right = (None if panel < 0 else panel for panel in feet[row])
-        yield {
-            "beat": round(ticks[row] / TICKS_PER_BEAT, 6),
-            "measure": ticks[row] // TICKS_PER_MEASURE,
-            "second": round(seconds[row], 6),
-            "line": subject.file_line(row),
-            "steps": [
-                {
-                    "column": column,
-                    "limb": _LIMBS.get(limbs[row][column]),
-                    "kind": _KINDS[kind],
-                    "part": _PARTS.get(parts[row][column]),
-                }
-                for column, kind in enumerate(steps[row])
-                if kind
-            ],
-            "feet": {"left": left, "right": right},
-            "facing": round(facing[row], 6),
-            "moves": list(play.moves[row]),
-            "cost": {term: cost for term, cost in zip(play.terms, costs[row], strict=True) if cost},
-            "margin": None if margins[row] < 0 else margins[row],
-        }
+        return "[]"
+    shown = np.flatnonzero(play.rows.steps.any(axis=1) | (play.cost != 0).any(axis=1))
+    beats = map(_beat, play.rows.tick[shown].tolist())
+    seconds, lines = play.rows.second[shown].tolist(), subject.file_lines[shown].tolist()
+    said = _said(play, shown)
+    margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
+    rows = zip(beats, seconds, lines, said, margins, strict=True)
+    return f"[{', '.join(starmap(_row, rows))}]"
+
+
+def _row(beat: str, second: float, line: int, said: str, margin: str) -> str:
+    if abs(second) < _SMALL or second > _LARGE:
+        return f'{beat}{round(second, 6)!r}, "line": {line}, {said}{margin}}}'
+    decimals = f"{second:.6f}".rstrip("0")  # what `repr` of the rounded number is, in a third of the time
+    return f'{beat}{decimals}{"0" if decimals[-1] == "." else ""}, "line": {line}, {said}{margin}}}'
+
+
+@lru_cache(maxsize=_MOST_KNOWN)
+def _beat(tick: int) -> str:
+    """The start of a row, up to its second."""
+    return f'{{"beat": {round(tick / TICKS_PER_BEAT, 6)!r}, "measure": {tick // TICKS_PER_MEASURE}, "second": '
+
+
+@lru_cache(maxsize=_MOST_KNOWN)
+def _margin(margin: int) -> str:
+    return "null" if margin < 0 else str(margin)
+
+
+def _said(play: Play, shown: NDArray[np.intp]) -> list[str]:
+    """What each of some rows says between its line and its margin."""
+    poses, costs = _poses(play.limb.shape[1]), _costs(play.terms)
+    moves, said = play.moves, []
+    looks = _bytes(shown, play.rows.steps, play.limb, play.part, play.feet, play.facing[:, None])
+    for row, look, cost in zip(shown.tolist(), looks, _bytes(shown, play.cost), strict=True):
+        if (pose := poses.get(look)) is None:
+            pose = poses[look] = _pose(play, row)
+        if (terms := costs.get(cost)) is None:
+            terms = costs[cost] = _terms(play, row)
+        said.append(f"{pose}{_moves(moves[row])}{terms}")
+    for known in (poses, costs):
+        if len(known) > _MOST_KNOWN:
+            known.clear()
+    return said
+
+
+@lru_cache(maxsize=32)
+def _poses(columns: int) -> dict[bytes, str]:
+    """What is known of rows of so many columns: the text of steps, feet and facing by their bytes."""
+    return {}
+
+
+@lru_cache(maxsize=32)
+def _costs(terms: tuple[str, ...]) -> dict[bytes, str]:
+    """The text of costs by their bytes."""
+    return {}
+
+
+@lru_cache(maxsize=_MOST_KNOWN)
+def _moves(names: tuple[str, ...]) -> str:
+    return f"{json.dumps(names)}, "
+
+
+def _bytes(shown: NDArray[np.intp], *arrays: NDArray[Any]) -> list[bytes]:
+    """For each of some rows all that arrays have there."""
+    table = np.concatenate([np.ascontiguousarray(array[shown]).view(np.uint8) for array in arrays], axis=1)
+    data, width = table.tobytes(), table.shape[1]
+    return [data[at : at + width] for at in range(0, len(data), width)]
+
+
+def _pose(play: Play, row: int) -> str:
+    left, right = (None if panel < 0 else panel for panel in play.feet[row].tolist())
+    limbs, parts = play.limb[row].tolist(), play.part[row].tolist()
+    said: dict[str, Any] = {
+        "steps": [
+            {"column": column, "limb": _LIMBS.get(limbs[column]), "kind": _KINDS[kind],
+             "part": _PARTS.get(parts[column])}
+            for column, kind in enumerate(play.rows.steps[row].tolist())
+            if kind
+        ],
+        "feet": {"left": left, "right": right},
+        "facing": round(float(play.facing[row]), 6),
+    }  # fmt: skip
+    return f'{json.dumps(said)[1:-1]}, "moves": '
+
+
+def _terms(play: Play, row: int) -> str:
+    costs = {term: cost for term, cost in zip(play.terms, play.cost[row].tolist(), strict=True) if cost}
+    return f'"cost": {json.dumps(costs)}, "margin": '

@@ -6,8 +6,8 @@ A layer is what one file says, or one entry of its `overrides`. Later layers win
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Any
 
@@ -43,10 +43,11 @@ class Settings:
 
     layers: tuple[Layer, ...] = ()
     stream_rows: int = 16
+    _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_layer(self, layer: Layer) -> Settings:
         """The same with one more layer on top."""
-        return replace(self, layers=(*self.layers, layer))
+        return Settings((*self.layers, layer), self.stream_rows)
 
     def fingerprint(self) -> str:
         """The same text for the same settings, in every process."""
@@ -57,17 +58,24 @@ class Settings:
 
     def for_file(self, path: PurePath) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""
-        return _resolve(
-            layer for layer in self.layers if not layer.when.is_about_charts and layer.when.holds_for_path(path)
-        )
+        return self._of(
+            n for n, layer in enumerate(self.layers)
+            if not layer.when.is_about_charts and layer.when.holds_for_path(path)
+        )  # fmt: skip
 
     def for_chart(self, path: PurePath, steps_type: str, difficulty: str, meter: int) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a chart."""
-        return _resolve(
-            layer
-            for layer in self.layers
+        return self._of(
+            n for n, layer in enumerate(self.layers)
             if layer.when.holds_for_path(path) and layer.when.holds_for_chart(steps_type, difficulty, meter)
-        )
+        )  # fmt: skip
+
+    def _of(self, layers: Iterable[int]) -> dict[str, Options]:
+        """The rules of some of the layers; most files and charts have the same."""
+        holding = tuple(layers)
+        if holding not in self._resolved:
+            self._resolved[holding] = _resolve(self.layers[n] for n in holding)
+        return self._resolved[holding]
 
 
 def _resolve(layers: Any) -> dict[str, Options]:

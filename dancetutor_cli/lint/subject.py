@@ -183,12 +183,17 @@ class ChartSubject:
 
     def file_line(self, row: int) -> int:
         """Line in the file of a row of the play; where only a roll made it, of the row written before."""
+        return int(self.file_lines[row])
+
+    @cached_property
+    def file_lines(self) -> NDArray[np.int32]:
+        """The same of every row."""
         assert self.play is not None
-        line = int(self.play.rows.line[row])
-        if line > 0 or not len(self.chart.rows.tick):
-            return max(line, self.chart.line)
-        written = int(self.chart.rows.tick.searchsorted(self.play.rows.tick[row], side="right")) - 1
-        return int(self.chart.rows.line[max(written, 0)])
+        lines, written = self.play.rows.line, self.chart.rows
+        if not len(written.tick) or (lines > 0).all():
+            return np.maximum(lines, self.chart.line)
+        before = written.tick.searchsorted(self.play.rows.tick, side="right") - 1
+        return np.where(lines > 0, np.maximum(lines, self.chart.line), written.line[np.maximum(before, 0)])
 
     def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
         """Where a row of the play stands, as keyword arguments of `Finding`; without `note_column`: its first step."""

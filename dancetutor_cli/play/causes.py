@@ -11,14 +11,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.pads import Pad
+from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.model import Limb, Play, Rows, StepKind
 from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.solver import solve
+from dancetutor_cli.play.store import EVENTS
+from dancetutor_cli.play.vocabulary import EVENTS as NAMES
 
 _ROWS_BEFORE = 16  # a cause is looked for in so many rows before the doublestep
 _ROWS_AFTER = 32  # and so many after it are solved along, so that the end of the excerpt decides nothing
+_DOUBLESTEP = 1 << NAMES.index("doublestep")
+_HELD = np.zeros(len(StepKind), dtype=bool)
+_HELD[[StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP]] = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,37 +46,45 @@ class Blame:
 def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
     """The causes of all doublesteps of a play, forced or not, in order of their rows."""
     out = []
+    holds: dict[int, NDArray[np.int64]] = {}
+    engine = engine_for(pad, preset)
     for row, names in enumerate(play.moves):
         if "forced-doublestep" in names:
-            out.append(_holder(play, row))
+            stepping = 0 if (play.limb[row] == Limb.LEFT_FOOT).any() else 1
+            other = 1 - stepping
+            if other not in holds:
+                holds[other] = np.flatnonzero(_HELD[play.rows.steps] & (play.limb == other))
+            out.append(_holder(row, holds[other], len(pad)))
         elif "doublestep" in names:
-            out.append(_culprit(play, row, pad, preset))
+            out.append(_culprit(play, row, engine))
     return tuple(out)
 
 
-def _holder(play: Play, row: int) -> Blame:
-    """The hold or roll that reserves the other foot (or, in a bracket, the same) in a row."""
-    stepped = play.limb[row]
-    stepping = Limb.LEFT_FOOT if (stepped == Limb.LEFT_FOOT).any() else Limb.RIGHT_FOOT
-    other = 1 - int(stepping)
-    for earlier in range(row - 1, -1, -1):
-        pressed = np.flatnonzero(play.limb[earlier] == other)
-        for column in pressed.tolist():
-            if play.rows.steps[earlier, column] in (StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP):
-                return Blame(row, True, "hold", earlier, column)
-    return Blame(row, True, "pattern")
+def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
+    """The last hold or roll before a row, of those of the foot that it reserves; holds : row * columns + column."""
+    before = int(holds.searchsorted(row * columns)) - 1
+    if before < 0:
+        return Blame(row, True, "pattern")
+    at = int(holds[before]) // columns
+    return Blame(row, True, "hold", at, int(holds[holds.searchsorted(at * columns)]) % columns)
 
 
-def _culprit(play: Play, row: int, pad: Pad, preset: Preset) -> Blame:
+def _culprit(play: Play, row: int, engine: Engine) -> Blame:
     first, last = max(0, row - 2 * _ROWS_BEFORE), min(len(play.rows), row + _ROWS_AFTER)
     excerpt = _slice(play.rows, first, last)
     here = row - first
-    if "doublestep" not in solve(excerpt, pad, preset, margins=False).moves[here]:
+    if not _steps_twice(excerpt, here, engine):
         first, excerpt, here = 0, play.rows, row  # what is further back matters
     for cause, cause_row, column, without in _causes(excerpt, here):
-        if "doublestep" not in solve(without, pad, preset, margins=False).moves[here]:
+        if not _steps_twice(without, here, engine):
             return Blame(row, False, cause, cause_row + first, column)
     return Blame(row, False, "pattern")
+
+
+def _steps_twice(rows: Rows, row: int, engine: Engine) -> bool:
+    """Whether the cheapest way through rows has a doublestep in one of them."""
+    move = engine.cheapest(rows).move[row]
+    return bool(engine.tables.wide[move, EVENTS] & _DOUBLESTEP)
 
 
 def _causes(rows: Rows, row: int) -> Iterator[tuple[str, int, int, Rows]]:

@@ -40,8 +40,9 @@ class CsvReport:
         if result.error is not None:
             self._errors.write(f"dancetutor: {safe(result.error)}\n")
         assert self._writer is not None
+        file = (relative(result.path), safe(result.title), safe(result.artist)) if result.charts else ("", "", "")
         for chart in result.charts:
-            self._writer.writerow(_line(relative(result.path), safe(result.title), safe(result.artist), chart))
+            self._writer.writerow(_line(*file, chart))
 
     def end(self, tally: Tally) -> None:
         """Nothing comes after the last chart."""

@@ -32,7 +32,7 @@ class JsonReport:
         """Write one file."""
         if not self._files:
             self._head(next((chart.preset for chart in result.charts if chart.preset), self._preset))
-        self._write(f"{',' if self._files else ''}\n {json.dumps(file_object(result), ensure_ascii=False)}")
+        self._write(f"{',' if self._files else ''}\n {file_text(result)}")
         self._files += 1
 
     def end(self, tally: Tally) -> None:
@@ -50,33 +50,36 @@ class JsonReport:
         self._stream.write(text.encode("utf-8", "replace"))
 
 
-def file_object(result: FileResult) -> dict[str, Any]:
+def file_text(result: FileResult) -> str:
     """One entry of `files`; findings about the file itself follow its charts."""
-    return {
-        "path": result.path,
-        "error": result.error,
-        "warnings": list(result.warnings),
-        "charts": [chart_object(chart) for chart in result.charts],
-        "findings": [finding_object(finding) for finding in result.findings],
-    }
+    head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
+    tail = _members({"findings": [finding_object(finding) for finding in result.findings]})
+    return f'{{{head}, "charts": [{", ".join(map(_chart_text, result.charts))}], {tail}}}'
 
 
-def chart_object(chart: ChartResult) -> dict[str, Any]:
-    """One entry of `charts`."""
-    return {
+def _chart_text(chart: ChartResult) -> str:
+    """One entry of `charts`; its rows are JSON already."""
+    head = {
         "index": chart.index,
         "steps_type": chart.steps_type,
         "difficulty": chart.difficulty,
         "meter": chart.meter,
         "description": chart.description,
         "cost": chart.cost,
-        "rows": list(chart.rows or ()),
+    }
+    tail = {
         "findings": [finding_object(finding) for finding in chart.findings],
         "preset": chart.preset,
         "doublesteps": [asdict(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
     }
+    return f'{{{_members(head)}, "rows": {chart.rows or "[]"}, {_members(tail)}}}'
+
+
+def _members(data: dict[str, Any]) -> str:
+    """The members of an object as JSON, without its braces."""
+    return json.dumps(data, ensure_ascii=False)[1:-1]
 
 
 def finding_object(finding: Finding) -> dict[str, Any]:
