@@ -12,6 +12,7 @@ from dancetutor_cli.targets import check_file
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import Task
     from dancetutor_cli.jobs.sheet import Drawable
+    from dancetutor_cli.reports.sheet.draw import Sheet
 
 SUFFIXES = (".html", ".htm", ".svg")
 
@@ -31,7 +32,8 @@ def write_sheet(path: Path, tasks: list[Task]) -> str:
     charts = list(drawable_charts(tasks[0]))
     if not charts:
         raise UsageError(f"{tasks[0].path}: no chart with notes is selected, so there is nothing to draw")
-    sheets = [(make_sheet(chart.subject, chart.findings), _facts(chart)) for chart in charts]
+    made = [make_sheet(chart.subject, chart.findings) for chart in charts]
+    sheets = [(sheet, _facts(chart, sheet)) for chart, sheet in zip(charts, made, strict=True)]
     if path.suffix.lower() == ".svg":
         if len(sheets) > 1:
             has = "; ".join(f"{c.subject.chart.index}: {c.subject.chart.label}" for c in charts)
@@ -43,7 +45,8 @@ def write_sheet(path: Path, tasks: list[Task]) -> str:
     return f"{path}: {len(sheets)} chart{'s' if len(sheets) > 1 else ''} drawn"
 
 
-def _facts(chart: Drawable) -> list[str]:
+def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
+    from dancetutor_cli.reports.sheet.draw import unsure_rows
     from dancetutor_cli.reports.sheet.page import facts_of, length_of
 
     subject, dense = chart.subject, chart.density
@@ -53,4 +56,6 @@ def _facts(chart: Drawable) -> list[str]:
         numbers.append(f"stream {dense.breakdown}")
     if subject.play is not None:
         numbers.append(f"cost {subject.play.total}, preset {subject.play.preset}")
+    if unsure := unsure_rows(sheet):
+        numbers.append(f"{len(unsure)} rows less than {sheet.style.unsure:g} % sure")
     return facts_of(sorted(chart.counts.items()), numbers)

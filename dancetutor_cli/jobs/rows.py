@@ -38,6 +38,9 @@ def json_rows(subject: ChartSubject) -> str:
     seconds, lines = play.rows.second[shown].tolist(), subject.file_lines[shown].tolist()
     said = _said(play, shown)
     margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
+    if play.confidence is not None:
+        sure = map(_percent, play.confidence[shown].tolist())
+        margins = [f'{margin}, "confidence": {one}' for margin, one in zip(margins, sure, strict=True)]
     rows = zip(beats, seconds, lines, said, margins, strict=True)
     return f"[{', '.join(starmap(_row, rows))}]"
 
@@ -58,6 +61,10 @@ def _beat(tick: int) -> str:
 @lru_cache(maxsize=_MOST_KNOWN)
 def _margin(margin: int) -> str:
     return "null" if margin < 0 else str(margin)
+
+
+def _percent(confidence: float) -> str:
+    return "null" if confidence != confidence else repr(round(100 * confidence, 1))
 
 
 def _said(play: Play, shown: NDArray[np.intp]) -> list[str]:

@@ -10,8 +10,6 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
-from dancetutor_cli.errors import FileError
 from dancetutor_cli.library.settings_file import find_settings_file, places_of_settings_file
 
 EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
@@ -55,8 +53,8 @@ def _parts(song: Path) -> Iterator[bytes]:
 
 def _content(path: Path) -> bytes:
     try:
-        return read_bytes(path, CHART_LIMIT)
-    except FileError:
+        return path.read_bytes()
+    except OSError:
         return b""
 
 

@@ -16,6 +16,7 @@ from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.play.model import Limb, Play, StepKind
 
 _EPSILON = 1e-6
+_BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
 _RIGHT, _NONE, _HOLD, _ROLL_TAP = int(Limb.RIGHT_FOOT), int(StepKind.NONE), int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
@@ -97,6 +98,15 @@ class Feet:
     def crossed_runs(self) -> Iterator[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
         yield from self._crossed_runs
+
+    def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
+        """Runs of (row, confidence) less than `below`, with a few surer rows between them left out; none if unknown."""
+        if self._play.confidence is None:
+            return []
+        sure = self._play.confidence[self.stepped]
+        places = np.flatnonzero(sure < below)  # not where it is nan
+        runs = np.split(places, np.flatnonzero(np.diff(places) > _BETWEEN + 1) + 1) if len(places) else []
+        return [list(zip(self.stepped[run].tolist(), sure[run].tolist(), strict=True)) for run in runs]
 
     def half_turns(self) -> Iterator[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""

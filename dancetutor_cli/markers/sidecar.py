@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.markers.letters import limbs_of
@@ -103,11 +102,11 @@ def _files(path: Path, old: bytes | None) -> dict[str, Any]:
     if old is None:
         return {}
     try:
-        data = parse_json(old, path)
+        data = json.loads(old.decode("utf-8"))
         files = data["files"]
         if data["program"] == "dancetutor" and all(isinstance(f["charts"], list) for f in files.values()):
             return dict(files)
-    except (FileError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError):
         pass
     raise FileError(path, "is not a sidecar of dancetutor's; move it away or choose another style")
 

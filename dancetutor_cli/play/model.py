@@ -67,6 +67,7 @@ class Play:
     ambiguity : uint8 (n,) or None, `Ambiguity` of each row
     moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
     preset : name of the cost preset
+    confidence : float64 (n,) or None; how likely people step each row this way, 0 to 1, nan: not known (no step in it)
     """
 
     rows: Rows
@@ -80,6 +81,7 @@ class Play:
     moves: tuple[tuple[str, ...], ...]
     preset: str
     ambiguity: NDArray[np.uint8] | None = None
+    confidence: NDArray[np.float64] | None = None
 
     @property
     def total(self) -> int:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
+from numpy.typing import NDArray
 
 from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
 from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.play import Play, load_preset, solver
 
 CASES = Path(__file__).parent / "cases"
 KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",
-         "options", "found", "says"}  # fmt: skip
+         "confidence", "options", "found", "says"}  # fmt: skip
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -44,8 +48,11 @@ def chart_text(case: dict[str, Any]) -> str:
 
 
 @pytest.mark.parametrize(("code", "case"), all_cases())
-def test_case(code: str, case: dict[str, Any], tmp_path: Path) -> None:
+def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert set(case) <= KNOWN
+    if "confidence" in case:
+        sure = np.array([float(one) for one in case["confidence"]]) / 100
+        monkeypatch.setattr(solver, "solve_chart", _with(solver.solve_chart, sure))
     for name, content in case.get("files", {}).items():
         (tmp_path / name).write_text(content)
     path = tmp_path / "case.sm"
@@ -64,6 +71,10 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path) -> None:
     assert places == expected
     if "says" in case:
         assert case["says"] in found[0].message
+
+
+def _with(solve: Callable[..., Play], sure: NDArray[np.float64]) -> Callable[..., Play]:
+    return lambda *words, **named: replace(solve(*words, **named), confidence=sure)
 
 
 def _yaml(value: Any) -> str:

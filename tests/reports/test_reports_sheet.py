@@ -71,6 +71,22 @@ def test_crossed_poses_are_drawn_and_findings_stand_in_their_row() -> None:
     assert abs(float(code.get("y", "")) - sheet.layout.y(72)) < 4
 
 
+def test_rows_whose_feet_are_unsure_say_how_sure_they_are() -> None:
+    usual, style = subject(), sheet_style()
+    assert usual.play is not None and usual.play.confidence is None
+    assert not [e for e in elements(svg_sheet(make_sheet(usual, []), []), "text") if e.get("class") == "sure"]
+    sure = np.array([0.99, 0.4149, style.unsure / 100, 1, 0.6951, np.nan, 0.99, 0.99][: len(usual.play.rows)])
+    sheet = make_sheet(replace(usual, play=replace(usual.play, confidence=sure)), [])
+    drawn = svg_sheet(sheet, [])
+    told = [e for e in elements(drawn, "text") if e.get("class") == "sure"]
+    assert [e.text for e in told] == ["62", "41", "70"]  # the first is in the legend
+    ticks = usual.play.rows.tick[[1, 4]].tolist()
+    assert all(abs(float(e.get("y", "")) - sheet.layout.y(t)) < 12 for e, t in zip(told[1:], ticks, strict=True))
+    bands = [e for e in elements(drawn, "rect") if e.get("fill-opacity") == "0.2"]
+    assert [float(e.get("y", "")) + 7 for e in bands] == [pytest.approx(sheet.layout.y(t), abs=0.1) for t in ticks]
+    assert "whose foot it is here is 41 % sure" in drawn
+
+
 def test_text_of_the_file_cannot_break_out() -> None:
     page = html_page([(make_sheet(subject(title="</svg><script>x</script>"), [SPIN]), ["fact"])])
     assert "<script" not in page and "\x1b" not in page

@@ -18,6 +18,7 @@ from dancetutor_cli.reports.sheet.svg import number, tag, text, title
 from dancetutor_cli.reports.text import clock
 
 HOLD_OPACITY = 0.55
+_BAND_OPACITY = 0.2
 _HEADS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
 
@@ -51,8 +52,10 @@ def system(sheet: Sheet, which: int) -> str:
     ticks = range(measures.start * TICKS_PER_MEASURE, measures.stop * TICKS_PER_MEASURE)
     parts = [
         *(_measure(sheet, measure) for measure in measures),
+        *_unsure_bands(sheet, ticks),
         *_holds(sheet, ticks),
         *_notes(sheet, ticks),
+        *_unsure_marks(sheet, ticks),
         *_feet(sheet, ticks),
         *_findings(sheet, ticks),
     ]
@@ -154,6 +157,43 @@ def mark(style: Style, x: float, y: float, limb: int, part: int) -> str:
         points += f"{number(x)},{number(y + half + 1)} {number(x - half - 1)},{number(y)}"
         shape = tag("polygon", points=points, fill=colour, stroke=ink, stroke_width=0.6)
     return shape + text(letter, x, y + 3.1, "mark", text_anchor="middle")
+
+
+def unsure_rows(sheet: Sheet) -> list[tuple[int, int, float]]:
+    """Row, tick and confidence in per cent of every row that is less sure than the style says; none if unknown."""
+    play = sheet.subject.play
+    if play is None or play.confidence is None:
+        return []
+    percent = 100 * play.confidence
+    rows = np.flatnonzero((percent < sheet.style.unsure) & play.rows.steps.any(axis=1))
+    return [(row, int(play.rows.tick[row]), float(percent[row])) for row in rows.tolist()]
+
+
+def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """A band across each unsure row, behind its notes."""
+    for _, tick, percent in unsure_rows(sheet):
+        if tick in ticks:
+            left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
+            told = title(f"whose foot it is here is {percent:.0f} % sure")
+            yield tag("rect", told, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
+                      fill=sheet.style.colours["unsure"], fill_opacity=_BAND_OPACITY)  # fmt: skip
+
+
+def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """How sure each unsure row is, in per cent, at the corner of its last note: over the arrows beside it."""
+    play = sheet.subject.play
+    for row, tick, percent in unsure_rows(sheet):
+        if play is not None and tick in ticks:
+            lane = int(np.flatnonzero(play.rows.steps[row])[-1])
+            corner, x, y = sheet.style.arrow / 2, sheet.layout.x(tick, lane), sheet.layout.y(tick)
+            yield badge(sheet.style, x + corner - 1, y - corner + 3, percent)
+
+
+def badge(style: Style, x: float, y: float, percent: float) -> str:
+    """A confidence in per cent, white on a plate; x, y : its middle."""
+    plate = tag("rect", x=x - 7, y=y - 5, width=14, height=10, rx=3, fill=style.colours["unsure"],
+                stroke=style.colours["paper"], stroke_width=0.8)  # fmt: skip
+    return plate + text(f"{percent:.0f}", x, y + 3, "sure", text_anchor="middle")
 
 
 def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:

@@ -12,7 +12,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.safe import safe
-from dancetutor_cli.reports.sheet.draw import HOLD_OPACITY, Sheet, definitions, mark, system
+from dancetutor_cli.reports.sheet.draw import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
 from dancetutor_cli.reports.sheet.layout import lay_out
 from dancetutor_cli.reports.sheet.style import Style, sheet_style
 from dancetutor_cli.reports.sheet.svg import tag, text, title
@@ -128,6 +128,10 @@ def _legend(sheet: Sheet) -> str:
         if limb in limbs or limb in (0, 1):
             parts.append(mark(style, x + 16, 8, limb, 0) + text(name, x + 27, 11.5, "fact"))
             x += 40 + 5.4 * len(name)
+    if unsure_rows(sheet):
+        name = f"% sure of its feet, where less than {style.unsure:g}"
+        parts.append(badge(style, x + 16, 8, 62) + text(name, x + 27, 11.5, "fact"))
+        x += 40 + 5.0 * len(name)
     for name, kind, corner in (("hold", Kind.HOLD, 3), ("roll", Kind.ROLL, 3), ("mine", Kind.MINE, 6)):
         if (chart.notes.kind == kind).any():
             opacity = 1.0 if kind == Kind.MINE else HOLD_OPACITY
@@ -157,6 +161,7 @@ def _svg(style: Style, inside: str, height: float, *, outer: bool = False) -> st
         f"text{{font-family:{_FONT};fill:{colours['ink']}}}.title{{font-size:22px;font-weight:700}}"
         f".subtitle{{font-size:13px}}.fact{{font-size:10.5px;fill:{colours['faint']}}}"
         f".number{{font-size:10.5px;font-weight:600}}.time{{font-size:8px;fill:{colours['faint']}}}"
+        f".sure{{font-size:8.5px;font-weight:700;fill:{colours['paper']}}}"
         f".mark{{font-size:9px;font-weight:700}}.code{{font-size:7.5px;font-weight:600}}"
         f".sample{{stroke:{colours['ink']};stroke-width:.06}}"
         f".cross{{stroke:{colours['paper']};stroke-width:1.4;fill:none}}"
