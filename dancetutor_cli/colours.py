@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
-import yaml
-
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
 
 RGB = tuple[int, int, int]
@@ -37,11 +36,7 @@ def hex_colour(rgb: RGB) -> str:
 
 def read_limb_colours(path: Path) -> LimbColours:
     """Read and check the colours of one file; FileError names what is wrong and which names exist."""
-    try:
-        data = yaml.safe_load(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise FileError(path, f"cannot be read as YAML: {' '.join(str(error).split())}") from error
-    limbs = data.get("limbs") if isinstance(data, dict) else None
+    limbs = read(path).data.get("limbs")
     names = [field.name for field in fields(LimbColours)]
     if not isinstance(limbs, dict) or sorted(map(str, limbs)) != sorted(names):
         raise FileError(path, f"'limbs' must give a colour for each of: {', '.join(names)}")

@@ -1,17 +1,24 @@
-"""A YAML mapping with the line of every key, so that an error can say where in the file it is."""
+"""A YAML mapping with the line of every key, so that an error can say where in the file it is.
+
+The file may be a stranger's, and made to break whoever reads it: its size, its depth and the length of a value are
+bounded before anything is built of it, aliases are refused, every key stands once, and numbers are finite.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from dancetutor_cli.bounded import MAX_DEPTH, SETTINGS_LIMIT, read_bytes, shown_key
 from dancetutor_cli.errors import FileError
 
-_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where the wheel has it: ten times faster
+_Base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where the wheel has it: ten times faster
+_LONGEST = 10_000  # characters of one value
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,40 +49,112 @@ class MarkedYaml:
         for key in inside:
             if key not in known:
                 where = f" in '{keys[-1]}'" if keys else ""
-                raise self.error((*keys, key), f"unknown key '{key}'{where}; there are: {', '.join(known)}")
+                raise self.error((*keys, key), f"unknown key '{shown_key(key)}'{where}; there are: {', '.join(known)}")
 
 
 def read(path: Path) -> MarkedYaml:
     """Read a file whose top is a mapping. FileError says what is wrong and where."""
+    data, lines = _parsed(read_bytes(path, SETTINGS_LIMIT), path)
+    if data is None:
+        data = {}
+    if not isinstance(data, dict):
+        raise FileError(path, "must be a mapping of names to values", 1)
+    return MarkedYaml(path, data, lines)
+
+
+def parse_value(text: str, where: str) -> Any:
+    """A value of the command line in YAML; FileError at `where` if it is none."""
+    return _parsed(text.encode("utf-8", "surrogateescape"), Path(where))[0]
+
+
+def _parsed(content: bytes, path: Path) -> tuple[Any, dict[tuple[str | int, ...], int]]:
+    lines: dict[tuple[str | int, ...], int] = {}
     try:
-        loader = _Loader(path.read_bytes())
+        loader = _Loader(content)
         try:
             node = loader.get_single_node()
-            data = loader.construct_document(node) if node is not None else {}
+            if node is None:
+                return None, lines
+            _mark(node, (), lines, set())
+            return loader.construct_document(node), lines
         finally:
             loader.dispose()
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or "not YAML"
-        raise FileError(path, str(problem), None if mark is None else mark.line + 1) from error
-    except OSError as error:
-        raise FileError(path, f"cannot be read: {error.strerror or error}") from error
-    except ValueError as error:  # bytes that are no text, dates that do not exist
-        raise FileError(path, f"cannot be read: {error}") from error
-    if not isinstance(data, dict):
-        raise FileError(path, "must be a mapping of names to values", 1)
-    lines: dict[tuple[str | int, ...], int] = {}
-    _mark(node, (), lines)
-    return MarkedYaml(path, data, lines)
+        syntax = isinstance(error, yaml.scanner.ScannerError | yaml.parser.ParserError)
+        said = f"not YAML: {problem}" if syntax else _without_tag(str(problem))
+        raise FileError(path, said, None if mark is None else mark.line + 1) from error
+    except (ValueError, OverflowError) as error:  # numbers without end, dates that do not exist, bytes that are no text
+        why = "has a number of too many digits" if "digits" in str(error) else str(error)
+        raise FileError(path, f"cannot be read: {why}") from error
 
 
-def _mark(node: Any, keys: tuple[str | int, ...], lines: dict[tuple[str | int, ...], int]) -> None:
+class _Loader(_Base):  # type: ignore[misc]
+    """Bounds what a file may make us do; libyaml calls the `..._resolver` methods for every node on its way down."""
+
+    _depth = 0
+
+    def descend_resolver(self, current_node: Any, current_index: Any) -> None:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            mark = getattr(current_node, "start_mark", None)
+            raise yaml.MarkedYAMLError(problem=f"is nested deeper than {MAX_DEPTH} levels", problem_mark=mark)
+        super().descend_resolver(current_node, current_index)
+
+    def ascend_resolver(self) -> None:
+        self._depth -= 1
+        super().ascend_resolver()
+
+    def flatten_mapping(self, node: Any) -> None:
+        """`<<` merges what an alias names, and there are no aliases."""
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        mapping: dict[Any, Any] = super().construct_mapping(node, deep)
+        if len(mapping) < len(node.value):
+            seen: set[Any] = set()
+            for key_node, _ in node.value:
+                key = self.construct_object(key_node)
+                if key in seen:
+                    problem = f"the key '{shown_key(key)}' stands here twice; only one of them can be meant"
+                    raise yaml.MarkedYAMLError(problem=problem, problem_mark=key_node.start_mark)
+                seen.add(key)
+        return mapping
+
+    def construct_yaml_float(self, node: Any) -> float:
+        number = float(super().construct_yaml_float(node))
+        if not isfinite(number):
+            raise yaml.MarkedYAMLError(
+                problem="a number must be finite; write an ordinary one", problem_mark=node.start_mark
+            )
+        return number
+
+
+_Loader.add_constructor("tag:yaml.org,2002:float", _Loader.construct_yaml_float)
+
+
+def _without_tag(problem: str) -> str:
+    """What libyaml says, without the name of a tag: that may be anything."""
+    head, found, _ = problem.partition("could not determine a constructor for the tag")
+    return f"{head}has a tag (!...), which nothing here has a use for" if found else problem
+
+
+def _mark(node: Any, keys: tuple[str | int, ...], lines: dict[tuple[str | int, ...], int], met: set[int]) -> None:
+    """Note the line of every key, and refuse what stands at several places or is too long."""
+    if id(node) in met:
+        # The node has the place of its anchor; that of the alias is not known any more.
+        problem = "aliases (*name) are not read; write out what they stand for"
+        raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
+    met.add(id(node))
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:
-            place = (*keys, str(key.value))
+            place = (*keys, str(key.value)[:_LONGEST])
             lines[place] = key.start_mark.line + 1
-            _mark(value, place, lines)
+            _mark(key, place, {}, met)
+            _mark(value, place, lines, met)
     elif isinstance(node, yaml.SequenceNode):
         for number, value in enumerate(node.value):
             lines[(*keys, number)] = value.start_mark.line + 1
-            _mark(value, (*keys, number), lines)
+            _mark(value, (*keys, number), lines, met)
+    elif len(node.value) > _LONGEST:
+        raise yaml.MarkedYAMLError(problem=f"a value has more than {_LONGEST} characters", problem_mark=node.start_mark)

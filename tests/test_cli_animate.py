@@ -128,7 +128,7 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path: Path) -> None:
     assert "must end in" in said(SONG, *HARD, "-o", target, "--plot", tmp_path / "p.pdf")
     assert "0.25" in said(SONG, *HARD, "--rate", "0.2", "-o", target)
     assert "heels" in said(SONG, *HARD, "--gait", "moonwalk", "-o", target)
-    assert "No such file" in said(SONG, *HARD, "--play", tmp_path / "no.json", "-o", target)
+    assert "no such file" in said(SONG, *HARD, "--play", tmp_path / "no.json", "-o", target)
     assert "charts" in said(SONG, "-o", target) or "chart" in said(SONG, "-o", target)
     (tmp_path / "file").write_bytes(b"")
     assert "folder" in said(SONG, *HARD, "-o", tmp_path / "file" / "a.npz")

@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import binascii
 import io
-import json
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.bounded import parse_json, read_bytes
 from dancetutor_cli.errors import FileError
 
 if TYPE_CHECKING:
@@ -200,13 +200,7 @@ def read_container(path: Path) -> Container:
     Raises FileError, one line, for a file that is missing, too large, no GLB 2.0, damaged, or needs an extension
     this reader lacks.
     """
-    try:
-        size = path.stat().st_size
-        if size >= MAX_FILE:
-            raise FileError(path, f"{size / 1e6:.0f} MB is too large for a character; the limit is 100 MB")
-        data = memoryview(path.read_bytes())
-    except OSError as error:
-        raise FileError(path, f"cannot be read: {error.strerror}") from error
+    data = memoryview(read_bytes(path, MAX_FILE - 1))
     document, binary = _chunks(path, data)
     container = Container(path, _parse(path, document), binary)
     _check_head(container)
@@ -239,9 +233,9 @@ def _parse(path: Path, data: memoryview) -> dict[str, Any]:
             path, f"its JSON of {len(data) / 1e6:.0f} MB is too large; the limit is {MAX_JSON / 1e6:.0f} MB"
         )
     try:
-        document = json.loads(bytes(data))
-    except (ValueError, RecursionError) as error:
-        raise FileError(path, f"its JSON cannot be read: {str(error)[:80]}") from error
+        document = parse_json(bytes(data), path)
+    except FileError as error:
+        raise FileError(path, f"its JSON cannot be read: it {error.message}") from error
     if not isinstance(document, dict):
         raise FileError(path, "its JSON is not an object; the file is broken")
     return document

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
 
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.chart import msd, names, text, timing_tags
 from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
@@ -27,13 +28,13 @@ def load(path: Path) -> Song:
     """Read a chart file. Raises `ChartError` for what cannot be understood, `FileError` for what cannot be read."""
     path = Path(path)
     try:
-        data = path.read_bytes()
-    except (OSError, ValueError) as error:
+        data = read_bytes(path, CHART_LIMIT)
+    except FileError as error:
         raise FileError(path, _why_unreadable(path, error)) from None
     return parse(data, path)
 
 
-def _why_unreadable(path: Path, error: Exception) -> str:
+def _why_unreadable(path: Path, error: FileError) -> str:
     if os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
         readable = os.access(path, os.R_OK | os.X_OK)
         if not readable:
@@ -41,9 +42,7 @@ def _why_unreadable(path: Path, error: Exception) -> str:
         # Commands that take folders search them first; what comes here has no charts, or one file was wanted.
         inside = any(entry.suffix.lower() in (".sm", ".ssc") for entry in path.rglob("*"))
         return "is a folder; name one of its files" if inside else "no .sm or .ssc file in this folder or below it"
-    if isinstance(error, FileNotFoundError):
-        return "no such file or folder"
-    return getattr(error, "strerror", None) or str(error)
+    return error.message.removeprefix("cannot be read: ")
 
 
 def parse(data: bytes, path: Path) -> Song:

@@ -14,6 +14,7 @@ from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
     gait_option,
+    number,
     preset_option,
     section_option,
     selection_options,
@@ -32,13 +33,6 @@ if TYPE_CHECKING:
 SUFFIXES = (".glb", ".npz", ".bvh", ".json")
 _TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
-
-
-def number(_context: click.Context, _option: click.Parameter, value: float) -> float:
-    """The value, unless it is nan, which no range keeps out."""
-    if value != value:
-        raise click.BadParameter("nan is not a number.")
-    return value
 
 
 @click.command()

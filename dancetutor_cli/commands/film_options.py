@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, character_option, gait_option, section_option
+from dancetutor_cli.commands.selection import Selection, character_option, gait_option, number, section_option
+from dancetutor_cli.video.sides import LEAST_SIDE, MOST_SIDE
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Practice, Request
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 QUALITIES = ("draft", "good", "best")
 RENDERERS = ("auto", "cpu", "gl")
 GIF_FPS, GIF_SIDE = 25, 480  # of GIF and WebP, where nothing else is asked for
+MOST_LATE = 60_000.0  # milliseconds that the music may be moved
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
@@ -32,8 +34,8 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
         if not match:
             self.fail(f"'{value}' is no size; write it as 1280x720", param, ctx)
         width, height = int(match[1]), int(match[2])
-        if not (64 <= width <= 7680 and 64 <= height <= 7680):
-            self.fail(f"{width}x{height} is not possible; 64 to 7680 pixels each way", param, ctx)
+        if not (LEAST_SIDE <= width <= MOST_SIDE and LEAST_SIDE <= height <= MOST_SIDE):
+            self.fail(f"{width}x{height} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels each way", param, ctx)
         return width, height
 
 
@@ -85,7 +87,12 @@ _OPTIONS = (
     click.option("--assist-tick", is_flag=True, help="A clap on each step."),
     click.option("--metronome", is_flag=True, help="A tick on each beat."),
     click.option(
-        "--sync-offset", type=float, default=0.0, metavar="MS", help="Play the music this much later (ITG charts: 9)."
+        "--sync-offset",
+        type=click.FloatRange(-MOST_LATE, MOST_LATE),
+        callback=number,
+        default=0.0,
+        metavar="MS",
+        help="Play the music this much later (ITG charts: 9).",
     ),
     click.option("--font", type=click.Path(path_type=Path), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
@@ -108,6 +115,10 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
     from dancetutor_cli.video.scroll import parse_scroll
 
     layout = load_layout(options["layout"])
+    if options["font"] is not None:
+        from dancetutor_cli.video.fonts import font
+
+        font(str(options["font"]), 24)  # refused before the work begins
     wanted = options["size"] or _default_size(layout.size, kind)
     size = even_size(wanted) if kind == "mp4" else wanted
     if size != wanted:

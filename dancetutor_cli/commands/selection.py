@@ -9,7 +9,15 @@ import click
 
 from dancetutor_cli.jobs.selection import Selection
 
-__all__ = ["Selection", "character_option", "preset_option", "section_option", "selection_options"]
+__all__ = [
+    "Selection",
+    "character_option",
+    "gait_option",
+    "number",
+    "preset_option",
+    "section_option",
+    "selection_options",
+]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -35,6 +43,13 @@ def preset_option(command: _Command) -> _Command:
         help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, itg for others]",
     )
     return option(command)
+
+
+def number(_context: click.Context, _option: click.Parameter, value: float) -> float:
+    """The value, unless it is nan, which no range keeps out."""
+    if value != value:
+        raise click.BadParameter("nan is not a number.")
+    return value
 
 
 def section_option(command: _Command) -> _Command:

@@ -25,6 +25,7 @@ from dancetutor_cli.library.settings_file import (
     Condition,
     SettingError,
     check_keys,
+    check_not_a_link_out,
     condition_of,
     find_settings_file,
     texts_of,
@@ -82,6 +83,7 @@ def read_settings(song: Song, chart: Chart) -> SettingsFeet:
 
 @lru_cache(maxsize=8)
 def _entries(path: Path, _time: int, _size: int) -> tuple[Entry, ...]:
+    check_not_a_link_out(path)
     source = read(path)
     try:
         return tuple(entries_of(source.data, path.parent))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from dancetutor_cli.bounded import CHART_LIMIT, parse_json, read_bytes
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet.contradictions import Said
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.model import FeetProblem
@@ -42,18 +43,18 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
     """What the `data.sme` in the song's folder says about a chart; nothing if there is none. Never raises."""
     path = song.path.parent / FILE_NAME
     try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
+        raw = read_bytes(path, CHART_LIMIT)
+    except MissingFileError:
         return ChartData()
-    except OSError as error:
-        return _unreadable(f"{path.name} cannot be read: {error.strerror}")
+    except FileError as error:
+        return _unreadable(f"{path.name} {error.message}")
     stems = song_stems(path.parent)
     if len(stems) > 1:
         return _unreadable(f"{path.name} is not used: its folder has several songs")
     try:
-        data = json.loads(raw.decode("utf-8-sig"))
-    except ValueError as error:
-        return _unreadable(f"{path.name} is no JSON ({error}); it is not used")
+        data = parse_json(raw, path)
+    except FileError as error:
+        return _unreadable(f"{path.name} {error.message}; it is not used")
     entry = chart_entry(data, chart, place_in_type(song, chart))
     return _chart_data(entry, chart, _our_overrides(data, chart, place_in_type(song, chart)))
 

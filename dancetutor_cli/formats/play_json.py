@@ -6,12 +6,12 @@ way they face. Steps that the file does not name, and rows that the chart does n
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from dancetutor_cli.bounded import read_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.pads import Pad
@@ -59,15 +59,13 @@ def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
 
 
 def _chart_data(path: Path, chart: Chart) -> list[Any]:
+    data = read_json(path)
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
         if data["schema"] != SCHEMA:
             raise FileError(path, f"written in schema {data['schema']}; this program reads {SCHEMA}")
         charts = [c for file in data["files"] for c in file["charts"]]
         fitting = [c for c in charts if c["index"] == chart.index and c["steps_type"] == chart.steps_type]
-    except OSError as error:
-        raise FileError(path, error.strerror or str(error)) from None
-    except (ValueError, KeyError, TypeError):
+    except (KeyError, TypeError):
         raise FileError(path, "not the JSON of `dancetutor analyze --format json`") from None
     if not fitting:
         raise FileError(path, f"holds no chart {chart.index} ({chart.label})")

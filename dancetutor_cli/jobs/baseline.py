@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.bounded import read_json
+from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.lint.model import Finding
 
@@ -87,13 +88,9 @@ def _entry(key: Key, count: int) -> dict[str, Any]:
 def load_baseline(path: Path) -> Baseline:
     """Read a baseline; FileError says what is wrong with it."""
     try:
-        data = json.loads(path.read_text("utf-8"))
-    except FileNotFoundError:
+        data = read_json(path)
+    except MissingFileError:
         raise FileError(path, "there is no such baseline; make it with --update-baseline") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, getattr(error, "strerror", None) or "is not UTF-8") from error
-    except json.JSONDecodeError as error:
-        raise FileError(path, f"is not JSON: {error.msg}", error.lineno, error.colno) from error
     if not isinstance(data, Mapping) or data.get("schema") != SCHEMA or not isinstance(data.get("entries"), list):
         raise FileError(path, f'is not a baseline: it needs "schema": {SCHEMA} and "entries"')
     known: Counter[Key] = Counter()
@@ -101,6 +98,6 @@ def load_baseline(path: Path) -> Baseline:
         try:
             place = round(float(entry["beat"]) * 48) if entry["chart"] else int(entry["line"])
             known[str(entry["file"]), str(entry["chart"]), str(entry["rule"]), place] += int(entry.get("count", 1))
-        except (KeyError, TypeError, ValueError):
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
             raise FileError(path, f"entry {number} is no finding with file, chart, rule and beat") from None
     return Baseline(path, known)

@@ -16,6 +16,8 @@ from functools import cache
 from pathlib import Path
 
 import dancetutor_cli
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
+from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.kernel_folder import users_folder
@@ -39,8 +41,8 @@ class ResultCache:
         if task.want_rows or task.data is not None:
             return None
         try:
-            data = task.path.read_bytes()
-        except OSError:
+            data = read_bytes(task.path, CHART_LIMIT)
+        except FileError:
             return None
         digest = hashlib.sha256(data)
         wanted = (task.presets, task.selection, task.suggest, task.alternatives, task.want_figures)
@@ -85,8 +87,9 @@ class ResultCache:
         yield feet_fingerprint(path)
         for suffix in _CHARTS:
             other = path.with_suffix(suffix)
-            if other != path and other.is_file():
-                yield hashlib.sha256(other.read_bytes()).hexdigest()
+            if other != path:
+                with suppress(FileError):
+                    yield hashlib.sha256(read_bytes(other, CHART_LIMIT)).hexdigest()
 
     def _path(self, key: str) -> Path:
         return self._folder / key[:2] / key[2:]
@@ -121,7 +124,8 @@ def _files(folder: str) -> Iterator[tuple[str, os.stat_result]]:
 def _listing(folder: Path) -> str:
     lines = []
     for entry in sorted(os.scandir(folder), key=lambda e: e.name):
-        if entry.is_file() and not entry.name.lower().endswith(_CHARTS):
-            stat = entry.stat()
-            lines.append(f"{entry.name} {stat.st_size} {stat.st_mtime_ns}")
+        with suppress(OSError):  # a circle of links
+            if entry.is_file() and not entry.name.lower().endswith(_CHARTS):
+                stat = entry.stat()
+                lines.append(f"{entry.name} {stat.st_size} {stat.st_mtime_ns}")
     return "\n".join(lines)

@@ -56,7 +56,7 @@ def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     from dancetutor_cli.lint.check import check_chart
     from dancetutor_cli.lint.configuration import load_configuration
 
-    settings = load_configuration(find_settings_file(subject.song.path.absolute().parent)).settings
+    settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
     return check_chart(subject, settings)
 
 

@@ -64,7 +64,7 @@ def _findings(path: Path) -> str:
     from dancetutor_cli.library.settings_file import find_settings_file
     from dancetutor_cli.lint.configuration import load_configuration
 
-    return load_configuration(find_settings_file(path.absolute().parent)).settings.fingerprint()
+    return load_configuration(find_settings_file(path.absolute().parent), found=True).settings.fingerprint()
 
 
 def file_hash(path: Path) -> str:

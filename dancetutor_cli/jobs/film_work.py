@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
@@ -145,8 +146,8 @@ def _escaped(name: str) -> str:
 def _recorded(job: FilmJob) -> str | None:
     """The key of the finished film that is there, if any."""
     try:
-        record = json.loads(job.record.read_text("utf-8"))
-    except (OSError, ValueError):
+        record = read_json(job.record)
+    except FileError:
         return None
     there = job.output.exists() and isinstance(record, dict)
     return record.get("key") if there and record.get("size") == _size(job.output) else None

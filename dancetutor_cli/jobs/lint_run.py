@@ -61,7 +61,7 @@ class LintRun:
         given = self.request.config
         source = None if given is not None else self._source(path.parent)
         if source not in self._by_source:
-            loaded = load_configuration(given if given is not None else source)
+            loaded = load_configuration(given if given is not None else source, found=given is None)
             loaded = with_assignments(loaded, self.request.assignments)
             self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
         return self._by_source[source]

@@ -75,7 +75,7 @@ def choice_for(path: Path, given: str | None) -> PresetChoice:
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = find_settings_file(path.absolute().parent)
-    return choice_of(None, None if settings is None else load_configuration(settings))
+    return choice_of(None, None if settings is None else load_configuration(settings, found=True))
 
 
 def mismatch(preset: Preset, steps_type: str) -> str | None:

@@ -10,6 +10,8 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
+from dancetutor_cli.errors import FileError
 from dancetutor_cli.library.settings_file import find_settings_file, places_of_settings_file
 
 EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
@@ -53,8 +55,8 @@ def _parts(song: Path) -> Iterator[bytes]:
 
 def _content(path: Path) -> bytes:
     try:
-        return path.read_bytes()
-    except OSError:
+        return read_bytes(path, CHART_LIMIT)
+    except FileError:
         return b""
 
 

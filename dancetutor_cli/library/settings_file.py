@@ -9,8 +9,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 from typing import Any
 
+from dancetutor_cli.bounded import leads_out, shown_key
 from dancetutor_cli.chart import names
-from dancetutor_cli.errors import did_you_mean
+from dancetutor_cli.errors import FileError, did_you_mean
 
 FILE_NAME = "dancetutor.yaml"
 _WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
@@ -28,6 +29,13 @@ class SettingError(Exception):
 def find_settings_file(start: Path) -> Path | None:
     """The nearest dancetutor.yaml in the folder of `start` or above it."""
     return next((Path(place) for place in _places(start) if os.path.isfile(place)), None)  # noqa: PTH113 (quicker)
+
+
+def check_not_a_link_out(path: Path) -> None:
+    """Raise FileError if a dancetutor.yaml that lay there is a link that leads out of its folder: what is said of its
+    mistakes would tell of a file that is none of its author's business."""
+    if path.is_symlink() and leads_out(path, path.parent):
+        raise FileError(path, "is a link that leads out of its folder; put a copy there, or name it with --config")
 
 
 def places_of_settings_file(start: Path) -> Iterator[Path]:
@@ -137,4 +145,4 @@ def check_keys(data: Mapping[str, Any], known: Sequence[str], place: tuple[str |
     """Raise unless every key is one of `known`; the error names them."""
     for key in data:
         if key not in known:
-            raise SettingError((*place, str(key)), f"there is no '{key}' here; there are {', '.join(known)}")
+            raise SettingError((*place, str(key)), f"there is no '{shown_key(key)}' here; there are {', '.join(known)}")

@@ -5,16 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
-
+from dancetutor_cli.bounded import is_regular, leads_out, shown_key
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError, did_you_mean
-from dancetutor_cli.library.settings_file import Condition, SettingError, check_keys, condition_of, texts_of
+from dancetutor_cli.library.settings_file import (
+    Condition,
+    SettingError,
+    check_keys,
+    check_not_a_link_out,
+    condition_of,
+    texts_of,
+)
 from dancetutor_cli.lint.registry import all_rules, matching, named_singly, rule_named
 from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
-from dancetutor_cli.marked_yaml import read
+from dancetutor_cli.marked_yaml import MarkedYaml, parse_value, read
 from dancetutor_cli.resources import config_path
 
 FAIL_ON = ("error", "warning", "never")
@@ -31,6 +38,7 @@ _TOP_KEYS = (
     "overrides",
     "feet",
 )
+_MOST_EXTENDED = 16
 _OVERRIDE_KEYS = ("when", "preset", "select", "ignore", "rules")
 
 
@@ -56,26 +64,33 @@ class Configuration:
         return self.overridden if self.preset is None else ((Condition(), self.preset), *self.overridden)
 
 
-def load_configuration(source: str | Path | None) -> Configuration:
-    """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults)."""
-    base = _extend(Configuration(Settings()), config_path("lint/default.yaml"), seen=())
-    return base if source is None else _extend(base, _located(source), seen=())
+def load_configuration(source: str | Path | None, *, found: bool = False) -> Configuration:
+    """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults).
+
+    found : nobody has named the file, it lay there: it may be a stranger's, and stays in its folder
+    """
+    base = _extend(Configuration(Settings()), config_path("lint/default.yaml"), (), confined=False)
+    if source is None:
+        return base
+    if found:
+        check_not_a_link_out(Path(source))
+    return _extend(base, _located(source), (), confined=found)
 
 
 def with_assignments(configuration: Configuration, assignments: Iterable[str]) -> Configuration:
     """Apply `--set key=value` of the command line, for example "doublestep.severity=error" or "fail-on=never"."""
     for text in assignments:
         key, equals, value = text.partition("=")
-        if not equals:
+        if not equals or not key:
             raise UsageError(f"--set {text}: write it as KEY=VALUE, for example DT201.severity=error")
-        parsed = yaml.safe_load(value)
+        parsed = parse_value(value, f"--set {key}")
         if key == "preset":  # not confined: the user's own word
             configuration = replace(configuration, preset=str(parsed), overridden=())
             continue
         rule, dot, option = key.partition(".")
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
-            configuration = _apply(configuration, data, Path.cwd())
+            configuration = _apply(configuration, data, Path.cwd(), confined=False)
         except SettingError as fault:
             raise UsageError(f"--set {text}: {fault.message}") from None
     return configuration
@@ -133,22 +148,41 @@ def _located(source: str | Path) -> Path:
     return named
 
 
-def _extend(base: Configuration, path: Path, seen: tuple[Path, ...]) -> Configuration:
-    if path.resolve() in seen:
-        raise FileError(path, "extends itself")
+def _extend(base: Configuration, path: Path, seen: tuple[Path, ...], *, confined: bool) -> Configuration:
     source = read(path)
+    here = (*seen, path.resolve())
+    if len(here) > _MOST_EXTENDED:
+        raise FileError(path, f"extends more than {_MOST_EXTENDED} files one after the other")
     data = dict(source.data)
-    extended = data.pop("extends", [])
-    for name in [extended] if isinstance(extended, str) else extended:
-        beside = path.parent / str(name)
-        base = _extend(base, beside if beside.is_file() else _located(str(name)), (*seen, path.resolve()))
+    for name in texts_of(data, "extends"):
+        extended = _extended(source, name)
+        if extended.resolve() in here:
+            raise source.error(("extends",), "extends itself")
+        base = _extend(base, extended, here, confined=confined)
+    data.pop("extends", None)
     try:
-        return replace(_apply(base, data, path.parent), sources=(*base.sources, path))
+        return replace(_apply(base, data, path.parent, confined=confined), sources=(*base.sources, path))
     except SettingError as fault:
         raise source.error(fault.keys, fault.message) from None
 
 
-def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Configuration:
+def _extended(source: MarkedYaml, name: str) -> Path:
+    """What `extends` names: a configuration of the program's, or a file in the folder of this one or below it."""
+    folder = source.path.parent
+    names = sorted(entry.stem for entry in config_path("lint").glob("*.yaml"))
+    if name in names and not is_regular(folder / name):
+        return config_path(f"lint/{name}.yaml")
+    if leads_out(folder / name, folder):
+        raise source.error(("extends",), "'extends' leads out of the folder of this file; put what it names beside it")
+    if not is_regular(folder / name):
+        there = ", ".join(names)
+        raise source.error(
+            ("extends",), f"there is no configuration '{shown_key(name)}'; there are: {there}, or name a file"
+        )
+    return folder / name
+
+
+def _apply(base: Configuration, data: Mapping[str, Any], folder: Path, *, confined: bool) -> Configuration:
     check_keys(data, _TOP_KEYS, ())
     settings = base.settings.with_layer(_layer(data, Condition(), ()))
     preset, overridden = base.preset, base.overridden
@@ -169,8 +203,11 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path) -> Config
     if fail_on is not None and fail_on not in FAIL_ON:
         raise SettingError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
     baseline = folder / str(data["baseline"]) if data.get("baseline") else base.baseline
+    if confined and data.get("baseline") and leads_out(folder / str(data["baseline"]), folder):
+        why = "'baseline' leads out of the folder of this file; put it beside it, or name it with --baseline"
+        raise SettingError(("baseline",), why)
     stream_rows = data.get("stream-rows", settings.stream_rows)
-    if not isinstance(stream_rows, int) or stream_rows < 1:
+    if isinstance(stream_rows, bool) or not isinstance(stream_rows, int) or not 1 <= stream_rows <= 192:
         raise SettingError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
     settings = replace(settings, stream_rows=stream_rows)
     return Configuration(settings, base.sources, preset, overridden, fail_on, baseline)
@@ -231,9 +268,12 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
         if key == "severity" and value not in SEVERITIES:
             raise SettingError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
         if not _same_kind(value, defaults[key]):
-            raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {value!r}")
+            said = shown_key(repr(value))
+            raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {said}")
         if fault := all_rules()[code].fault(key, value):
             raise SettingError((*place, key), f"{code} {key}: {fault}")
+        if least := _too_small(value, defaults[key]):
+            raise SettingError((*place, key), f"{code} {key} must be {least}, not {value!r}")
     return given
 
 
@@ -242,7 +282,18 @@ def _same_kind(value: Any, default: Any) -> bool:
         return isinstance(value, bool) and isinstance(default, bool)
     if isinstance(default, int | float):
         return isinstance(value, int | float)
+    if isinstance(default, list):
+        return isinstance(value, list) and all(_same_kind(one, item) for item in default[:1] for one in value)
     return isinstance(value, type(default))
+
+
+def _too_small(value: Any, default: Any) -> str:
+    """How large a number must be, if it is not: nothing that rules measure is negative, and no grid is 0."""
+    values, least = (value, 1) if isinstance(value, list) else ([value], 0)
+    numbers = [one for one in values if isinstance(one, int | float) and not isinstance(one, bool)]
+    if all(isfinite(one) and one >= least for one in numbers):
+        return ""
+    return f"at least {least}" + (" each" if isinstance(value, list) else "")
 
 
 def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet import sme
 from dancetutor_cli.library.feet_files import song_stems
 from dancetutor_cli.markers import edit, sidecar, smeditor
@@ -56,7 +57,7 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
         yield _removed(path, old, smeditor.strip(path, old, song, charts))
     elif style == EDIT:
         for path in edit.edit_paths(song, charts):
-            yield _removed(path, path.read_bytes(), None)
+            yield _removed(path, read_bytes(path, CHART_LIMIT), None)
 
 
 def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
@@ -77,6 +78,6 @@ def _present(path: Path, song: Song) -> bytes | None:
 
 def _read(path: Path) -> bytes | None:
     try:
-        return path.read_bytes()
-    except FileNotFoundError:
+        return read_bytes(path, CHART_LIMIT)
+    except MissingFileError:
         return None

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError
@@ -72,7 +73,7 @@ def edit_paths(song: Song, charts: Sequence[Chart]) -> list[Path]:
     others = {_path(song, name) for index, name in names.items() if index not in meant}
     mark = f"{_NAME} ".encode()
     found = sorted(song.path.parent.glob(f"{glob.escape(song.path.stem)} {_NAME}*.edit"))
-    return [path for path in found if path not in others and mark in path.read_bytes()[:4096]]
+    return [path for path in found if path not in others and mark in read_bytes(path, CHART_LIMIT)[:4096]]
 
 
 def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.markers.letters import limbs_of
@@ -102,11 +103,11 @@ def _files(path: Path, old: bytes | None) -> dict[str, Any]:
     if old is None:
         return {}
     try:
-        data = json.loads(old.decode("utf-8"))
+        data = parse_json(old, path)
         files = data["files"]
         if data["program"] == "dancetutor" and all(isinstance(f["charts"], list) for f in files.values()):
             return dict(files)
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (FileError, KeyError, TypeError, AttributeError):
         pass
     raise FileError(path, "is not a sidecar of dancetutor's; move it away or choose another style")
 

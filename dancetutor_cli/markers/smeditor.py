@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet.sme import FEET, OURS, overrides_of, place_in_type, tick_of
@@ -143,9 +144,9 @@ def _entry(path: Path, data: Any, steps_type: str, place: int) -> Any:
 
 def _parsed(path: Path, text: str) -> dict[str, Any]:
     try:
-        data = json.loads(text.removeprefix("\ufeff"))
-    except ValueError as error:
-        raise FileError(path, f"is no JSON ({error}); it is left alone") from error
+        data = parse_json(text.encode("utf-8"), path)
+    except FileError as error:
+        raise FileError(path, f"{error.message}; it is left alone", error.line, error.column) from error
     if not isinstance(data, dict):
         raise FileError(path, "is not what SMEditor writes; it is left alone")
     return data

@@ -7,9 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, get_type_hints
 
-import yaml
-
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.motion.sections import (
     ArmSettings,
     AsideSettings,
@@ -99,13 +98,7 @@ _SECTIONS: dict[str, type[Any]] = get_type_hints(MotionSettings)
 
 def load_settings(path: Path) -> MotionSettings:
     """Read and check a motion file. Raises FileError naming the file, the place and the names that exist."""
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(path, error.strerror or str(error)) from None
-    except yaml.MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else None
-        raise FileError(path, f"not YAML: {error.problem}", line) from None
+    data = read(path).data
     _check_names(path, "", data, list(_SECTIONS))
     sections = {name: _section(path, name, kind, data[name]) for name, kind in _SECTIONS.items()}
     return MotionSettings(**sections)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from functools import cache, lru_cache
@@ -10,6 +11,7 @@ from pathlib import Path
 
 from PIL import ImageFont
 
+from dancetutor_cli.bounded import FONT_LIMIT, read_bytes
 from dancetutor_cli.errors import FileError
 
 # Fonts with many letters that systems bring, by file name, those that look most like the built-in one first, and for
@@ -66,18 +68,28 @@ def font(path: str | None, size: float) -> ImageFont.FreeTypeFont:
         built_in = ImageFont.load_default(size)
         assert isinstance(built_in, ImageFont.FreeTypeFont)  # it is scalable whenever Pillow has FreeType
         return built_in
+    data = _content(path)
     try:
-        return ImageFont.truetype(path, size)
-    except OSError as error:
+        found = ImageFont.truetype(io.BytesIO(data), size)
+        found.getmask("Ag 1")  # damage to the letters shows only here
+    except (OSError, ValueError, MemoryError) as error:
         raise FileError(path, f"cannot be used as a font: {error}") from error
+    return found
+
+
+@lru_cache(maxsize=16)
+def _content(path: str) -> bytes:
+    return read_bytes(Path(path), FONT_LIMIT)
 
 
 @lru_cache(maxsize=65536)
 def has_glyph(path: str | None, character: str) -> bool:
     """Whether a font can draw a character: what it cannot draw looks like a character that does not exist."""
     one = font(path, 24)
-    missing = one.getmask("\U0010ffff")
-    mask = one.getmask(character)
+    try:
+        missing, mask = one.getmask("\U0010ffff"), one.getmask(character)
+    except (OSError, ValueError):  # a damaged letter is none
+        return False
     return mask.size != missing.size or bytes(mask) != bytes(missing)
 
 

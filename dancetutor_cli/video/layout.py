@@ -7,7 +7,9 @@ from pathlib import Path
 
 from dancetutor_cli.errors import FileError, UsageError, did_you_mean
 from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.settings import Box, load
+from dancetutor_cli.video.sides import LEAST_SIDE, MOST_SIDE
 
 PixelBox = tuple[int, int, int, int]
 WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
@@ -155,6 +157,7 @@ def _checked(path: Path) -> Layout:
         raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
     if layout.feet is not None and layout.dancer is None:
         raise FileError(path, "feet need a dancer, whose feet they are")
+    _check_numbers(path, layout)
     for name in ("dancer", "highway", "header", "calls", "runs", "count", "legend", "progress", "feet", "next"):
         part, other = getattr(layout, name), getattr(layout.wide, name, None)
         inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
@@ -162,6 +165,38 @@ def _checked(path: Path) -> Layout:
             if box is not None and not _inside(box):
                 raise FileError(path, f"{where}: left, top, right, bottom must be shares 0 to 1 in rising order")
     return layout
+
+
+def _check_numbers(path: Path, layout: Layout) -> None:
+    """Refuse numbers with which nothing can be drawn; FileError names the first."""
+    high, screen = layout.highway, layout.screen
+    sides = [("size", layout.size), *([("screen.pixels", screen.pixels)] if screen else [])]
+    for where, pair in sides:
+        if not all(LEAST_SIDE <= side <= MOST_SIDE for side in pair):
+            raise FileError(path, f"{where}: {pair[0]}x{pair[1]} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels")
+    parts = (layout.header, layout.calls, layout.runs, layout.count, layout.legend, layout.progress, layout.feet)
+    names = ("header", "calls", "runs", "count", "legend", "progress", "feet")
+    ranges: list[tuple[str, float, float, float]] = [
+        (f"{name}.text", part.text, 0.1, 10) for name, part in zip(names, parts, strict=True) if part is not None
+    ]
+    if high is not None:
+        ranges += [("highway.lane", high.lane, 4, 1000), ("highway.receptor", high.receptor, 0, 1)]
+        parse_scroll(high.scroll)
+    if layout.header is not None:
+        ranges.append(("header.room", layout.header.room, 0.05, 1))
+    if screen is not None:
+        ranges += [("screen.size", side, 0.05, 100) for side in screen.size]
+        ranges += [("screen.centre", side, -100, 100) for side in screen.centre]
+    if layout.next is not None:
+        ranges.append(("next.count", layout.next.count, 1, 12))
+    if layout.practice is not None:
+        ranges += [("practice.rates", rate, 0.25, 2) for rate in layout.practice.rates]
+        ranges += [("practice.count_in", layout.practice.count_in, 0, 16)]
+        if not layout.practice.rates:
+            raise FileError(path, "practice.rates: name one speed or more")
+    for where, value, least, most in ranges:
+        if not least <= value <= most:
+            raise FileError(path, f"{where} must be from {least:g} to {most:g}, not {value:g}")
 
 
 def _inside(box: Box) -> bool:

@@ -10,30 +10,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
-
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.marked_yaml import read
 
 T = TypeVar("T")
 RGB = tuple[int, int, int]
 Box = tuple[float, float, float, float]
 
 
-def read_yaml(path: Path) -> Any:
-    """The content of a YAML file; FileError if it is none."""
-    try:
-        return yaml.safe_load(path.read_text("utf-8"))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or "not YAML"
-        raise FileError(path, str(problem), None if mark is None else mark.line + 1) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, f"cannot be read: {error}") from error
-
-
 def load(path: Path, kind: type[T]) -> T:
     """Read `path` as the dataclass `kind`. FileError says which key is wrong, and what it should be."""
-    return _build(path, "", read_yaml(path), kind)
+    return _build(path, "", read(path).data, kind)
 
 
 def _build(path: Path, where: str, data: Any, kind: type[T]) -> T:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import struct
 import tracemalloc
 from collections.abc import Callable
@@ -107,8 +108,8 @@ def test_a_file_beside_it_is_not_opened(tmp_path: Path, uri: str, monkeypatch: p
     (tmp_path / "secret.bin").write_bytes(binary)
     path = edited(SOURCE, tmp_path / "x.glb", put("buffers", 0, "uri", uri))
     opened: list[str] = []
-    real = Path.read_bytes
-    monkeypatch.setattr(Path, "read_bytes", lambda self: (opened.append(self.name), real(self))[1])
+    real = os.open
+    monkeypatch.setattr(os, "open", lambda path, *how: (opened.append(Path(path).name), real(path, *how))[1])
     with pytest.raises(FileError, match="outside the file"):
         load_character(str(path))
     assert opened == ["x.glb"]
@@ -142,7 +143,7 @@ def test_a_file_of_100_megabytes_is_refused_unread(tmp_path: Path, monkeypatch: 
     path = tmp_path / "large.glb"
     with path.open("wb") as file:
         file.truncate(100_000_000)  # a hole: takes no disk
-    monkeypatch.setattr(Path, "read_bytes", lambda self: pytest.fail("was read"))
+    monkeypatch.setattr("dancetutor_cli.bounded.open", lambda *how, **more: pytest.fail("was read"), raising=False)
     with pytest.raises(FileError, match="100 MB"):
         load_character(str(path))
 

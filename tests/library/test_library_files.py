@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -162,3 +164,24 @@ def test_a_folder_of_one_song_stands_for_its_file(tmp_path: Path) -> None:
     assert one_song(tmp_path) == song / "a.ssc"
     (song / "b.sm").write_text("")
     assert one_song(song) == song
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such files")
+def test_special_files_of_a_searched_folder_are_a_line_each(tmp_path: Path) -> None:
+    """A link to itself aborted the run, a named pipe hung it, a link to /dev/zero ate the memory."""
+    notes = "#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0001\n;\n"
+    (tmp_path / "good.sm").write_text(notes)
+    os.mkfifo(tmp_path / "pipe.sm")
+    os.mkfifo(tmp_path / "good.ssc")
+    os.mkfifo(tmp_path / "data.sme")
+    for name, to in (("self.sm", "self.sm"), ("zero.sm", "/dev/zero"), ("gone.ssc", "nowhere"), ("b.png", "b.png")):
+        (tmp_path / name).symlink_to(to)
+    for arguments in (["analyze", "--jobs", "1"], ["annotate", "--check"]):
+        ran = subprocess.run(
+            [sys.executable, "-m", "dancetutor_cli", *arguments, str(tmp_path)],
+            capture_output=True, text=True, timeout=60, env={**os.environ, "DANCETUTOR_CACHE": str(tmp_path / "cache")},
+        )  # fmt: skip
+        lines = [line for line in ran.stderr.splitlines() if line.startswith("dancetutor:")]
+        assert ran.returncode == 2 and len(lines) == 5, ran.stderr
+        assert sum("named pipe" in line for line in lines) == 2
+        assert "good.sm" in ran.stdout

@@ -48,5 +48,5 @@ def test_no_yaml_is_said(tmp_path: Path) -> None:
     path.write_text("step: [1, 2", encoding="utf-8")
     with pytest.raises(FileError, match="not YAML"):
         load_settings(path)
-    with pytest.raises(FileError, match="No such file"):
+    with pytest.raises(FileError, match="no such file"):
         load_settings(tmp_path / "none.yaml")

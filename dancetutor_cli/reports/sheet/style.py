@@ -7,11 +7,10 @@ from dataclasses import dataclass, fields
 from functools import cache
 from typing import Any
 
-import yaml
-
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.colours import hex_colour, limb_colours
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.resources import config_path
 
 LETTERS = ("L", "R", "<", ">")  # by limb
@@ -53,8 +52,8 @@ class Style:
 def sheet_style() -> Style:
     """The style of the project's configuration; FileError names what is missing or unknown."""
     path = config_path("sheet.yaml")
-    data: dict[str, Any] = yaml.safe_load(path.read_text("utf-8"))
-    notes = yaml.safe_load(config_path("highway.yaml").read_text("utf-8"))
+    data: dict[str, Any] = read(path).data
+    notes = read(config_path("highway.yaml")).data
     data["quantisation"] = {int(grid): str(colour) for grid, colour in notes["quantisation"].items()}
     data["limbs"] = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
     names = [field.name for field in fields(Style)]
