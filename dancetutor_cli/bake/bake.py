@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
-from dancetutor_cli.bake.pieces import Each, Piece, in_turn, joined, piece_ends, trimmed
+from dancetutor_cli.bake.keys import doubtful, key_times, refined
+from dancetutor_cli.bake.pieces import Done, Each, Piece, in_turn, joined, piece_ends, trimmed
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion import stage
@@ -145,14 +145,15 @@ def bake_plan(
         part = trimmed(plan, first - margin, last + after)
         span = (np.floor(4 * (before - MARGIN)) / 4, last + after)
         pieces.append(Piece(part, fps, (before, last), (first if k else -np.inf, last), span, settings))
-    at, rotations, root = joined(pieces, each([(bake_piece, piece) for piece in pieces]))
+    done = joined(pieces, each([(bake_piece, piece) for piece in pieces]))
+    at, rotations, root = done.keys
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
-    return Motion(dancer_skeleton(), fps, at, rotations, root, contacts, plan.bar, grips, plan.ground)
+    return Motion(dancer_skeleton(), fps, at, rotations, root, contacts, plan.bar, grips, plan.ground, done.notes)
 
 
-def bake_piece(piece: Piece) -> Keys:
-    """All keys of one piece, also those of its overlap; may run in any process."""
+def bake_piece(piece: Piece) -> Done:
+    """One piece of work; may run in any process."""
     plan, settings, skeleton = piece.plan, piece.settings, dancer_skeleton()
     rate = settings.sampling.work_rate
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
@@ -170,7 +171,12 @@ def bake_piece(piece: Piece) -> Keys:
             keys = refined(skeleton, keys, between, plan.grips)
     at, rotations, root = keys
     add_hair(skeleton, at, rotations, root, settings.hair)
-    return keys
+    first, last = piece.baked
+    notes = tuple(
+        f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"
+        for what in body.softened
+    )
+    return Done(keys, notes)
 
 
 def _settled(
@@ -243,14 +249,14 @@ def _posed(plan: Plan, body: BodyPath, at: Array, skeleton: Skeleton, settings: 
     free *= 1.0 - hold_share(plan.grips, at, settings.bar.reach_time).max(axis=1)
     dressed = rotations.copy()
     look(skeleton, dressed, root, body, at, settings)
-    add_layers(skeleton, at, dressed, side, free, settings.layers)
+    add_layers(skeleton, at, dressed, side, free, settings.layers, plan.lead)
     head = _mass(skeleton, dressed, root) - _mass(skeleton, rotations, root)  # hardly changes as the body is moved
     for _ in range(CORRECTIONS):
         targets = moved(targets, goal - head - _mass(skeleton, rotations, root))
         rotations, root = solve(skeleton, targets, settings.body.reach, 0.0)
     ease_ankles(skeleton, rotations, feet)
     look(skeleton, rotations, root, body, at, settings)
-    add_layers(skeleton, at, rotations, side, free, settings.layers)
+    add_layers(skeleton, at, rotations, side, free, settings.layers, plan.lead)
     return rotations, root
 
 

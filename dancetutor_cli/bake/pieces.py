@@ -36,10 +36,18 @@ class Piece:
     settings: MotionSettings
 
 
-Each = Callable[[Sequence[tuple[Callable[[Piece], Keys], Piece]]], Iterable[Keys]]
+@dataclass(frozen=True, slots=True)
+class Done:
+    """What a piece of work gives: all its keys, also those of its overlap, and what there is to say of it."""
+
+    keys: Keys
+    notes: tuple[str, ...]
 
 
-def in_turn(work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) -> Iterable[Keys]:
+Each = Callable[[Sequence[tuple[Callable[[Piece], Done], Piece]]], Iterable[Done]]
+
+
+def in_turn(work: Sequence[tuple[Callable[[Piece], Done], Piece]]) -> Iterable[Done]:
     """Do one piece after the other in this process."""
     return (function(piece) for function, piece in work)
 
@@ -91,10 +99,13 @@ def _track(track: FootTrack, start: float, end: float) -> FootTrack:
     return FootTrack(before.target, before.yaw, kept, before.level)
 
 
-def joined(pieces: Sequence[Piece], keys: Iterable[Keys]) -> Keys:
-    """The kept keys of all pieces in their order; turns never jump to their negative."""
+def joined(pieces: Sequence[Piece], done: Iterable[Done]) -> Done:
+    """The kept keys of all pieces in their order, with their notes; turns never jump to their negative."""
     parts: list[Keys] = []
-    for k, (piece, (times, rotations, root)) in enumerate(zip(pieces, keys, strict=True)):
+    notes: list[str] = []
+    for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
+        times, rotations, root = one.keys
+        notes += one.notes
         keep = (times >= piece.kept[0]) & ((times < piece.kept[1]) | (k + 1 == len(pieces)))
         turns = quat.continuous(rotations[keep])
         if parts:
@@ -102,6 +113,6 @@ def joined(pieces: Sequence[Piece], keys: Iterable[Keys]) -> Keys:
             turns[:, flipped] *= -1.0
         parts.append((times[keep], turns, root[keep]))
     if len(parts) == 1:
-        return parts[0]
+        return Done(parts[0], tuple(notes))
     times, root = (np.concatenate([p[k] for p in parts]) for k in (0, 2))
-    return times, np.concatenate([p[1] for p in parts]), root
+    return Done((times, np.concatenate([p[1] for p in parts]), root), tuple(notes))

@@ -123,6 +123,8 @@ def _bake_and_write(
     if target.suffix.lower() == ".json" and report_to is None and plot is None:
         return
     motion = bake_asked(asked, task)
+    for note in motion.notes:
+        click.echo(f"warning: {note}", err=True)
     if target.suffix.lower() != ".json":
         from dancetutor_cli.character.retarget import retarget
 

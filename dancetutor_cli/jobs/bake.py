@@ -13,8 +13,7 @@ from dancetutor_cli.jobs.part import check_part, part_of
 from dancetutor_cli.jobs.selection import Selection
 
 if TYPE_CHECKING:
-    from dancetutor_cli.bake.keys import Keys
-    from dancetutor_cli.bake.pieces import Piece
+    from dancetutor_cli.bake.pieces import Done, Piece
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.motion.track import Plan
@@ -108,7 +107,7 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
     )
 
 
-def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) -> Iterator[Keys]:
+def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Done], Piece]]) -> Iterator[Done]:
     """Results of pieces of work in their order, made in up to `jobs` processes."""
     from dancetutor_cli.bake.pieces import in_turn
     from dancetutor_cli.jobs.pool import Task, open_workers
@@ -120,7 +119,7 @@ def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) ->
     try:
         for k, (function, piece) in enumerate(work):
             workers.submit(Task(k, _piece, (function, piece)))
-        results: dict[int, Keys] = {}
+        results: dict[int, Done] = {}
         for done in workers.done():
             if done.error is not None:
                 raise done.error
@@ -131,7 +130,7 @@ def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Keys], Piece]]) ->
         yield results.pop(k)
 
 
-def _piece(_: object, function: Callable[[Piece], Keys], piece: Piece) -> Keys:
+def _piece(_: object, function: Callable[[Piece], Done], piece: Piece) -> Done:
     return function(piece)
 
 

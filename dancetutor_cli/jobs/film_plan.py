@@ -91,7 +91,8 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     )
     fade = 0.0 if request.section else 1.0
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks_of(request, subject, presses), fade)
-    return Prepared(plan, sound, title_warnings(song, plan.words, request.look))
+    notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
+    return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look)))
 
 
 def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> NoteTrack:
@@ -257,6 +258,10 @@ def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[f
         )
         for rate in sorted({one.rate for one in passes})
     }
+
+
+def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
+    return [note if rate == 1.0 else f"at rate {rate:g}, {note}" for note in notes]
 
 
 def _fitted(name: str, motions: dict[float, Motion]) -> tuple[Character | None, dict[float, Motion]]:

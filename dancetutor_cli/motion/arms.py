@@ -84,7 +84,7 @@ def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: Motion
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
     hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * quick
     hang[..., 2] = arms.forward + swing + arms.stream_forward * quick
-    hang += arms.wander * _wandering(body.times)
+    hang += arms.wander * _wandering(body.times, plan.lead)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
@@ -99,11 +99,15 @@ def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: Motion
     return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
 
 
-def _wandering(times: Array) -> Array:
-    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image."""
+def _wandering(times: Array, lead: int) -> Array:
+    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image.
+
+    lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
+    """
     hands = np.arange(6).reshape(2, 3)
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in WANDER)
-    return np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
+    ways = np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
+    return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
 
 def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
@@ -166,7 +170,7 @@ def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, 
     liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
     out = (1.0, -1.0)[side]
     poles = quat.rotate(chest, POLES * [out, 1.0, 1.0])
-    aside = np.repeat(FINGERS, len(poles))
+    aside = np.repeat(out * FINGERS, len(poles))
     poles = np.tile(poles, (len(FINGERS), 1))
     down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
     hands = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)

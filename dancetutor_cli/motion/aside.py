@@ -45,7 +45,7 @@ class SideSteps:
     def __init__(self, play: Play, panels: Array, stance: Stance) -> None:
         self.play, self.panels, self.stance = play, panels, stance
         self.ground = rectangle(panels, stance.settings)
-        self.places = places_along(self.ground)
+        self.places = places_along(self.ground, stance.lead)
         self.mines = play.rows.second[play.rows.mines.any(axis=1)]
         self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
 
@@ -109,7 +109,9 @@ class SideSteps:
             return False
         step = self.stance.settings.step
         ready = time - step.longest * (1.0 - step.double_support)
-        return walk_there(begin, following.places, self.ground, "flat", (free, ready), self.stance.settings) is not None
+        wait = free, ready
+        found = walk_there(begin, following.places, self.ground, "flat", wait, self.stance.settings, self.stance.lead)
+        return found is not None
 
     def _goal(
         self, begin: Stand, following: _Next, heading: float, time: float
@@ -117,13 +119,12 @@ class SideSteps:
         """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
         aside, settings = self.stance.settings.aside, self.stance.settings
         best, least = None, self._far(begin.balls, following) - aside.gain
-        low, high = self.places[0], self.places[-1]
-        for x in np.arange(low, high + 1e-6, stage.HALF_PANEL):
+        for x in _between(self.places):
             goal = stand_at(np.array([x, 0.0]), heading, settings)
             own = np.linalg.norm(following.places - goal.balls, axis=1)
             price = max(self._far(goal.balls, following), float(np.nanmax(own)))
             price += aside.travel * abs(float(goal.middle[0] - begin.middle[0]))
-            if price < least:
+            if price < least - 1e-9:
                 found = self._falls(begin, goal, time)
                 best, least = (found, price) if found is not None else (best, least)
         return best
@@ -158,6 +159,13 @@ class SideSteps:
         swing = Swing(lift, start + duration, pair(fall.ball), fall.yaw, height, pitches, bulge, "aside")
         foot.move(swing, fall.ball, fall.heading)
         foot.evading = None
+
+
+def _between(places: Array) -> Array:
+    """Places (k,) half a panel apart from the first to the last of some along a line."""
+    count = round(abs(float(places[-1] - places[0])) / stage.HALF_PANEL)
+    middle, way = (places[0] + places[-1]) / 2, np.sign(places[-1] - places[0])
+    return np.asarray(middle + way * stage.HALF_PANEL * (np.arange(count + 1) - count / 2))
 
 
 def footfalls(begin: Stand, goal: Stand, spread: float) -> list[tuple[int, Footfall]]:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.banded import BandedLeastSquares, differences
 from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.height import span
 from dancetutor_cli.motion.paths import cubic, low_pass, sample_path
-from dancetutor_cli.motion.qp import Limits, solve
+from dancetutor_cli.motion.qp import Limits, Solution, solve_surely
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 
 Array = NDArray[np.float64]
@@ -33,9 +34,9 @@ GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of st
 
 def balanced_path(
     feet: tuple[FootPath, FootPath], lever: Array, seen: Array, offset: Array, times: Array,
-    settings: MotionSettings, tightened: int = 0,
-) -> Array:  # fmt: skip
-    """Path (n, 2) of the centre of mass over the ground.
+    settings: MotionSettings, tightened: int = 0, hand: float = 1.0,
+) -> tuple[Array, bool]:  # fmt: skip
+    """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
 
     Parameters
     ----------
@@ -43,6 +44,7 @@ def balanced_path(
     lever : (n,) y / (y'' + g), seconds squared; ignored in flight; seen : the same without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
     settings : of the body, and how the weight sways while both feet stand
+    hand : as in `Plan`; on its side she begins to sway
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
     """
     body, rate = settings.body, NODE_RATE if tightened else ROUGH_RATE
@@ -53,16 +55,20 @@ def balanced_path(
     room = _room(feet)
     feet = _carrying(feet)
     low, high, middle = _support(feet)
-    middle = middle + _sway(feet, nodes, settings.layers)
+    middle = middle + hand * _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
     weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
     want = _Wanted(middle, low, high, weight, offset, *room)
-    path = _solved(want, flight, lever, rate, body)
+    what = f"the path of her balance {span(times)}"
+    found = _solved(want, flight, lever, rate, body, what)
+    softened = found.softened
     for _ in range(tightened):
+        path = found.x.reshape(-1, 2)
         want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), seen, rate), flight)
-        path = _solved(want, flight, lever, rate, body)
-    return cubic(nodes, path, times)
+        found = _solved(want, flight, lever, rate, body, what)
+        softened |= found.softened
+    return cubic(nodes, found.x.reshape(-1, 2), times), softened
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,8 +167,10 @@ def _tightened(want: _Wanted, low: Array, high: Array, zmp: Array, flight: NDArr
     )
 
 
-def _solved(want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings) -> Array:
-    """The path (n, 2); both coordinates are unknowns of one programme, by turns."""
+def _solved(
+    want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings, what: str
+) -> Solution:
+    """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
     n = len(want.middle)
     problem = BandedLeastSquares(2 * n, 1, 8)
     inner = np.arange(1, n - 1)
@@ -187,7 +195,7 @@ def _solved(want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float,
     for d, direction in enumerate(ACROSS):
         along = 2 * k - 2, _both(zmp[stand], direction)
         limits.append(Limits(*along, want.low[k, d] / UNIT, want.high[k, d] / UNIT, GIVE_SUPPORT))
-    return solve(problem, limits).x.reshape(n, 2)
+    return solve_surely(problem, limits, what)
 
 
 def _both(coefficients: Array, direction: Array) -> Array:

@@ -28,6 +28,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 WRUNG = np.radians(110.0)  # before the screen is right behind her, the chest gives up looking at it over so far
 YAW_SMOOTH = 0.08  # seconds over which the pelvis turns with each step
+BALANCE, HEIGHT = "her balance", "the height of her body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 
 
@@ -39,6 +40,7 @@ class BodyPath:
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
     the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
+    softened : what had no solution within the limits of legs and soles, so that they gave way; for people
     """
 
     times: Array
@@ -52,6 +54,7 @@ class BodyPath:
     tilt: Array
     reaching: Array
     heels: Array
+    softened: tuple[str, ...] = ()
 
 
 def body_path(
@@ -73,10 +76,10 @@ def body_path(
         above = np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (len(times), 1))
     reaching = np.column_stack([_reaching(plan.presses, times, side, settings) for side in (0, 1)])
     if keep and before is not None:
-        mass_ground = before.mass
+        mass_ground, swept = before.mass, BALANCE in before.softened
     else:
         levers = _levers(before.mass_height if before else None, times)
-        mass_ground = balanced_path(feet, *levers, above[:, [0, 2]], times, settings, tightened)
+        mass_ground, swept = balanced_path(feet, *levers, above[:, [0, 2]], times, settings, tightened, plan.hand)
     held = leaning_share(plan.grips, times)
     if plan.bar is not None and not (keep and before is not None):
         mass_ground = kept_back(mass_ground, held, plan.bar, settings.bar)
@@ -107,9 +110,9 @@ def body_path(
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, rate, controller)
-    return BodyPath(
-        times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching, np.zeros((len(times), 2))
-    )
+    softened = ((BALANCE,) if swept else ()) + ((HEIGHT,) if mass_height.softened else ())
+    heels = np.zeros((len(times), 2))
+    return BodyPath(times, mass_ground, mass_height, ground, height, yaw, chest, head, tilt, reaching, heels, softened)
 
 
 def _levers(height: HeightPath | None, times: Array) -> tuple[Array, Array]:

@@ -24,8 +24,9 @@ SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on i
 
 
 def detour(
-    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: Array | float, apart: float
-) -> tuple[float, float]:
+    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: Array | float, apart: float,
+    outward: float,
+) -> tuple[float, float]:  # fmt: skip
     """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
 
     Parameters
@@ -33,10 +34,12 @@ def detour(
     start, end : (2,) ball of the swinging foot; yaws in radians
     other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
     apart : metres; where no detour is enough, the best one is taken
+    outward : 1 for the left foot, -1 for the right one: of equal detours each takes the other's mirror image
     """
     path = end - start
     length = float(np.linalg.norm(path))
     axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
+    axes = axes * [[outward], [1.0]]
     e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))

@@ -9,7 +9,7 @@ from dancetutor_cli.motion.ease import reduction
 from dancetutor_cli.motion.feet import GRAVITY
 from dancetutor_cli.motion.paths import smooth_path
 from dancetutor_cli.motion.settings import JumpSettings, MotionSettings
-from dancetutor_cli.motion.track import Plan, airborne
+from dancetutor_cli.motion.track import Plan, Swing, airborne
 
 Array = NDArray[np.float64]
 AROUND = 0.12  # seconds before and after fast steps in which the body is as low as in them
@@ -52,9 +52,16 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 
 def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How far (n, 2) the shoulders lean in jumps to where they go, radians: in proportion to the way (thesis 5.6.2)."""
+    """How far (n, 2) the shoulders lean in jumps to where they go, radians: in proportion to the way (thesis 5.6.2).
+
+    Both feet of a jump come down at once and have one way; a gallop has that of the foot that comes down first.
+    """
+    jumps: dict[float, Swing] = {}
+    for swing in (s for track in plan.feet for s in track.swings if s.kind == "jump"):
+        if swing.land not in jumps or jumps[swing.land].lift < swing.lift:  # the last foot to leave takes off
+            jumps[swing.land] = swing
     out = np.zeros((len(times), 2))
-    for swing in (s for s in plan.feet[0].swings if s.kind == "jump"):
+    for _, swing in sorted(jumps.items()):
         way = np.radians(jump.lean) * (np.array(swing.middle1) - np.array(swing.middle0))
         first, last = swing.lift - ONSET, swing.land + OFFSET
         near = slice(*np.searchsorted(times, (first, last)))

@@ -66,7 +66,8 @@ def _home(stance: Stance, foot: Foot, panels: Array) -> tuple[Array, float]:
     """Ball and yaw of a foot that waits in the middle of the pad, or of the nearest pad of two: on no panel."""
     squares = panels.reshape(-1, SQUARE, 2).mean(axis=1) if len(panels) % SQUARE == 0 else panels.mean(axis=0)[None]
     middle = np.mean([f.ball for f in stance.feet], axis=0)
-    nearest = squares[np.argmin(np.linalg.norm(squares - middle, axis=1))]
+    squares = squares[np.argsort(-squares[:, 0] if stance.lead else squares[:, 0], kind="stable")]
+    nearest = squares[np.argmin(np.round(np.linalg.norm(squares - middle, axis=1), 6))]
     square = round(stance.body_yaw() / (np.pi / 2)) * np.pi / 2
     aside = foot.outward * HOME_OUT * np.array([np.cos(square), -np.sin(square)])
     yaw = stance.limited(square, stance.body_yaw())

@@ -74,9 +74,12 @@ class Steps:
 
 def footsteps(
     begin: Stand, goal: Stand, heading: float, ground: Ground, gait: str, start: float, ready: float,
-    settings: MotionSettings,
+    settings: MotionSettings, lead: int,
 ) -> Steps | None:  # fmt: skip
-    """Footsteps from one stand to another, at the slowest pace that arrives until `ready`; None if none does."""
+    """Footsteps from one stand to another, at the slowest pace that arrives until `ready`; None if none does.
+
+    lead : the foot that goes first where both have the same room
+    """
     slow, quick = gaits_of(gait, settings)
     distance = float(np.linalg.norm(goal.middle - begin.middle))
     turning = _turns(begin.heading, heading, settings) + _turns(heading, goal.heading, settings)
@@ -86,9 +89,11 @@ def footsteps(
         last = start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
         if last <= ready:
             how = Pace(gait, float(share), start)
-            falls = [_footfalls(begin, goal, heading, count, side, ground, settings) for side in (0, 1)]
-            both = [_as_swings(begin, f, side, pace, how, ground, settings) for side, f in enumerate(falls)]
-            return max(both, key=lambda s: s.room)
+            both = []
+            for side in (lead, 1 - lead):
+                falls = _footfalls(begin, goal, heading, count, side, ground, settings)
+                both.append(_as_swings(begin, falls, side, pace, how, ground, settings))
+            return max(both, key=lambda s: round(s.room, 6))
     return None
 
 
@@ -186,7 +191,7 @@ def _as_swings(
         share = min(far / (0.6 * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
         pitches = (0.8 * share * push, max(share, 0.3) * push, -share * heel, 0.0)
         (ball, yaw), (other, standing) = places[side], places[1 - side]
-        bulge = detour(ball, yaw, step.ball, step.yaw, other, standing, settings.step.apart)
+        bulge = detour(ball, yaw, step.ball, step.yaw, other, standing, settings.step.apart, 1.0 - 2.0 * side)
         least = min(least, room(places[side], step, bulge, places[1 - side]))
         level = ground.level(*stage.middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*stage.middle_of(ball, yaw))) > 0.0

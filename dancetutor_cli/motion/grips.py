@@ -176,7 +176,7 @@ def _longest(arm: _Arm, start: int, end: int) -> tuple[float, int]:
     soon = arm.place[start : min(start + round(AHEAD * RATE), end)].mean()
     best, stop = float(soon), start
     for aside in BESIDE:
-        x = float(on_rail(np.array([soon + aside]), arm.bar)[0])
+        x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar)[0])
         k = start
         while k < end:
             until = min(k + round(LOOK * RATE), end)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.banded import BandedLeastSquares
 from dancetutor_cli.motion.feet import GRAVITY
-from dancetutor_cli.motion.qp import Limits, solve
+from dancetutor_cli.motion.qp import Limits, solve_surely
 from dancetutor_cli.motion.settings import BodySettings
 
 Array = NDArray[np.float64]
@@ -26,11 +26,15 @@ LEAST_PHASE = 0.012  # seconds; shorter flights are left out: nobody sees them
 
 @dataclass(frozen=True, slots=True)
 class HeightPath:
-    """Piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second."""
+    """Piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second.
+
+    softened : whether legs reach farther or push harder there than they should, as in `qp.Solution`
+    """
 
     times: Array
     values: Array
     slopes: Array
+    softened: bool = False
 
     def at(self, times: Array) -> Array:
         """Height (f,) at any times; a cubic through a parabola's points and slopes is that parabola."""
@@ -73,8 +77,13 @@ def height_path(
     ground = np.flatnonzero(~(np.concatenate(([True], flying)) & np.concatenate((flying, [True]))))
     top = np.interp(nodes[ground], times, highest)
     room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT, GIVE_ROOM)
-    solution = solve(problem, [force, room])
-    return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying))
+    solution = solve_surely(problem, [force, room], f"the height of her body {span(times)}")
+    return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
+
+
+def span(times: Array) -> str:
+    """The seconds from the first to the last of some times, for people."""
+    return f"from {times[0]:.1f} s to {times[-1]:.1f} s"
 
 
 def _apart(flights: Array) -> Array:

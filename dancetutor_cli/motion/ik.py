@@ -36,6 +36,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
 ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+PULL_LEGS = 60  # rounds of pulling the root until both legs reach
 PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
 
 
@@ -145,17 +146,17 @@ def _put(out: Array, q: Quat) -> None:
 def _pull_root(root: Vec, turn: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
     """Move the root as little as needed until both ankles are within reach of their hips."""
     left, right = qrot(turn, hips[0]), qrot(turn, hips[1])
-    for _ in range(30):
-        far = 0.0
-        for side in range(2):
-            hip = add(root, left if side == 0 else right)
-            v = sub(ankles[0] if side == 0 else ankles[1], hip)
-            d = length(v)
-            if d > reach:
-                far = max(far, d - reach)
-                root = add(root, scale(v, (d - reach) / d))
-        if far < 1e-6:
+    for _ in range(PULL_LEGS):
+        a, b = sub(ankles[0], add(root, left)), sub(ankles[1], add(root, right))
+        far_a, far_b = length(a) - reach, length(b) - reach
+        if far_a < 1e-6 and far_b < 1e-6:
             break
+        # where both legs are too short each draws half: neither comes first
+        share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
+        if far_a > 0.0:
+            root = add(root, scale(a, share * far_a / length(a)))
+        if far_b > 0.0:
+            root = add(root, scale(b, share * far_b / length(b)))
     return root
 
 

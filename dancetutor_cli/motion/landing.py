@@ -16,8 +16,8 @@ from dancetutor_cli.play.model import Part
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
-_ACROSS = np.linspace(-1.0, 1.0, 11)
-PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a ball in its room on a panel
+_ACROSS = np.arange(-5, 6) / 5
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
 STAYING = 0.7  # part of its way to the wanted place that a foot on its own panel leaves out
@@ -75,8 +75,8 @@ def beside(
     free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
     if free and not over(stance.mined, ball[None], toes)[0]:
         return ball, yaw
-    balls = panel + room * PLACES
-    turned = np.array([stance.limited(yaw + turn, stance.body_yaw()) for turn in TURNS])
+    balls = panel + room * PLACES * [foot.outward, 1.0]
+    turned = np.array([stance.limited(yaw + foot.outward * turn, stance.body_yaw()) for turn in TURNS])
     grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
     gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)
     price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
@@ -122,7 +122,7 @@ def around(
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
     a, b, apart = stance.toes(foot), stance.toes(foot, yaw), stance.settings.step.apart
     if max(other.landed, other.turned) <= span[0]:
-        return detour(foot.ball, a, target, b, other.ball, stance.toes(other), apart)
+        return detour(foot.ball, a, target, b, other.ball, stance.toes(other), apart, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
     there = foot_path(stance.track(other, LATEST), times, stance.settings.step.heel_drop)
-    return detour(foot.ball, a, target, b, there.ball[:, [0, 2]], there.yaw, apart)
+    return detour(foot.ball, a, target, b, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)

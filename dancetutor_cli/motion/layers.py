@@ -23,20 +23,21 @@ SEED = 20140513
 
 
 def add_layers(
-    skeleton: Skeleton, times: Array, rotations: Array, stepping: Array, free: Array, settings: LayerSettings
-) -> None:
+    skeleton: Skeleton, times: Array, rotations: Array, stepping: Array, free: Array, settings: LayerSettings,
+    lead: int,
+) -> None:  # fmt: skip
     """Add all layers to `rotations` (f, j, 4) in place.
 
     Parameters
     ----------
     times : (f,) seconds; stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
-    free : (f,) 0 where a palm is on the floor, else 1
+    lead : as in `Plan`; free : (f,) 0 where a palm is on the floor, else 1
     """
     breath = np.sin(2 * np.pi * times / settings.breath_time)
     raised = np.radians(settings.breath_shoulders) * breath * free
     for side, sign in (("l", 1.0), ("r", -1.0)):
         _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * raised)
-    for side, phase, bent in (("l", 0.0, 0.8), ("r", 0.4, 1.2)):
+    for side, phase, bent in (("lr"[lead], 0.0, 0.8), ("rl"[lead], 0.4, 1.2)):
         hand = hand_direction(skeleton, side)
         drop = bent + 0.35 * np.sin(2 * np.pi * (times / WRIST_TIME + phase))
         _turn(

@@ -80,6 +80,7 @@ class Motion:
     root : float64 (f, 3), position of joint 0 in the world, metres
     fps : nominal frames per second; contacts : sorted by start
     bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
+    notes : what there is to say of the bake, for people: where limits of the body had to give way
     ground : pad and floor, None where she stays on the pad and the ground has the height 0 everywhere
     """
 
@@ -92,3 +93,4 @@ class Motion:
     bar: Bar | None = None
     grips: tuple[Grip, ...] = ()
     ground: Ground | None = None
+    notes: tuple[str, ...] = ()

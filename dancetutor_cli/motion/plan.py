@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 LEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it
 WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
 STEEPEST = 1.875  # largest slope of `ease.smooth`
+NO_WAY = 1e-6  # metres
+HALF_TURN = 1e-6  # degrees from half a turn
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
 
@@ -29,7 +31,7 @@ class Planner:
 
     def __init__(self, play: Play, panels: Array, second: Callable[[int], float], settings: MotionSettings) -> None:
         self.play, self.panels, self.settings = play, panels, settings
-        self.stance = Stance(settings)
+        self.stance = Stance(settings, leading_foot(play, panels))
         self.steps = Steps(play, panels, self.stance)
         self.touches = Touches(play, panels, second, self.stance)
         self.asides = SideSteps(play, panels, self.stance)
@@ -45,7 +47,7 @@ class Planner:
             raise DancetutorError("the chart has no steps: there is nothing to dance")
         return Plan(
             self.stance.tracks(), tuple(self.turns), tuple(self.touches.presses), contacts, (0.0, 0.0),
-            contacts[0].start, max(c.end for c in contacts),
+            contacts[0].start, max(c.end for c in contacts), lead=self.stance.lead,
         )  # fmt: skip
 
     def _row(self, i: int) -> None:
@@ -77,6 +79,8 @@ class Planner:
             self.turns.append(aside)
             self.previous = max(foot.landed for foot in self.stance.feet)
         turn = (self.play.facing[i] - self.stance.normal + 180.0) % 360.0 - 180.0
+        if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: the foot decides
+            turn = -180.0 if (feet[0] if len(feet) == 1 else self.stance.lead) == 0 else 180.0
         before = self.stance.normal
         self.stance.normal += turn
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
@@ -88,6 +92,24 @@ class Planner:
         far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
         self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
         self.previous = time
+
+
+def leading_foot(play: Play, panels: Array) -> int:
+    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump tells.
+
+    It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
+    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
+    """
+    feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+    alone = np.flatnonzero(feet[0] != feet[1])
+    if len(alone):
+        return int(feet[1][alone[0]])
+    left, right = (np.asarray(play.limb == side) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT))
+    aside, ahead = (left | right) @ panels[:, 0], (left.astype(np.int8) - right) @ panels[:, 1]
+    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror
+        if max(abs(x), abs(z)) > NO_WAY:
+            return int(x < 0) if abs(x) > NO_WAY else int(z < 0)
+    return 0
 
 
 def _turn_start(time: float, duration: float, leaves: float, far: float) -> float:

@@ -7,17 +7,19 @@ length of the song.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.motion.banded import BandedLeastSquares, _factor, _solve_one
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6
-ROUNDS = 60
+ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of the second try, with limits that give way more
+SOFTER, SOFT = 100.0, 0.01  # how much more they give way then, and how much those do that did not
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,15 +39,41 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken."""
+    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
+
+    softened : whether the limits had to give way more than was asked for, for there was no convergence without
+    """
 
     x: Array
     found: bool
     rounds: int
+    softened: bool = False
 
 
-def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
-    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value."""
+class ConvergenceError(DancetutorError):
+    """A programme has no solution that the method finds, even with limits that give way."""
+
+
+def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
+    """As `solve`, but what it returns is a minimum: once more with softer limits where the first try did not converge.
+
+    what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
+    """
+    found = solve(problem, limits)
+    if found.found:
+        return found
+    softer = [replace(part, give=max(SOFTER * part.give, SOFT)) for part in limits]
+    found = solve(problem, softer, MORE_ROUNDS)
+    if not (found.found and np.isfinite(found.x).all()):
+        raise ConvergenceError(f"{what} was not found in {found.rounds} rounds; choose another part with --section")
+    return replace(found, softened=True)
+
+
+def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
+    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
+
+    most : rounds after which it is given up, None for `ROUNDS`
+    """
     if problem.right.shape[1] != 1:
         raise ValueError("limits are for one path at a time")
     nodes, reach = problem.bands.shape
@@ -67,7 +95,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits]) -> Solution:
     width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
     stacked = np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives)
     right = np.ascontiguousarray(problem.right[:, 0])
-    x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, ROUNDS)
+    x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, most or ROUNDS)
     return Solution(x, bool(found), int(rounds))
 
 

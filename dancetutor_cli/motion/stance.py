@@ -80,10 +80,13 @@ class Foot:
 
 
 class Stance:
-    """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it."""
+    """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
 
-    def __init__(self, settings: MotionSettings) -> None:
-        self.settings = settings
+    lead : the foot that leads, as in `Plan`
+    """
+
+    def __init__(self, settings: MotionSettings, lead: int) -> None:
+        self.settings, self.lead = settings, lead
         self.normal = 0.0
         self.mined: Array = np.empty((0, 2))  # panels beside which feet land that mines pass soon
         self.toe_out = float(np.radians(settings.step.toe_out))

@@ -194,7 +194,8 @@ class Steps:
         body = stance.body_yaw()
         yaws = [stance.limited(f.yaw + self.settings.jump.yaw_to_normal * (body - f.yaw), body) for f in stance.feet]
         goals: dict[int, tuple[Array, float]] = {}
-        for foot in sorted(stance.feet, key=lambda f: -len(columns[f.side])):  # brackets have no choice: they are first
+        # brackets have no choice: they are first
+        for foot in sorted(stance.feet, key=lambda f: (-len(columns[f.side]), f.side != stance.lead)):
             side = 1 - foot.side
             ball, yaw = goals.get(side, (self.panels[columns[side]].mean(axis=0), yaws[side]))
             other = Pose(ball, stance.toes(stance.feet[side], yaw))

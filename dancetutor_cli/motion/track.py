@@ -100,6 +100,8 @@ class Plan:
     bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
     walks : in order of time; ground : pad and floor, where she walks on both
     beats : seconds of the song's beats, in order
+    lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
+        play is danced as the mirror image
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -114,6 +116,12 @@ class Plan:
     walks: tuple[Walk, ...] = ()
     ground: Ground | None = None
     beats: tuple[float, ...] = ()
+    lead: int = 0
+
+    @property
+    def hand(self) -> float:
+        """1 for a plan that the left foot leads, -1 for its mirror image: the sign of what is chosen for variety."""
+        return 1.0 - 2.0 * self.lead
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:

@@ -65,20 +65,21 @@ def _released(plan: Plan) -> tuple[Contact, ...]:
 
 
 def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
-    """She comes from her left side as the song begins, if there is time before the first note."""
+    """She comes from the side of the foot that leads as the song begins, if there is time before the first note."""
     walk = settings.walk
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.swings[:1]))
     if busy < walk.least or (mines < busy).any():
         return plan
     goal = standing(plan.feet, -np.inf)
-    places, following = places_along(ground), [_next_step(track, -np.inf) for track in plan.feet]
+    places, following = places_along(ground, plan.lead), [_next_step(track, -np.inf) for track in plan.feet]
     targets = np.array([s.target for s in following if s is not None])
     if len(places) > 1 and len(targets) == len(following):
         goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
-    away = np.array([ground.high[0] + walk.beside, goal.middle[1]])
-    begin = stand_at(away, -np.pi / 2, settings)
+    heading = -plan.hand * np.pi / 2
+    away = np.array([_beside(ground, plan.lead, walk.beside), goal.middle[1]])
+    begin = stand_at(away, heading, settings)
     ready = min(plan.first - walk.settle, busy - walk.settle - ARRIVED)
-    steps = footsteps(begin, goal, -np.pi / 2, ground, gait, BEGIN, ready, settings)
+    steps = footsteps(begin, goal, heading, ground, gait, BEGIN, ready, settings, plan.lead)
     if steps is None:
         return plan
     level = ground.level(*begin.middle)
@@ -95,17 +96,18 @@ def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Moti
 
 
 def _walk_off(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
-    """After the last note she leaves to her right side, or to the left if her feet would be in each other's way."""
+    """After the last note she goes on to the other side, or back if her feet would be in each other's way."""
     walk = settings.walk
     start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.swings[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
-    for place, heading in ((ground.low[0] - walk.beside, -np.pi / 2), (ground.high[0] + walk.beside, np.pi / 2)):
-        goal = stand_at(np.array([place, 0.0]), whole + heading, settings)
+    for side in (1 - plan.lead, plan.lead):
+        heading = (0.5 - side) * np.pi
+        goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
             ready = plan.last + walk.leave + late
-            steps = footsteps(begin, goal, whole + heading, ground, gait, start, ready, settings)
+            steps = footsteps(begin, goal, whole + heading, ground, gait, start, ready, settings, plan.lead)
             if steps is not None:
                 found.append(steps)
                 break
@@ -117,12 +119,17 @@ def _walk_off(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
     return replace(plan, feet=(feet[0], feet[1]), turns=(*plan.turns, *steps.turns), walks=(*plan.walks, steps.walk))
 
 
+def _beside(ground: Ground, side: int, far: float) -> float:
+    """A place along x so far beside the pad, on her left (0) or right (1) as she looks to the screen."""
+    return ground.high[0] + far if side == 0 else ground.low[0] - far
+
+
 def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
     """Where a long wait ends with steps of both feet on the other pad she walks there, rather than stretch.
 
     mines : (m,) seconds; while they pass she stays, for who walks might tread on one
     """
-    if len(places_along(ground)) == 1:
+    if len(places_along(ground, plan.lead)) == 1:
         return plan
     for start, ready in _waits(plan, mines, settings.walk.wait):
         begin = standing(plan.feet, start, plan.turns)
@@ -130,7 +137,7 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
         targets = np.array([s.target for s in following if s is not None and s.kind != "evade"])
         if len(targets) < len(following):
             continue
-        found = walk_there(begin, targets, ground, gait, (start, ready), settings)
+        found = walk_there(begin, targets, ground, gait, (start, ready), settings, plan.lead)
         if found is not None:
             steps, goal = found
             plan = _inserted(plan, steps, goal, settings.step.apart)
@@ -138,16 +145,17 @@ def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
 
 
 def walk_there(
-    begin: Stand, targets: Array, ground: Ground, gait: str, wait: tuple[float, float], settings: MotionSettings
-) -> tuple[Steps, Stand] | None:
+    begin: Stand, targets: Array, ground: Ground, gait: str, wait: tuple[float, float], settings: MotionSettings,
+    lead: int,
+) -> tuple[Steps, Stand] | None:  # fmt: skip
     """A walk in a wait to where both feet will step next, targets (2, 2), if they are far and there is time for it."""
     walk = settings.walk
     if wait[1] - wait[0] < walk.wait or np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
         return None
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
-    goal = stand_at(np.array([_nearest(places_along(ground), targets), 0.0]), whole, settings)
+    goal = stand_at(np.array([_nearest(places_along(ground, lead), targets), 0.0]), whole, settings)
     way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
-    steps = footsteps(begin, goal, way, ground, gait, wait[0] + walk.pause, wait[1] - REST, settings)
+    steps = footsteps(begin, goal, way, ground, gait, wait[0] + walk.pause, wait[1] - REST, settings, lead)
     return (steps, goal) if steps is not None and steps.room >= settings.step.apart - 0.01 else None
 
 
@@ -157,14 +165,18 @@ def _next_step(track: FootTrack, time: float) -> Swing | None:
 
 def _nearest(places: Array, targets: Array) -> float:
     """Which of the places is nearest to where both feet will step next, (2, 2)."""
-    return float(places[np.argmin(np.abs(places - targets[:, 0].mean()))])
+    return float(places[np.argmin(np.round(np.abs(places - targets[:, 0].mean()), 6))])
 
 
-def places_along(ground: Ground) -> Array:
-    """Places (k,) along x where she may wait: the middle of each square of panels, and between two of them."""
+def places_along(ground: Ground, lead: int) -> Array:
+    """Places (k,) along x where she may wait: the middle of each square of panels, and between two of them.
+
+    lead : as in `Plan`; that foot's side is last, and so second choice
+    """
     width = ground.high[0] - ground.low[0]
     squares = max(1, round(width / (3 * stage.PANEL)))
-    return np.float64(ground.low[0]) + width / squares * (0.5 + 0.5 * np.arange(2 * squares - 1))
+    middle = (ground.low[0] + ground.high[0]) / 2
+    return np.asarray(middle + (1.0 - 2.0 * lead) * width / squares / 2 * (np.arange(2 * squares - 1) - (squares - 1)))
 
 
 def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
@@ -230,4 +242,4 @@ def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, apart: flo
     start = standing(feet, step.lift)
     there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), HEEL_DROP)
     way = start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw
-    return detour(*way, there.ball[:, [0, 2]], there.yaw, apart)
+    return detour(*way, there.ball[:, [0, 2]], there.yaw, apart, 1.0 - 2.0 * side)

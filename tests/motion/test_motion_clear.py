@@ -27,7 +27,7 @@ def gap(a: np.ndarray, b: np.ndarray) -> float:
 @pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
 def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
     """The right foot lands on the panel on whose middle the left one stands."""
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     panel = np.array([0.14, 0.0])
     left, right = stance.feet
     left.ball, left.yaw = stage.ball_of(panel, yaw), yaw
@@ -46,7 +46,7 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     to, pivot = yaw if turned is None else turned, stage.ball_of(other, yaw)
     now = yaw + swung(SHARES) * (to - yaw)
     balls = stage.ball_of(start, 0.0), stage.ball_of(end, 0.2)
-    bulge = detour(balls[0], 0.0, balls[1], 0.2, pivot, now, APART)
+    bulge = detour(balls[0], 0.0, balls[1], 0.2, pivot, now, APART, 1.0)
     least = np.inf
     for s in np.linspace(0.05, 0.95, 60):
         share, aim = float(travelled(s)), yaw + float(swung(s)) * (to - yaw)
@@ -59,7 +59,7 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
 
 
 def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     panel, neighbour = np.array([0.14, 0.0]), np.array([-0.14, 0.0])
     stance.mined = neighbour[None]
     left, right = stance.feet
@@ -81,7 +81,7 @@ def test_a_heel_that_only_just_reaches_over_a_mine_counts() -> None:
 def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
     """Its heel swings past the middle of the other shoe, which lies across behind it."""
     place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
-    bulge = detour(place, -turn, place, turn, other, aim, APART)
+    bulge = detour(place, -turn, place, turn, other, aim, APART, 1.0)
 
     def least(aside: tuple[float, float]) -> float:
         gaps = []
@@ -98,7 +98,7 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
 
 def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
     """Its toes on the left panel; turned to the front its heel would lie on the down panel, which has a mine."""
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     left = stance.feet[0]
     left.ball, left.yaw = np.array([0.187, -0.046]), float(np.radians(65.0))
     far = np.array([-0.2, 0.1])

@@ -41,7 +41,7 @@ def test_small_turns_begin_with_their_move() -> None:
 
 @pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
 def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[float, float]) -> None:
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     stance.normal = 180.0  # the play would have her face backward
     for foot, yaw in zip(stance.feet, np.radians(yaws), strict=True):
         foot.yaw = float(yaw)
@@ -52,7 +52,7 @@ def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[
 
 def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in stance.feet]
     fly(stance, 1.0, 1.24, goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
     swing = stance.feet[0].swings[-1]
@@ -64,7 +64,7 @@ def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
 
 def test_a_heel_does_not_drop_in_no_time() -> None:
     """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     foot = stance.feet[0]
     for lift, land, kind in ((1.0, 1.2, "step"), (1.2 + FREE_WINDOW, 1.4, "pivot"), (1.41, 1.6, "step")):
         foot.move(Swing(lift, land, (0.3, 0.1), 0.2, 0.05, (0.2, 0.4, 0.15, 0.0), kind=kind), foot.ball, foot.yaw)

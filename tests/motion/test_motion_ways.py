@@ -30,7 +30,7 @@ def least_gap(stance: Stance, start: float, end: float) -> float:
 @pytest.mark.parametrize("degrees", [-180.0, -135.0, -90.0, 0.0, 90.0, 135.0, 180.0])
 @pytest.mark.parametrize("width", [0.20, 0.28, 0.56])
 def test_shoes_keep_clear_of_each_other_in_a_jump_that_turns(degrees: float, width: float) -> None:
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     left, right = stance.feet
     for foot, x in ((left, width / 2), (right, -width / 2)):
         foot.ball = np.array([x, 0.05])
@@ -48,7 +48,7 @@ def test_shoes_keep_clear_of_each_other_in_a_jump_that_turns(degrees: float, wid
 
 def test_feet_that_land_together_after_far_ways_do_not_cross() -> None:
     """Both from the far panels of the other pad to the two panels in the middle, with a half turn."""
-    stance = Stance(default_settings())
+    stance = Stance(default_settings(), 0)
     left, right = stance.feet
     left.ball, left.yaw = np.array([-0.458, -0.164]), np.radians(56.0)
     right.ball, right.yaw = np.array([-0.202, -0.044]), np.radians(73.0)
