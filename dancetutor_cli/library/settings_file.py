@@ -111,7 +111,7 @@ def _steps_type(text: str, place: tuple[str | int, ...]) -> str:
     if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
         near = did_you_mean(pattern, names.COLUMNS)
         there = ", ".join(sorted({f"{known.partition('-')[0]}-*" for known in names.COLUMNS}))
-        raise SettingError(place, f"'{text}' is no steps type{near}; there are {there}")
+        raise SettingError(place, f"'{shown_key(text)}' is no steps type{near}; there are {there}")
     return pattern
 
 
@@ -120,7 +120,7 @@ def _difficulty(text: str, place: tuple[str | int, ...]) -> str:
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
         near = did_you_mean(text, names.DIFFICULTIES)
-        raise SettingError(place, f"'{text}' is no difficulty{near}; there are {', '.join(names.DIFFICULTIES)}")
+        raise SettingError(place, f"'{shown_key(text)}' is no difficulty{near}; there are {', '.join(names.DIFFICULTIES)}")
     return name.lower()
 
 

@@ -221,12 +221,13 @@ def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
     if name in preset_names():
         return name
     path = folder / name
-    if path.suffix.lower() not in (".yaml", ".yml") and not path.is_file():
-        there = ", ".join(preset_names())
-        near = did_you_mean(name, preset_names())
-        raise SettingError(place, f"there is no preset '{name}'{near}; there are: {there}, or name a .yaml file")
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise SettingError(place, f"'{name}' leads out of the folder of this file; put the preset beside it")
+    if leads_out(path, folder):
+        raise SettingError(place, "'preset' leads out of the folder of this file; put the preset beside it")
+    if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
+        there, near = ", ".join(preset_names()), did_you_mean(name, preset_names())
+        raise SettingError(
+            place, f"there is no preset '{shown_key(name)}'{near}; there are: {there}, or name a .yaml file"
+        )
     return str(path)
 
 

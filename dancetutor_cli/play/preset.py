@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from dancetutor_cli.bounded import leads_out
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
@@ -126,8 +127,10 @@ def _base(source: MarkedYaml, seen: tuple[Path, ...], confined: bool) -> Preset 
     path = config_path(f"presets/{name}.yaml") if name in preset_names() else beside
     if path.absolute() in seen:
         raise _wrong(source, ("extends",), f"'{name}' extends itself")
-    if confined and path == beside and not path.resolve().is_relative_to(source.path.parent.resolve()):
-        raise _wrong(source, ("extends",), f"'{name}' leads out of the folder of this file; put it beside it")
+    if confined and path == beside and leads_out(path, source.path.parent):
+        raise _wrong(
+            source, ("extends",), "'extends' leads out of the folder of this file; put it beside it"
+        )
     if not path.is_file():
         raise _wrong(
             source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"

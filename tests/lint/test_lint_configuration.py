@@ -210,7 +210,7 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
         ("overrides:\n  - when:\n      steps-type: danse-*\n", 3, ["danse-*", "dance-*", "pump-*"]),
         ("preset: gpt\n", 1, ["gpt", "beginner, ddr, itg, pump, stamina, thesis"]),
         ("overrides:\n  - when: {meter: 3}\n    preset: begginer\n", 3, ["did you mean beginner", "thesis"]),
-        ("preset: ../mine.yaml\n", 1, ["../mine.yaml", "leads out of the folder"]),
+        ("preset: ../mine.yaml\n", 1, ["'preset' leads out of the folder"]),
         ("overrides:\n  - when: {meter: 3}\n    preset: /etc/mine.yaml\n", 3, ["leads out of the folder"]),
         ("feet:\n  - when: {difficulty: Herd}\n    steps: {16: L}\n", 2, ["Herd", "Beginner, Easy"]),
         ("rules: [\n", 2, ["expected"]),
