@@ -119,8 +119,8 @@ def _difficulty(text: str, place: tuple[str | int, ...]) -> str:
     """A difficulty under today's name; old ones ("Heavy", "Oni") are known as everywhere."""
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
-        near = did_you_mean(text, names.DIFFICULTIES)
-        raise SettingError(place, f"'{shown_key(text)}' is no difficulty{near}; there are {', '.join(names.DIFFICULTIES)}")
+        near, there = did_you_mean(text, names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
+        raise SettingError(place, f"'{shown_key(text)}' is no difficulty{near}; there are {there}")
     return name.lower()
 
 

@@ -128,9 +128,7 @@ def _base(source: MarkedYaml, seen: tuple[Path, ...], confined: bool) -> Preset 
     if path.absolute() in seen:
         raise _wrong(source, ("extends",), f"'{name}' extends itself")
     if confined and path == beside and leads_out(path, source.path.parent):
-        raise _wrong(
-            source, ("extends",), "'extends' leads out of the folder of this file; put it beside it"
-        )
+        raise _wrong(source, ("extends",), "'extends' leads out of the folder of this file; put it beside it")
     if not path.is_file():
         raise _wrong(
             source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"
