@@ -118,7 +118,7 @@ def test_strip_alone_leaves_files_that_are_not_ours(song: Path, ssc: Path) -> No
     assert ssc.read_bytes() == before
     assert (song / "data.sme").read_bytes() == b"not SMEditor's"
     assert "warning: " in said.err
-    assert "is no JSON" in said.err
+    assert "is not JSON" in said.err
     assert Said([song, "--strip", "--style", "smeditor"]).status == 2, "who names a style wants to know"
 
 

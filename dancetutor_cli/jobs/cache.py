@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import pickle
 import tempfile
 import time
 from collections.abc import Iterator
@@ -20,17 +19,19 @@ from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.result import FileResult
+from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
 from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
 _CHARTS = (".sm", ".ssc")
 _ROOMS = ("chart", "library", "pads", "feet", "play", "lint", "jobs")
+_LARGEST = CHART_LIMIT  # bytes of a kept result
 _KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
 
 
 class ResultCache:
-    """A folder of pickled results. A file that cannot be read or written is no result, never an error."""
+    """A folder of results, see `result_file`. One that cannot be read or written is no result, never an error."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -55,12 +56,12 @@ class ResultCache:
         """The result kept under a key."""
         path = self._path(key)
         try:
-            result = pickle.loads(path.read_bytes())
+            content = read_bytes(path, _LARGEST)
             if time.time() - path.stat().st_mtime > _KEEP_SECONDS / 2:
                 path.touch()
-        except Exception:  # whatever a damaged pickle raises
+        except (FileError, OSError):
             return None
-        return result if isinstance(result, FileResult) else None
+        return from_bytes(content, key)
 
     def put(self, key: str, result: FileResult) -> None:
         """Keep a result."""
@@ -68,9 +69,12 @@ class ResultCache:
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             handle, name = tempfile.mkstemp(dir=path.parent)
-            with os.fdopen(handle, "wb") as file:
-                pickle.dump(result, file, protocol=pickle.HIGHEST_PROTOCOL)
-            Path(name).replace(path)
+            try:
+                with os.fdopen(handle, "wb") as file:
+                    file.write(to_bytes(result, key))
+                Path(name).replace(path)
+            except OSError:  # a full disk
+                Path(name).unlink(missing_ok=True)
 
     def prune(self) -> None:
         """Remove what nobody asked for in a long time."""
