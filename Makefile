@@ -10,7 +10,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help setup setup-dev demo test lint bench motion-report character clean
+.PHONY: help page-tools setup setup-dev demo test lint bench motion-report character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -20,6 +20,7 @@ help:
 	@echo "make motion-report  the quality of the motion on 40 charts (COUNT=400: more); a table in build/"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
+	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
 	@echo "make clean   remove $(VENV), build/ and caches"
 
 setup: $(VENV)/.runtime
@@ -71,6 +72,10 @@ bench: setup-dev
 COUNT ?= 40
 motion-report: setup-dev
 	@$(BIN)/python tools/motion_report.py --count $(COUNT) $(REPORT_ARGS)
+
+# What checks the practice page's modules besides Node and Chromium; nobody else needs it.
+page-tools:
+	cd tests/page && npm install --no-audit --no-fund --no-package-lock --ignore-scripts
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

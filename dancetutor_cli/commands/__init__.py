@@ -15,6 +15,7 @@ COMMANDS = {
     "annotate": ("annotate", "Write L/R foot markers into chart files, or take them out."),
     "animate": ("animate", "Bake a 3D dancer who plays a chart."),
     "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
+    "page": ("page", "Make a page to practise a chart with: loops, speeds, a pad."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
     "warmup": ("warmup", "Compile everything once, so that later runs start at once."),
 }

@@ -13,7 +13,7 @@ from OpenGL import GL
 from OpenGL.GL import shaders as gl_shaders
 from pyrender.shader_program import ShaderProgram, ShaderProgramCache
 
-SHADERS = Path(__file__).resolve().parent / "shaders"
+from dancetutor_cli.video.gl.sources import SHADERS
 
 
 class Program(ShaderProgram):  # type: ignore[misc]

@@ -1,0 +1,105 @@
+// The panel of playing along: keys and pads, waiting, help that fades, calibration, and how it went.
+
+import { el, toggle } from "./dom.js";
+import { keyName } from "./input.js";
+import { latencyOf } from "./judge.js";
+
+const TAPS = 12; // clicks of a calibration
+const BETWEEN = 0.6; // seconds between them
+
+/** @param {import("./app.js").App} app */
+export function alongPanel(app) {
+  const { t, settings } = app;
+  const along = toggle(t("along"), app.along, (on) => app.setAlong(on), "p");
+  const wait = toggle(t("wait"), app.wait, (on) => app.setWait(on), "w");
+  const help = el("select", { id: "feet-help" }, ...["all", "tricky", "none", "auto"].map((name) => el("option", { value: name }, t(`help-${name}`))));
+  help.addEventListener("change", () => app.set("help", help.value));
+  const score = el("p", { class: "score", role: "status" });
+  const keys = el("p", { class: "keys" });
+  const pads = el("p", { class: "hint", role: "status" });
+  const assign = el("button", { type: "button", onclick: () => assignDialog(app, show) }, t("assign"));
+  const calibrate = el("button", { type: "button", onclick: () => calibrateDialog(app) }, t("calibrate"));
+  const show = () => {
+    keys.replaceChildren(...app.doc.pad.names.map((/** @type {string} */ name, /** @type {number} */ k) =>
+      el("span", {}, `${panelName(app, name)} `, el("kbd", {}, keyName(app.input.keys[k])))));
+  };
+  const refresh = () => {
+    along.setAttribute("aria-pressed", String(app.along));
+    wait.setAttribute("aria-pressed", String(app.wait));
+    help.value = settings.help;
+    const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
+    pads.textContent = plugged.length ? t("padIs", { name: plugged.join(", ") }) : t("noPad");
+    const { loop } = app.transport;
+    const tally = app.judge.tally(loop ? loop.a : -Infinity, loop ? loop.b : Infinity);
+    const { hit, early, late, miss, sum, count } = tally;
+    const mean = count ? Math.round((1000 * sum) / count) : 0;
+    score.textContent = app.along ? `${t("counts", { hit, early, late, miss })} ${count ? t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : ""}` : "";
+  };
+  app.listeners.add((what) => { if (what !== "frame") refresh(); });
+  window.addEventListener("gamepadconnected", refresh);
+  window.addEventListener("gamepaddisconnected", refresh);
+  show();
+  refresh();
+  return el("div", {},
+    el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait), score,
+    el("p", { class: "field" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
+    keys, pads, el("p", { class: "group" }, assign, calibrate), el("p", { class: "hint" }, t("padHint")));
+}
+
+/** @param {import("./app.js").App} app @param {string} name */
+function panelName(app, name) {
+  const label = app.t(`panel-${name}`);
+  return label === `panel-${name}` ? name : label;
+}
+
+/** Press a key or button for each panel in turn. @param {import("./app.js").App} app @param {() => void} done */
+function assignDialog(app, done) {
+  const { t } = app;
+  const text = el("p", { role: "status" });
+  const dialog = el("dialog", { class: "assign", "aria-label": t("assign") }, el("h2", {}, t("assign")), text,
+    el("button", { type: "button", onclick: () => dialog.close() }, t("cancel")));
+  let column = 0;
+  const ask = () => { text.textContent = t("pressFor", { panel: panelName(app, app.doc.pad.names[column]) }); };
+  app.input.learning = (name) => {
+    if (name === "Escape") return dialog.close();
+    app.input.assign(column, name);
+    ++column;
+    if (column < app.doc.pad.names.length) ask();
+    else dialog.close();
+  };
+  dialog.addEventListener("close", () => { app.input.learning = null; app.save(); done(); dialog.remove(); });
+  ask();
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+/** Tap to a click; the middle of how late the taps are is the latency. @param {import("./app.js").App} app */
+async function calibrateDialog(app) {
+  const { t, sound } = app;
+  app.transport.pause();
+  await sound.start();
+  const text = el("p", { role: "status" }, t("calibrateHint"));
+  const dialog = el("dialog", { class: "assign", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
+    el("button", { type: "button", onclick: () => dialog.close() }, t("close")));
+  /** @type {number[]} */
+  const taps = [];
+  const first = sound.now() + 1;
+  const beats = Array.from({ length: TAPS }, (_, k) => first + k * BETWEEN);
+  for (const beat of beats) sound.click(1600, 0.5, beat);
+  const latency = sound.latency;
+  app.input.learning = (name) => {
+    if (name === "Escape") return dialog.close();
+    taps.push(sound.now() - latency);
+  };
+  const timer = setTimeout(() => {
+    const found = latencyOf(taps, beats);
+    if (found === null) text.textContent = t("calibrateFew");
+    else {
+      app.set("latency", Math.round(1000 * found) / 1000);
+      text.textContent = t("calibrateDone", { ms: Math.round(1000 * found) });
+    }
+  }, 1000 * (1.3 + TAPS * BETWEEN));
+  dialog.addEventListener("close", () => { clearTimeout(timer); app.input.learning = null; dialog.remove(); });
+  document.body.append(dialog);
+  dialog.showModal();
+}

@@ -1,0 +1,116 @@
+// The author's panel: another foot for a note, what it costs, and files to take home.
+
+import { download, el } from "./dom.js";
+
+const LETTERS = ["L", "R", "<", ">"];
+
+/** Who steps a row, left to right. @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
+function letters(app, row) {
+  return row.steps.map((step) => LETTERS[app.redance.limbOf(step)] ?? "?").join("");
+}
+
+/** @param {import("./app.js").App} app */
+export function authorPanel(app) {
+  const { t, redance } = app;
+  const about = el("div", { class: "about", role: "status" });
+  const give = el("button", { type: "button", onclick: () => { if (app.chosen >= 0) app.giveOther(app.chosen); } }, t("otherFoot"));
+  const list = el("ul", { class: "changes" });
+  const files = /** @type {[string, string, () => string][]} */ ([
+    ["takeYaml", "dancetutor.yaml", () => yamlOf(app)],
+    ["takeComments", "measure-comments.txt", () => commentsOf(app)],
+    ["takePlay", "play.json", () => playOf(app)],
+  ]).map(([label, name, make]) => el("button", { type: "button", onclick: () => download(name, make()) }, t(label)));
+  const show = () => {
+    const row = app.chosen >= 0 ? redance.rowOf.get(app.chosen) : undefined;
+    give.disabled = !row || !redance.can(app.chosen);
+    about.replaceChildren(...(row ? describe(app, row) : [el("p", {}, t("chooseNote"))]));
+    const changed = redance.changedRows();
+    list.replaceChildren(...changed.map((one) => {
+      const text = `${t("measureAt", { measure: Math.floor(one.beat / 4), beat: round((one.beat % 4) + 1) })}: ${letters(app, one)}`;
+      return el("li", {}, el("button", { type: "button", class: "link", onclick: () => { app.chosen = one.steps[0].note; app.transport.pause(); app.seek(one.second); app.tell("feet"); } }, text),
+        ` ${costText(app, one)}`);
+    }));
+    for (const button of files) button.disabled = !changed.length && button !== files[2];
+  };
+  app.listeners.add((what) => { if (what === "feet") show(); });
+  show();
+  return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list,
+    el("p", { class: "hint" }, t("approximate")), el("p", { class: "group column" }, ...files));
+}
+
+/** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
+function describe(app, row) {
+  const { t } = app;
+  const who = row.steps.map((step) => `${app.doc.pad.names[step.column]} ${LETTERS[app.redance.limbOf(step)] ?? "?"}`).join(", ");
+  const words = row.moves.length ? t("moves", { moves: row.moves.map((one) => one.replaceAll("-", " ")).join(", ") }) : "";
+  return [
+    el("p", {}, el("strong", {}, t("measureAt", { measure: Math.floor(row.beat / 4), beat: round((row.beat % 4) + 1) })), ` ${who}`),
+    el("p", {}, words),
+    el("p", {}, t("rowCost", { cost: row.cost }), " ", costText(app, row)),
+  ];
+}
+
+/** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
+function costText(app, row) {
+  const flip = app.redance.flips.get(row.row);
+  if (!flip || flip.extra < 0) return app.t("noOther");
+  const rows = new Set(flip.changes.map(([number]) => number)).size;
+  return app.t(flip.extra === 0 ? "costNothing" : rows > 1 ? "costRows" : "costOne", { extra: flip.extra, rows: rows - 1 });
+}
+
+/** Lines of `feet` in dancetutor.yaml. @param {import("./app.js").App} app */
+export function yamlOf(app) {
+  const { words } = app.doc;
+  const lines = ["feet:", "  - when:", `      path: ${quoted(words.file)}`, `      steps_type: ${words.steps}`,
+    `      difficulty: ${words.difficulty}`, `      meter: ${words.meter}`, "    steps:"];
+  for (const row of app.redance.changedRows()) lines.push(`      ${round(row.beat)}: ${quoted(letters(app, row))}`);
+  return `${lines.join("\n")}\n`;
+}
+
+/** A pinned comment for each measure with a change: it goes onto the line that opens the measure. @param {import("./app.js").App} app */
+export function commentsOf(app) {
+  const measures = [...new Set(app.redance.changedRows().map((row) => Math.floor(row.beat / 4 + 1e-6)))];
+  return measures.map((measure) => {
+    const rows = app.chart.rows.filter((row) => Math.floor(row.beat / 4 + 1e-6) === measure).map((row) => letters(app, row));
+    return `// measure ${measure} {dt1! ${rows.map((one) => (one.length > 1 ? `(${one})` : one)).join("")}}\n`;
+  }).join("");
+}
+
+const LIMBS = ["left_foot", "right_foot", "left_hand", "right_hand"];
+const PARTS = [null, "heel", "toe"];
+const KINDS = ["", "tap", "lift", "hold", "roll", "roll_tap"];
+
+/** The play in the JSON of `analyze`, for --play: the author's feet, and what the solver would step then. @param {import("./app.js").App} app */
+export function playOf(app) {
+  const { doc, arrays, redance } = app;
+  const columns = app.chart.columns;
+  const [steps, limbs, parts, ticks, seconds, facing] = ["steps", "limb", "part", "tick", "second", "facing"].map((name) => arrays.get(`row.${name}`));
+  const stands = [null, null];
+  const rows = [];
+  for (let row = 0; row < ticks.length; ++row) {
+    const own = redance.rows.get(row);
+    const here = [];
+    for (let column = 0; column < columns; ++column) {
+      const at = row * columns + column;
+      if (!steps[at]) continue;
+      const step = own?.steps.find((one) => one.column === column);
+      const limb = step ? redance.limbOf(step) : limbs[at];
+      if (limb === 0 || limb === 1) stands[limb] = /** @type {any} */ (column);
+      here.push({ column, limb: LIMBS[limb] ?? null, kind: KINDS[steps[at]], part: PARTS[parts[at]] ?? null });
+    }
+    if (!here.length) continue;
+    rows.push({
+      beat: round6(ticks[row] / 48), measure: Math.floor(ticks[row] / 192), second: round6(seconds[row]), steps: here,
+      feet: { left: stands[0], right: stands[1] }, facing: round6(facing[row]), moves: own ? own.moves : [],
+    });
+  }
+  const chart = { index: Number(doc.words.index), steps_type: doc.words.steps, difficulty: doc.words.difficulty, meter: Number(doc.words.meter), rows };
+  return JSON.stringify({ schema: 1, tool: "dancetutor page", preset: doc.words.preset, files: [{ path: doc.words.file, charts: [chart] }] });
+}
+
+/** @param {number} x */
+const round6 = (x) => Math.round(x * 1e6) / 1e6;
+/** @param {string} text a string of YAML in double quotes: JSON's are such */
+const quoted = (text) => JSON.stringify(text);
+/** @param {number} x */
+const round = (x) => Math.round(x * 1000) / 1000;

@@ -1,0 +1,83 @@
+// Reads the page's data back: JSON, and the arrays it names, out of one compressed block (see blob.py).
+
+/** @typedef {Uint8Array | Int8Array | Uint16Array | Int16Array | Uint32Array | Int32Array | Float32Array | Float64Array} Numbers */
+
+const KINDS = {
+  u1: Uint8Array, i1: Int8Array, u2: Uint16Array, i2: Int16Array, u4: Uint32Array, i4: Int32Array,
+  f4: Float32Array, f8: Float64Array,
+};
+
+/**
+ * Bytes of base64 text.
+ * @param {string} text
+ * @returns {Uint8Array}
+ */
+export function fromBase64(text) {
+  const raw = atob(text);
+  const out = new Uint8Array(raw.length);
+  for (let i = 0; i < raw.length; ++i) out[i] = raw.charCodeAt(i);
+  return out;
+}
+
+/**
+ * Undo zlib's compression.
+ * @param {Uint8Array} data
+ * @returns {Promise<Uint8Array>}
+ */
+export async function inflate(data) {
+  const stream = new Blob([/** @type {BlobPart} */ (data)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** The arrays of the page, by name. */
+export class Arrays {
+  /**
+   * @param {Uint8Array} bytes
+   * @param {Record<string, [string, number, number, number, number]>} index
+   */
+  constructor(bytes, index) {
+    this.bytes = bytes;
+    this.index = index;
+  }
+
+  /** @param {string} name */
+  has(name) {
+    return name in this.index;
+  }
+
+  /**
+   * An array, put together from its planes of bytes, its differences added up.
+   * @param {string} name
+   * @returns {Numbers}
+   */
+  get(name) {
+    const entry = this.index[name];
+    if (!entry) throw new Error(`no array ${name}`);
+    const [kind, count, row, differences, offset] = entry;
+    const out = new KINDS[/** @type {keyof typeof KINDS} */ (kind)](count);
+    const width = out.BYTES_PER_ELEMENT;
+    const to = new Uint8Array(out.buffer);
+    for (let plane = 0; plane < width; ++plane) {
+      const from = offset + plane * count;
+      for (let i = 0; i < count; ++i) to[i * width + plane] = this.bytes[from + i];
+    }
+    for (let round = 0; round < differences; ++round) {
+      for (let start = 0; start < count; start += row) {
+        for (let i = start + 1; i < start + row; ++i) out[i] += out[i - 1];
+      }
+    }
+    return out;
+  }
+}
+
+/**
+ * The page's JSON and its arrays, from its base64 text.
+ * @param {string} text
+ * @returns {Promise<{doc: any, arrays: Arrays}>}
+ */
+export async function unpack(text) {
+  const bytes = await inflate(fromBase64(text));
+  const length = new DataView(bytes.buffer).getUint32(0, true);
+  const doc = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length)));
+  return { doc, arrays: new Arrays(bytes.subarray(4 + length), doc.arrays) };
+}

@@ -1,0 +1,142 @@
+// Cameras: the presets of configs/picture.yaml, fitted to the canvas as in the films, and one that turns by hand.
+
+import { clamp, cross, dot, minus, plus } from "./maths.js";
+
+const NEAR = 0.05;
+const FAR = 100;
+
+/**
+ * @typedef {object} Camera
+ * @property {[number, number, number]} position
+ * @property {[number, number, number]} target
+ * @property {number} focal in picture heights
+ * @property {[number, number]} centre where the line of sight meets the picture, 0..1
+ * @property {boolean} feetOnly
+ * @property {boolean} mirror the picture is turned left to right
+ */
+
+/**
+ * Right, up and forward; straight down the side of the screen is up, as on a plan of the pad.
+ * @param {{position: ArrayLike<number>, target: ArrayLike<number>}} camera
+ */
+export function axes(camera) {
+  const way = minus(camera.target, camera.position);
+  const length = Math.hypot(...way);
+  let forward = /** @type {[number, number, number]} */ (way.map((x) => x / length));
+  const flat = Math.hypot(forward[0], forward[2]);
+  /** @type {[number, number, number]} */
+  let right = [-forward[2] / flat, 0, forward[0] / flat];
+  if (flat < 1e-3) {
+    forward = [0, Math.sign(forward[1]), 0];
+    right = [-1, 0, 0];
+  }
+  return { right, up: cross(right, forward), forward };
+}
+
+/**
+ * World to clip space, 4 x 4 row by row.
+ * @param {Camera} camera @param {number} width @param {number} height
+ */
+export function matrix(camera, width, height) {
+  const { right, up, forward } = axes(camera);
+  const out = new Float32Array(16);
+  const flip = camera.mirror ? -1 : 1;
+  for (let k = 0; k < 3; ++k) {
+    out[k] = flip * ((2 * camera.focal * height * right[k]) / width + (2 * camera.centre[0] - 1) * forward[k]);
+    out[4 + k] = 2 * camera.focal * up[k] - (2 * camera.centre[1] - 1) * forward[k];
+    out[8 + k] = ((FAR + NEAR) / (FAR - NEAR)) * forward[k];
+    out[12 + k] = forward[k];
+  }
+  for (let r = 0; r < 4; ++r) out[4 * r + 3] = -dot(out.subarray(4 * r, 4 * r + 3), camera.position);
+  out[11] -= (2 * FAR * NEAR) / (FAR - NEAR);
+  return out;
+}
+
+/**
+ * A preset that stands as near as it can while pad, arms and hands up are seen (video/camera.py).
+ * @param {any} doc @param {string} name @param {number} width @param {number} height
+ * @returns {Camera}
+ */
+export function preset(doc, name, width, height) {
+  const about = doc.look.cameras[name];
+  const box = corners(doc, about);
+  /** @type {[number, number, number]} */
+  const target = [0, 0, 0];
+  for (let k = 0; k < 3; ++k) {
+    const values = box.map((p) => p[k]);
+    target[k] = (Math.min(...values) + Math.max(...values)) / 2;
+  }
+  const azimuth = (about.azimuth * Math.PI) / 180;
+  const elevation = (about.elevation * Math.PI) / 180;
+  const away = [-Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation), -Math.cos(azimuth) * Math.cos(elevation)];
+  const focal = 0.5 / Math.tan(((about.field / 2) * Math.PI) / 180);
+  let near = 0.5;
+  let far = 200;
+  for (let round = 0; round < 40; ++round) {
+    const middle = Math.sqrt(near * far);
+    if (fit(box, target, plus(target, away, middle), focal, width / height)) far = middle;
+    else near = middle;
+  }
+  const position = plus(target, away, far);
+  const centre = fit(box, target, position, focal, width / height) || /** @type {[number, number]} */ ([0.5, 0.5]);
+  return { position, target, focal, centre, feetOnly: about.feet_only, mirror: false };
+}
+
+/**
+ * A camera turned round the dancer by hand.
+ * @param {any} doc @param {{yaw: number, pitch: number, zoom: number}} free degrees, degrees, 1 = as near as "back"
+ * @param {number} width @param {number} height
+ * @returns {Camera}
+ */
+export function orbit(doc, free, width, height) {
+  const base = preset(doc, "back", width, height);
+  /** @type {[number, number, number]} */
+  const target = [base.target[0], 0.85, base.target[2]];
+  const distance = Math.hypot(...minus(base.position, base.target)) / clamp(free.zoom, 0.4, 4);
+  const yaw = (free.yaw * Math.PI) / 180;
+  const pitch = (clamp(free.pitch, 1, 89) * Math.PI) / 180;
+  const away = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
+  return { ...base, target, position: plus(target, away, distance), centre: [0.5, 0.5], feetOnly: false };
+}
+
+/** @param {any} doc @param {any} about @returns {number[][]} */
+function corners(doc, about) {
+  const { low, high, tall } = doc.stage;
+  const thick = doc.look.stage.pad_height;
+  const height = about.feet_only ? about.height : Math.max(about.height, tall);
+  const middle = (low[2] + high[2]) / 2;
+  const layers = [
+    [-thick, about.margin, low[2] - about.margin, high[2] + about.margin],
+    [0, about.margin, low[2] - about.margin, high[2] + about.margin],
+    [Math.min(1.45, height), about.arms, middle - 0.2, middle + 0.2],
+    [height, -0.1, middle - 0.2, middle + 0.2],
+  ];
+  const out = [];
+  for (const [y, wider, near, far] of layers) {
+    for (const x of [low[0] - wider, high[0] + wider]) out.push([x, y, near], [x, y, far]);
+  }
+  return out;
+}
+
+/**
+ * The centre that puts the box into the middle of the picture, if all of it fits.
+ * @param {number[][]} box @param {number[]} target @param {number[]} position @param {number} focal
+ * @param {number} aspect @returns {[number, number] | null}
+ */
+function fit(box, target, position, focal, aspect) {
+  const { right, up, forward } = axes({ position, target });
+  const low = [Infinity, Infinity];
+  const high = [-Infinity, -Infinity];
+  for (const point of box) {
+    const p = minus(point, position);
+    const depth = dot(p, forward);
+    if (depth < NEAR) return null;
+    const at = [(focal * dot(p, right)) / depth / aspect, (-focal * dot(p, up)) / depth];
+    for (const k of [0, 1]) {
+      low[k] = Math.min(low[k], at[k]);
+      high[k] = Math.max(high[k], at[k]);
+    }
+  }
+  if (high[0] - low[0] > 1 || high[1] - low[1] > 1) return null;
+  return [0.5 - (low[0] + high[0]) / 2, 0.5 - (low[1] + high[1]) / 2];
+}

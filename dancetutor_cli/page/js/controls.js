@@ -1,0 +1,141 @@
+// The row of buttons under the picture, and the keys: one table says what each does, for buttons, keys and help alike.
+
+import { el, toggle } from "./dom.js";
+import { CAMERAS } from "./picture.js";
+
+/**
+ * @typedef {object} Action
+ * @property {string} name of its label
+ * @property {string[]} keys as `KeyboardEvent.key`, "Shift+" before it where it counts
+ * @property {() => void} run
+ */
+
+/**
+ * Everything that a key does.
+ * @param {import("./app.js").App} app @param {{help: () => void, tab: (name: string) => void}} ui @returns {Action[]}
+ */
+export function actionsOf(app, ui) {
+  const { settings } = app;
+  return [
+    { name: "playPause", keys: [" "], run: () => void app.play() },
+    { name: "rowBack", keys: ["ArrowLeft"], run: () => app.step(-1) },
+    { name: "rowOn", keys: ["ArrowRight"], run: () => app.step(1) },
+    { name: "measureBack", keys: ["Shift+ArrowLeft", "PageUp"], run: () => app.stepMeasure(-1) },
+    { name: "measureOn", keys: ["Shift+ArrowRight", "PageDown"], run: () => app.stepMeasure(1) },
+    { name: "toStart", keys: ["Home"], run: () => app.seek(app.transport.loop ? app.transport.lead(app.transport.loop.a) : app.start) },
+    { name: "toEnd", keys: ["End"], run: () => app.seek(app.chart.last) },
+    { name: "faster", keys: ["ArrowUp", "+"], run: () => app.setRate(app.transport.rate + 0.05) },
+    { name: "slower", keys: ["ArrowDown", "-"], run: () => app.setRate(app.transport.rate - 0.05) },
+    { name: "loopA", keys: ["["], run: () => app.loopHere("a") },
+    { name: "loopB", keys: ["]"], run: () => app.loopHere("b") },
+    { name: "noLoop", keys: ["x", "Escape"], run: () => app.setLoop(null, null) },
+    { name: "nextPassage", keys: ["n"], run: () => void app.loopPassage((app.passage + 1) % Math.max(app.doc.passages.length, 1)) },
+    { name: "ramp", keys: ["r"], run: () => app.set("ramp", !settings.ramp) },
+    { name: "countIn", keys: ["i"], run: () => app.set("countIn", !settings.countIn) },
+    { name: "metronome", keys: ["m"], run: () => app.set("metronome", !settings.metronome) },
+    { name: "claps", keys: ["h"], run: () => app.set("claps", !settings.claps) },
+    { name: "along", keys: ["p"], run: () => app.setAlong(!app.along) },
+    { name: "wait", keys: ["w"], run: () => app.setWait(!app.wait) },
+    { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
+    { name: "camera", keys: ["v"], run: () => app.setCamera(CAMERAS[(CAMERAS.indexOf(settings.camera) + 1) % CAMERAS.length]) },
+    { name: "turnLeft", keys: ["Shift+A"], run: () => turn(app, -10, 0) },
+    { name: "turnRight", keys: ["Shift+D"], run: () => turn(app, 10, 0) },
+    { name: "turnUp", keys: ["Shift+W"], run: () => turn(app, 0, 8) },
+    { name: "turnDown", keys: ["Shift+S"], run: () => turn(app, 0, -8) },
+    ...(app.motions.length > 1 ? [{ name: "both", keys: ["2"], run: () => { app.both = !app.both; app.tell("settings"); } }] : []),
+    { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
+    { name: "notesFaster", keys: ["."], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
+    { name: "notesSlower", keys: [","], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
+    { name: "helpSheet", keys: ["?"], run: ui.help },
+  ];
+}
+
+/** @param {import("./app.js").App} app @param {number} yaw @param {number} pitch */
+function turn(app, yaw, pitch) {
+  app.setCamera("free");
+  app.picture?.turn(yaw, pitch);
+  app.save();
+}
+
+/** The note of the row that stands gets the other foot. @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui */
+function otherFoot(app, ui) {
+  const row = app.chart.rows[app.chart.rowAt(app.transport.second())];
+  if (app.chosen < 0 && row) app.chosen = row.steps[0].note;
+  if (app.chosen >= 0) app.giveOther(app.chosen);
+  ui.tab("author");
+}
+
+/**
+ * Answer to keys: panels first while somebody plays along, then the table.
+ * @param {import("./app.js").App} app @param {Action[]} actions
+ */
+export function listenToKeys(app, actions) {
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]:not(.assign)")) return;
+    const target = /** @type {HTMLElement} */ (event.target);
+    if (target.matches("input[type=text], input[type=number], select, textarea")) return;
+    if ((app.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
+    if (target.matches("button, summary, a, input, [role=tab]") && [" ", "Enter"].includes(event.key)) return;
+    if (target.matches("input[type=range], [role=tab]") && /^(Arrow|Home|End|Page)/.test(event.key)) return;
+    const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
+    const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
+    if (!action) return;
+    event.preventDefault();
+    action.run();
+  });
+  document.addEventListener("keyup", (event) => app.input.keyUp(event));
+}
+
+/**
+ * The bar of buttons.
+ * @param {import("./app.js").App} app @param {{help: () => void}} ui
+ */
+export function makeBar(app, ui) {
+  const { t, settings, transport } = app;
+  const button = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {() => void} */ run, key = "") =>
+    el("button", { type: "button", class: "sign", "aria-label": t(name), title: key ? `${t(name)} (${key})` : t(name), onclick: run }, sign);
+  const play = button("playPause", "▶", () => void app.play(), t("space"));
+  play.className = "sign play";
+  const rate = el("input", { type: "range", min: 0.25, max: 2, step: 0.05, value: 1, "aria-label": t("speed"), class: "rate" });
+  rate.addEventListener("input", () => app.setRate(Number(rate.value)));
+  const rateText = el("output", { class: "rate-text" }, "100 %");
+  const where = el("output", { class: "where", "aria-label": t("position") });
+  const toggles = /** @type {[string, string, () => boolean, (on: boolean) => void][]} */ ([
+    ["ramp", "r", () => settings.ramp, (on) => app.set("ramp", on)],
+    ["countIn", "i", () => settings.countIn, (on) => app.set("countIn", on)],
+    ["metronome", "m", () => settings.metronome, (on) => app.set("metronome", on)],
+    ["claps", "h", () => settings.claps || !app.sound.music, (on) => app.set("claps", on)],
+  ]).map(([name, key, is, change]) => ({ is, button: toggle(t(name), is(), change, key) }));
+  const clear = button("noLoop", "✕", () => app.setLoop(null, null), "x");
+  const bar = el("div", { class: "bar", role: "toolbar", "aria-label": t("controls") },
+    el("div", { class: "group" },
+      button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), "←"), play,
+      button("rowOn", "▸", () => app.step(1), "→"), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
+    el("div", { class: "group" }, where),
+    el("div", { class: "group rate-group" }, button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
+      button("faster", "+", () => app.setRate(transport.rate + 0.05), "↑"), rateText),
+    el("div", { class: "group" }, button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
+      clear),
+    el("div", { class: "group" }, ...toggles.map((one) => one.button)),
+    el("div", { class: "group" }, button("helpSheet", "?", ui.help, "?")));
+  app.listeners.add((what) => {
+    if (what === "frame") {
+      const second = app.second();
+      const beat = Math.max(0, app.chart.beatAt(second));
+      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: (Math.floor(beat) % 4) + 1, time: clock(second) });
+      play.textContent = transport.playing ? "❚❚" : "▶";
+      return;
+    }
+    rate.value = String(transport.rate);
+    rateText.textContent = `${Math.round(100 * transport.rate)} %`;
+    clear.disabled = !transport.loop;
+    for (const one of toggles) one.button.setAttribute("aria-pressed", String(one.is()));
+  });
+  return bar;
+}
+
+/** @param {number} second */
+function clock(second) {
+  const s = Math.max(0, second);
+  return `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padStart(2, "0")}`;
+}

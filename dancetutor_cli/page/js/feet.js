@@ -1,0 +1,81 @@
+// What the floor shows of feet and hands: where they are over it, how near, and how strongly they are marked.
+
+/**
+ * @typedef {object} Mark
+ * @property {number[]} line heel x, z, toe x, z, metres
+ * @property {number} ground height of what is below
+ * @property {number} near 0..1, how near to it; below 0: no foot
+ * @property {number} strength of the ring
+ * @property {number[]} colour 0..1
+ */
+
+/**
+ * Marks of left foot, right foot and palms (video/prepare.py `feet_on_floor`).
+ * @param {any} doc @param {import("./motion.js").Pose} pose @returns {Mark[]}
+ */
+export function marksOf(doc, pose) {
+  const { stage, look, style } = doc;
+  const reach = look.light.contact_height;
+  return doc.body.marks.map((/** @type {any} */ about, /** @type {number} */ limb) => {
+    const colour = style.limbs_rgb[limb].map((/** @type {number} */ c) => c / 255);
+    const none = { line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, colour };
+    if (!about) return none;
+    const [heel, toe] = [0, 1].map((end) => place(pose, about.joints[end], about.at[end]));
+    const x = (heel[0] + toe[0]) / 2;
+    const z = (heel[2] + toe[2]) / 2;
+    const over = stage.low[0] <= x && x <= stage.high[0] && stage.low[2] <= z && z <= stage.high[2];
+    const ground = over ? 0 : -look.stage.pad_height;
+    const height = Math.max(0, Math.min(heel[1], toe[1]) - ground);
+    if (height >= (limb < 2 ? 1 : reach)) return none;
+    const near = Math.max(0, 1 - height / reach);
+    const strength = look.stage.mark * (limb < 2 ? 0.25 + 0.75 * near : near);
+    return { line: [heel[0], heel[2], toe[0], toe[2]], ground, near, strength, colour };
+  });
+}
+
+/** @param {import("./motion.js").Pose} pose @param {number} joint @param {number[]} beside */
+function place(pose, joint, beside) {
+  const q = pose.turned(joint);
+  const [w, x, y, z] = [q[0], q[1], q[2], q[3]];
+  const tx = 2 * (y * beside[2] - z * beside[1]);
+  const ty = 2 * (z * beside[0] - x * beside[2]);
+  const tz = 2 * (x * beside[1] - y * beside[0]);
+  const at = pose.at(joint);
+  return [
+    at[0] + beside[0] + w * tx + y * tz - z * ty,
+    at[1] + beside[1] + w * ty + z * tx - x * tz,
+    at[2] + beside[2] + w * tz + x * ty - y * tx,
+  ];
+}
+
+const HELD = 0.62; // brightness of a held panel after the flash (video/lights.py)
+
+/**
+ * Colour and brightness of each panel, four numbers a panel.
+ * @param {import("./chart.js").Chart} chart @param {number} second @param {number} fade seconds
+ * @param {number[][]} colours 0..255 by limb @param {Float32Array} out
+ */
+export function lightsAt(chart, second, fade, colours, out) {
+  for (let column = 0; column < chart.columns; ++column) {
+    const { level, limb } = lightOf(chart, column, second, fade);
+    const colour = colours[limb] ?? colours[0];
+    for (let k = 0; k < 3; ++k) out[4 * column + k] = colour[k] / 255;
+    out[4 * column + 3] = level;
+  }
+}
+
+/**
+ * Brightness 0..1 of one column and the limb of its last press.
+ * @param {import("./chart.js").Chart} chart @param {number} column @param {number} second @param {number} fade
+ */
+export function lightOf(chart, column, second, fade) {
+  const n = chart.lastPress(column, second + 1e-6);
+  if (n < 0) return { level: 0, limb: -1 };
+  const start = chart.second[n];
+  const end = chart.end[n];
+  const fresh = 1 - (second - start) / fade;
+  const level = second < end
+    ? Math.max(HELD, fresh)
+    : Math.max(0, 1 - (second - end) / fade) ** 1.5 * (end === start ? 1 : HELD);
+  return { level: Math.min(1, level), limb: chart.limb[n] };
+}

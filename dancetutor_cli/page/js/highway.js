@@ -1,0 +1,357 @@
+// The scrolling notes on a 2-D canvas, in the films' colours, with L and R markers.
+
+import { KIND } from "./chart.js";
+import { lightOf } from "./feet.js";
+import { clamp } from "./maths.js";
+
+// Corners of an arrow that points up, in halves of its size (video/sprites.py).
+const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
+  [-0.62, 0.32], [-0.94, 0]];
+const SQUARE = [[-0.7, -0.7], [0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
+const INK = "#0a0b14";
+
+/**
+ * @typedef {object} Scene
+ * @property {number} second of the music now
+ * @property {number} speed screen heights a second of music takes, before the rate
+ * @property {boolean} mirror lanes the other way round
+ * @property {(limb: number, row: import("./chart.js").Row | undefined) => boolean} marked whether a marker is drawn
+ * @property {Map<number, string>} verdicts by note: "hit", "early", "late", "miss"
+ * @property {{a: number, b: number} | null} loop
+ * @property {Map<number, number>} feet limbs the author gave to notes
+ * @property {number} chosen note that is chosen, or -1
+ */
+
+export class Highway {
+  /**
+   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./chart.js").Chart} chart
+   */
+  constructor(canvas, doc, chart) {
+    this.canvas = canvas;
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+    this.doc = doc;
+    this.style = doc.style;
+    this.chart = chart;
+    this.directions = /** @type {(number | null)[]} */ (doc.pad.directions);
+    /** @type {Map<number, import("./chart.js").Row>} */
+    this.rowOf = new Map();
+    for (const row of chart.rows) for (const step of row.steps) this.rowOf.set(step.note, row);
+    this.labels = moveLabels(doc, chart);
+  }
+
+  /** Sizes for the canvas as it is now. */
+  measure() {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const box = this.canvas.getBoundingClientRect();
+    const width = Math.max(1, Math.round(box.width * ratio));
+    const height = Math.max(1, Math.round(box.height * ratio));
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    const margin = Math.min(46 * ratio, width * (this.chart.columns > 5 ? 0.08 : 0.14));
+    const lane = Math.min((width - 2 * margin) / this.chart.columns, 72 * ratio);
+    const left = (width - lane * this.chart.columns) / 2;
+    return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
+  }
+
+  /** x of the middle of a lane. @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror */
+  laneX(column, m, mirror) {
+    const place = mirror ? this.chart.columns - 1 - column : column;
+    return m.left + (place + 0.5) * m.lane;
+  }
+
+  /** @param {Scene} scene */
+  draw(scene) {
+    const m = this.measure();
+    const { context: c, chart, style } = this;
+    const y = (/** @type {number} */ second) => m.receptor + (second - scene.second) * scene.speed * m.height;
+    const until = scene.second + (m.height - m.receptor + m.lane) / (scene.speed * m.height);
+    const from = scene.second - (m.receptor + m.lane) / (scene.speed * m.height);
+    c.fillStyle = style.background;
+    c.fillRect(0, 0, m.width, m.height);
+    this.drawLanes(m);
+    if (scene.loop) {
+      c.fillStyle = "rgba(255, 255, 255, 0.07)";
+      c.fillRect(0, y(scene.loop.a), m.width, y(scene.loop.b) - y(scene.loop.a));
+      c.fillStyle = style.accent;
+      for (const edge of [scene.loop.a, scene.loop.b]) c.fillRect(0, Math.round(y(edge)), m.width, m.ratio);
+    }
+    this.drawBeats(m, y, from, until);
+    for (let column = 0; column < chart.columns; ++column) {
+      const { level, limb } = lightOf(chart, column, scene.second, style.flash);
+      this.drawReceptor(column, m, scene, level, limb);
+    }
+    for (let n = chart.second.length - 1; n >= 0; --n) {
+      if (chart.second[n] > until || chart.end[n] < from) continue;
+      this.drawNote(n, m, scene, y);
+    }
+    this.drawLabels(m, y, from, until);
+  }
+
+  /** @param {ReturnType<Highway["measure"]>} m */
+  drawLanes(m) {
+    const c = this.context;
+    c.fillStyle = "rgba(255, 255, 255, 0.035)";
+    c.fillRect(m.left, 0, m.lane * this.chart.columns, m.height);
+    c.fillStyle = "rgba(255, 255, 255, 0.08)";
+    for (let k = 0; k <= this.chart.columns; ++k) c.fillRect(Math.round(m.left + k * m.lane), 0, m.ratio, m.height);
+  }
+
+  /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
+  drawBeats(m, y, from, until) {
+    const c = this.context;
+    const beats = this.chart.beats;
+    c.font = `${Math.round(11 * m.ratio)}px system-ui, sans-serif`;
+    c.textAlign = "right";
+    c.textBaseline = "middle";
+    for (let k = Math.max(0, Math.floor(this.chart.beatAt(from))); k < beats.length && beats[k] <= until; ++k) {
+      const bar = k % 4 === 0;
+      c.fillStyle = bar ? "rgba(255,255,255,0.34)" : "rgba(255,255,255,0.12)";
+      c.fillRect(m.left, Math.round(y(beats[k])), m.lane * this.chart.columns, (bar ? 2 : 1) * m.ratio);
+      if (bar) {
+        c.fillStyle = "#9aa0bd";
+        c.fillText(String(k / 4), m.left - 5 * m.ratio, y(beats[k]));
+      }
+    }
+  }
+
+  /**
+   * @param {number} column @param {ReturnType<Highway["measure"]>} m @param {Scene} scene
+   * @param {number} level @param {number} limb
+   */
+  drawReceptor(column, m, scene, level, limb) {
+    const c = this.context;
+    const x = this.laneX(column, m, scene.mirror);
+    if (level > 0) {
+      const colour = this.style.limbs[limb] ?? this.style.receptor;
+      const glow = c.createRadialGradient(x, m.receptor, 0.2 * m.size, x, m.receptor, 0.75 * m.size);
+      glow.addColorStop(0, colour);
+      glow.addColorStop(1, "rgba(0,0,0,0)");
+      c.globalAlpha = level;
+      c.fillStyle = glow;
+      c.fillRect(x - m.size, m.receptor - m.size, 2 * m.size, 2 * m.size);
+      c.globalAlpha = 1;
+    }
+    this.shape(column, x, m.receptor, 0.98 * m.size, scene.mirror);
+    c.fillStyle = INK;
+    c.fill();
+    c.lineWidth = Math.max(1.5, 0.05 * m.size);
+    c.strokeStyle = this.style.receptor;
+    c.stroke();
+  }
+
+  /**
+   * @param {number} n @param {ReturnType<Highway["measure"]>} m @param {Scene} scene @param {(s: number) => number} y
+   */
+  drawNote(n, m, scene, y) {
+    const { context: c, chart, style } = this;
+    const kind = chart.kind[n];
+    const column = chart.column[n];
+    if (column >= chart.columns) return;
+    const verdict = scene.verdicts.get(n);
+    const held = chart.end[n] > chart.second[n];
+    const head = held && scene.second > chart.second[n] ? Math.min(scene.second, chart.end[n]) : chart.second[n];
+    const x = this.laneX(column, m, scene.mirror);
+    const top = y(head);
+    c.globalAlpha = verdict === "hit" ? 0.35 : 1;
+    if (held) this.drawBody(n, m, x, top, y(chart.end[n]));
+    if (kind === KIND.MINE) {
+      this.drawMine(x, top, m.size);
+    } else {
+      const fake = kind === KIND.FAKE || !chart.judged[n];
+      const colour = fake ? style.fake : style.quantisation[chart.quant[n]];
+      this.shape(column, x, top, m.size, scene.mirror);
+      c.fillStyle = kind === KIND.LIFT ? INK : colour;
+      c.fill();
+      c.lineJoin = "round";
+      c.lineWidth = Math.max(1.5, 0.055 * m.size);
+      c.strokeStyle = kind === KIND.LIFT ? colour : "#fff";
+      c.stroke();
+      const changed = scene.feet.has(n);
+      const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
+      const row = this.rowOf.get(n);
+      if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) this.marker(limb, x, top, 0.5 * m.size, changed);
+      if (n === scene.chosen) {
+        c.lineWidth = 3 * m.ratio;
+        c.strokeStyle = "#fff";
+        c.strokeRect(x - 0.56 * m.size, top - 0.56 * m.size, 1.12 * m.size, 1.12 * m.size);
+      }
+    }
+    c.globalAlpha = 1;
+    if (verdict && verdict !== "hit") this.cross(verdict, x, top, m);
+  }
+
+  /** @param {number} n @param {ReturnType<Highway["measure"]>} m @param {number} x @param {number} top @param {number} bottom */
+  drawBody(n, m, x, top, bottom) {
+    const c = this.context;
+    const roll = this.chart.kind[n] === KIND.ROLL;
+    const width = 0.56 * m.size;
+    c.fillStyle = roll ? this.style.roll : this.style.hold;
+    c.beginPath();
+    c.roundRect(x - width / 2, top, width, Math.max(bottom - top, 1), [0, 0, width / 2, width / 2]);
+    c.fill();
+    c.lineWidth = 1.5 * m.ratio;
+    c.strokeStyle = "rgba(255,255,255,0.85)";
+    c.stroke();
+    if (!roll) return;
+    c.save();
+    c.clip();
+    c.strokeStyle = "rgba(255,255,255,0.5)";
+    c.lineWidth = 3 * m.ratio;
+    for (let at = top; at < bottom + width; at += 0.4 * width) {
+      c.beginPath();
+      c.moveTo(x - width / 2, at);
+      c.lineTo(x, at - 0.25 * width);
+      c.lineTo(x + width / 2, at);
+      c.stroke();
+    }
+    c.restore();
+  }
+
+  /** @param {number} x @param {number} y @param {number} size */
+  drawMine(x, y, size) {
+    const c = this.context;
+    c.beginPath();
+    for (let k = 0; k < 16; ++k) {
+      const radius = (k % 2 ? 0.3 : 0.37) * size;
+      const angle = (k * Math.PI) / 8;
+      c.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+    }
+    c.closePath();
+    c.fillStyle = "#1a1a22";
+    c.fill();
+    c.lineWidth = 0.03 * size;
+    c.strokeStyle = "#fff";
+    c.stroke();
+    c.strokeStyle = this.style.mine;
+    c.lineWidth = 0.075 * size;
+    c.beginPath();
+    c.arc(x, y, 0.22 * size, 0, 2 * Math.PI);
+    for (const [dx, dy] of [[1, 1], [1, -1]]) {
+      c.moveTo(x - 0.11 * size * dx, y - 0.11 * size * dy);
+      c.lineTo(x + 0.11 * size * dx, y + 0.11 * size * dy);
+    }
+    c.stroke();
+  }
+
+  /**
+   * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring.
+   * @param {number} limb @param {number} x @param {number} y @param {number} size @param {boolean} changed by the author
+   */
+  marker(limb, x, y, size, changed) {
+    const c = this.context;
+    const right = limb % 2 === 1;
+    c.beginPath();
+    if (right) c.roundRect(x - 0.46 * size, y - 0.46 * size, 0.92 * size, 0.92 * size, 0.15 * size);
+    else c.arc(x, y, 0.48 * size, 0, 2 * Math.PI);
+    c.fillStyle = this.style.limbs[limb];
+    c.fill();
+    c.lineWidth = 0.08 * size;
+    c.strokeStyle = changed ? "#fff" : INK;
+    c.stroke();
+    if (limb >= 2) {
+      c.beginPath();
+      c.arc(x, y, 0.33 * size, 0, 2 * Math.PI);
+      c.strokeStyle = INK;
+      c.stroke();
+    }
+    c.fillStyle = INK;
+    c.font = `800 ${Math.round(0.66 * size)}px system-ui, sans-serif`;
+    c.textAlign = "center";
+    c.textBaseline = "middle";
+    c.fillText(right ? "R" : "L", x, y + 0.04 * size);
+  }
+
+  /** @param {string} verdict @param {number} x @param {number} y @param {ReturnType<Highway["measure"]>} m */
+  cross(verdict, x, y, m) {
+    const c = this.context;
+    c.font = `700 ${Math.round(0.5 * m.size)}px system-ui, sans-serif`;
+    c.textAlign = "center";
+    c.textBaseline = "middle";
+    c.lineWidth = 3 * m.ratio;
+    c.strokeStyle = INK;
+    c.fillStyle = verdict === "miss" ? "#ff6b6b" : "#ffc857";
+    const sign = verdict === "miss" ? "✕" : verdict === "early" ? "−" : "+";
+    c.strokeText(sign, x + 0.42 * m.size, y - 0.3 * m.size);
+    c.fillText(sign, x + 0.42 * m.size, y - 0.3 * m.size);
+  }
+
+  /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
+  drawLabels(m, y, from, until) {
+    const c = this.context;
+    const x = m.left + m.lane * this.chart.columns + 5 * m.ratio;
+    const room = m.width - x - 2 * m.ratio;
+    if (room < 26 * m.ratio) return;
+    c.font = `600 ${Math.round(11 * m.ratio)}px system-ui, sans-serif`;
+    c.textAlign = "left";
+    c.textBaseline = "middle";
+    for (const { second, text, severity } of this.labels) {
+      if (second < from || second > until) continue;
+      c.fillStyle = this.style.callout[severity];
+      let shown = text;
+      while (shown.length > 3 && c.measureText(shown).width > room) shown = `${shown.slice(0, -2)}…`;
+      c.fillText(shown, x, y(second));
+    }
+  }
+
+  /**
+   * Path of a note's shape.
+   * @param {number} column @param {number} x @param {number} y @param {number} size @param {boolean} mirror
+   */
+  shape(column, x, y, size, mirror) {
+    const c = this.context;
+    const way = this.directions[column];
+    const angle = (((way ?? 0) * Math.PI) / 180) * (mirror ? -1 : 1);
+    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+    c.beginPath();
+    for (const [px, py] of way === null ? SQUARE : ARROW) {
+      c.lineTo(x + ((px * cos - py * sin) * size) / 2, y + ((px * sin + py * cos) * size) / 2);
+    }
+    c.closePath();
+  }
+
+  /**
+   * The note under a point of the canvas, in its own pixels of CSS; -1 if there is none.
+   * @param {number} px @param {number} py @param {Scene} scene
+   */
+  noteAt(px, py, scene) {
+    const m = this.measure();
+    let best = -1;
+    let least = 0.62 * m.lane;
+    for (let n = 0; n < this.chart.second.length; ++n) {
+      const y = m.receptor + (this.chart.second[n] - scene.second) * scene.speed * m.height;
+      const x = this.laneX(this.chart.column[n], m, scene.mirror);
+      const away = Math.max(Math.abs(px * m.ratio - x), Math.abs(py * m.ratio - y));
+      if (away < least && this.rowOf.has(n)) [best, least] = [n, away];
+    }
+    return best;
+  }
+}
+
+/**
+ * Words beside the notes: moves where they begin, and findings.
+ * @param {any} doc @param {import("./chart.js").Chart} chart
+ */
+function moveLabels(doc, chart) {
+  /** @type {{second: number, text: string, severity: string}[]} */
+  const out = [];
+  /** @type {string[]} */
+  let before = [];
+  for (const row of chart.rows) {
+    const now = [...new Set(row.moves.map((name) => doc.style.callouts[name]).filter(Boolean))];
+    const fresh = now.filter((word) => !before.includes(word));
+    if (fresh.length) out.push({ second: row.second, text: fresh.join(", "), severity: "move" });
+    before = now;
+  }
+  for (const one of doc.findings) {
+    if (one.second === null || one.column === null) continue;
+    const same = out.find((label) => Math.abs(label.second - one.second) < 1e-3);
+    if (same) same.severity = one.severity;
+    else out.push({ second: one.second, text: one.name.replaceAll("-", " "), severity: one.severity });
+  }
+  return out;
+}
+
+/** Speed of the notes in canvas heights a second: quicker for quick charts. @param {number} setting 0.5..3 */
+export function scrollSpeed(setting) {
+  return clamp(setting, 0.3, 4) * 0.42;
+}

@@ -1,0 +1,132 @@
+// What presses panels: keys, and dance mats or controllers by the Gamepad API; and which key or button is which panel.
+
+/** Keys by number of panels, left to right; by where they are on the keyboard. */
+const KEYS = {
+  3: ["KeyS", "KeyD", "KeyF"],
+  4: ["KeyD", "KeyF", "KeyJ", "KeyK"],
+  5: ["KeyZ", "KeyQ", "KeyS", "KeyE", "KeyC"],
+  6: ["KeyS", "KeyD", "KeyF", "KeyJ", "KeyK", "KeyL"],
+  8: ["KeyA", "KeyS", "KeyD", "KeyF", "KeyJ", "KeyK", "KeyL", "Semicolon"],
+  10: ["KeyZ", "KeyQ", "KeyS", "KeyE", "KeyC", "KeyB", "KeyT", "KeyH", "KeyU", "Comma"],
+};
+const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the standard mapping
+
+/** @typedef {{column: number, device: "keys" | "pad"}} Press */
+
+export class Input {
+  /**
+   * @param {string[]} panels their names @param {import("./settings.js").Settings} settings
+   */
+  constructor(panels, settings) {
+    this.panels = panels;
+    this.settings = settings;
+    /** @type {Map<string, boolean[]>} buttons that are down, by pad */
+    this.down = new Map();
+    /** @type {boolean[]} panels that are down */
+    this.held = panels.map(() => false);
+    /** @type {(press: Press) => void} */
+    this.onPress = () => {};
+    /** @type {((name: string) => void) | null} gets the next key or button instead: a panel is being assigned */
+    this.learning = null;
+  }
+
+  /** Key of each panel. */
+  get keys() {
+    const own = this.settings.keys[this.panels.length];
+    if (own && own.length === this.panels.length) return own;
+    return /** @type {Record<number, string[]>} */ (KEYS)[this.panels.length] ?? this.panels.map((_, k) => `Digit${(k + 1) % 10}`);
+  }
+
+  /** Button of each panel on a pad. @param {Gamepad} pad @returns {(number | null)[]} */
+  buttons(pad) {
+    const own = this.settings.pads[this.padName(pad)];
+    if (own && own.length === this.panels.length) return own;
+    const cross = this.panels.map((name) => CROSS[/** @type {keyof typeof CROSS} */ (name)]);
+    if (pad.mapping === "standard" && cross.every((button) => button !== undefined)) return cross;
+    return this.panels.map((_, k) => k);
+  }
+
+  /** @param {Gamepad} pad */
+  padName(pad) {
+    return `${pad.id.slice(0, 120)}/${this.panels.length}`;
+  }
+
+  /** The pads that are plugged in. @returns {Gamepad[]} */
+  pads() {
+    const found = navigator.getGamepads ? navigator.getGamepads() : [];
+    return /** @type {Gamepad[]} */ ([...found].filter((pad) => pad !== null && pad.connected));
+  }
+
+  /**
+   * A key goes down; true if it is a panel's.
+   * @param {KeyboardEvent} event
+   */
+  key(event) {
+    if (this.learning) {
+      this.learning(event.code);
+      return true;
+    }
+    const column = this.keys.indexOf(event.code);
+    if (column < 0) return false;
+    if (!event.repeat) this.press(column, "keys");
+    return true;
+  }
+
+  /** @param {KeyboardEvent} event */
+  keyUp(event) {
+    const column = this.keys.indexOf(event.code);
+    if (column >= 0) this.held[column] = false;
+  }
+
+  /** Look at the pads; to be called for every picture. */
+  poll() {
+    for (const pad of this.pads()) {
+      const name = this.padName(pad);
+      const before = this.down.get(name) ?? [];
+      const now = pad.buttons.map((button) => button.pressed || button.value > 0.5);
+      const buttons = this.buttons(pad);
+      now.forEach((is, number) => {
+        if (is === Boolean(before[number])) return;
+        if (is && this.learning) return this.learning(`${name}#${number}`);
+        const column = buttons.indexOf(number);
+        if (column >= 0 && is) this.press(column, "pad");
+        else if (column >= 0) this.held[column] = false;
+      });
+      this.down.set(name, now);
+    }
+  }
+
+  /** @param {number} column @param {Press["device"]} device */
+  press(column, device) {
+    this.held[column] = true;
+    this.onPress({ column, device });
+  }
+
+  /**
+   * Give a panel the key or button that was learnt.
+   * @param {number} column @param {string} name as `learning` got it
+   */
+  assign(column, name) {
+    const pad = /^(.*)#(\d+)$/.exec(name);
+    if (pad) {
+      const plugged = this.pads().find((one) => this.padName(one) === pad[1]);
+      const buttons = [...(this.settings.pads[pad[1]] ?? (plugged ? this.buttons(plugged) : this.panels.map(() => null)))];
+      const was = buttons.indexOf(Number(pad[2]));
+      if (was >= 0) buttons[was] = buttons[column] ?? null;
+      buttons[column] = Number(pad[2]);
+      this.settings.pads[pad[1]] = buttons;
+      return;
+    }
+    const keys = [...this.keys];
+    const was = keys.indexOf(name);
+    if (was >= 0) keys[was] = keys[column];
+    keys[column] = name;
+    this.settings.keys[this.panels.length] = keys;
+  }
+}
+
+/** A key's name for people. @param {string} code */
+export function keyName(code) {
+  const names = { Semicolon: ";", Comma: ",", Period: ".", Slash: "/", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
+  return names[/** @type {keyof typeof names} */ (code)] ?? code.replace(/^(Key|Digit)/, "");
+}

@@ -1,0 +1,125 @@
+// Whether panels are pressed in time. A pad knows panels, not feet: which foot it was nobody can tell.
+
+/** Seconds of real time around a note in which a press counts. */
+export const WINDOW = 0.135;
+const GOOD = 0.045; // within: a hit; beyond: early or late
+
+/** @typedef {"hit" | "early" | "late" | "miss"} Verdict */
+/** @typedef {{hit: number, early: number, late: number, miss: number, sum: number, count: number}} Tally */
+
+export class Judge {
+  /** @param {import("./chart.js").Chart} chart */
+  constructor(chart) {
+    this.chart = chart;
+    /** @type {Map<number, Verdict>} by note */
+    this.verdicts = new Map();
+    /** @type {Map<number, number>} seconds that a note was pressed late, by note */
+    this.errors = new Map();
+    this.next = 0; // first row that may still be missed
+    this.from = -Infinity; // rows before it are not asked for
+  }
+
+  /** Begin at a second: notes from there on are open again. @param {number} second */
+  restart(second) {
+    this.from = second - 1e-3;
+    this.next = 0;
+    while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < this.from) ++this.next;
+    for (const row of this.chart.rows.slice(this.next)) {
+      for (const step of row.steps) {
+        this.verdicts.delete(step.note);
+        this.errors.delete(step.note);
+      }
+    }
+  }
+
+  /**
+   * A panel is pressed at a second of the music; what it counts as, null if no note is near.
+   * @param {number} column @param {number} second @param {number} rate @param {boolean} [patient] the clock waits
+   * @returns {Verdict | null}
+   */
+  press(column, second, rate, patient = false) {
+    let best = -1;
+    let least = WINDOW * rate;
+    for (const n of this.chart.presses[column] ?? []) {
+      const away = Math.abs(this.chart.second[n] - second);
+      if (this.chart.second[n] > second + least) break;
+      if (away <= least && !this.verdicts.has(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
+    }
+    if (best < 0) return null;
+    const error = (second - this.chart.second[best]) / rate;
+    const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
+    this.verdicts.set(best, verdict);
+    if (!patient) this.errors.set(best, error);
+    return verdict;
+  }
+
+  /**
+   * Rows that are over become misses.
+   * @param {number} second @param {number} rate @returns {number} how many notes were missed now
+   */
+  advance(second, rate) {
+    let missed = 0;
+    while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < second - WINDOW * rate) {
+      for (const step of this.chart.rows[this.next].steps) {
+        if (step.limb < 0 || this.verdicts.has(step.note)) continue;
+        this.verdicts.set(step.note, "miss");
+        ++missed;
+      }
+      ++this.next;
+    }
+    return missed;
+  }
+
+  /**
+   * The first row from a second on that has a panel not pressed yet, and its second.
+   * @param {number} second @returns {import("./chart.js").Row | null}
+   */
+  open(second) {
+    for (let k = 0; k < this.chart.rows.length; ++k) {
+      if (this.chart.rowSeconds[k] < Math.max(second, this.from) - 1e-3) continue;
+      if (this.chart.rows[k].steps.some((step) => !this.verdicts.has(step.note))) return this.chart.rows[k];
+    }
+    return null;
+  }
+
+  /**
+   * What happened between two seconds of the music.
+   * @param {number} from @param {number} to @returns {Tally}
+   */
+  tally(from, to) {
+    const out = { hit: 0, early: 0, late: 0, miss: 0, sum: 0, count: 0 };
+    for (const [n, verdict] of this.verdicts) {
+      if (this.chart.second[n] < from - 1e-3 || this.chart.second[n] >= to) continue;
+      ++out[verdict];
+      const error = this.errors.get(n);
+      if (error === undefined) continue;
+      out.sum += error;
+      ++out.count;
+    }
+    return out;
+  }
+}
+
+/**
+ * How late taps to a beat come, seconds: the middle one, so that a stray tap does not count; null with too few.
+ * @param {number[]} taps @param {number[]} beats
+ */
+export function latencyOf(taps, beats) {
+  const errors = [];
+  for (const tap of taps) {
+    const nearest = beats.reduce((best, beat) => (Math.abs(beat - tap) < Math.abs(best - tap) ? beat : best), Infinity);
+    if (Math.abs(tap - nearest) < 0.25) errors.push(tap - nearest);
+  }
+  if (errors.length < 4) return null;
+  errors.sort((a, b) => a - b);
+  return errors[errors.length >> 1];
+}
+
+/**
+ * The speed of the next pass of a loop: quicker after a clean one, a step back after misses.
+ * @param {number} rate @param {number} misses @param {boolean} played whether anybody played along
+ */
+export function ramp(rate, misses, played) {
+  const step = played && misses > 0 ? -0.05 : 0.05;
+  return Math.min(Math.max(Math.round((rate + step) * 100) / 100, 0.25), Math.max(rate, 1));
+}

@@ -1,0 +1,86 @@
+// The panels beside the picture: passages, findings, and what is set.
+
+import { el } from "./dom.js";
+
+/** The hardest passages; a click loops one. @param {import("./app.js").App} app */
+export function passagesPanel(app) {
+  const { t, doc, language } = app;
+  const list = el("ol", { class: "cards" });
+  const buttons = doc.passages.map((/** @type {any} */ passage, /** @type {number} */ k) => {
+    const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
+      el("strong", {}, `${k + 1}. ${t("measures", { from: passage.from, to: passage.to })}`),
+      el("span", { class: "figure" }, t("rate", { rate: passage.rate.toFixed(1) })),
+      el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
+      el("span", { class: "hits" }));
+    list.append(el("li", {}, button));
+    return button;
+  });
+  app.listeners.add((what) => {
+    if (what === "frame") return;
+    buttons.forEach((/** @type {HTMLButtonElement} */ button, /** @type {number} */ k) => {
+      button.setAttribute("aria-pressed", String(k === app.passage));
+      const { start, end } = doc.passages[k];
+      const { hit, early, late, miss } = app.judge.tally(start, end);
+      const text = hit + early + late + miss && app.along ? t("counts", { hit, early, late, miss }) : "";
+      /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = text;
+    });
+  });
+  const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
+  return el("div", {}, el("p", { class: "hint" }, t("passagesHint")), empty, list);
+}
+
+/** What the linter found; can be ticked off. @param {import("./app.js").App} app */
+export function findingsPanel(app) {
+  const { t, doc } = app;
+  if (!doc.findings.length) return el("p", {}, t("noFindings"));
+  const list = el("ul", { class: "cards" });
+  for (const one of doc.findings) {
+    const key = `${one.rule}@${one.beat ?? ""}`;
+    const box = el("input", { type: "checkbox", "aria-label": t("tickOff", { rule: one.rule, place: one.beat ?? "" }) });
+    box.checked = app.notes.ticked.includes(key);
+    const go = el("button", {
+      type: "button", class: "card", disabled: one.second === null,
+      onclick: () => { app.transport.pause(); app.seek(one.second); },
+    },
+      el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${one.name.replaceAll("-", " ")}`),
+      el("span", { class: "figure" }, one.beat === null ? "" : t("measureAt", { measure: Math.floor(one.beat / 4), beat: (one.beat % 4) + 1 })),
+      el("span", { class: "text" }, one.message));
+    const item = el("li", { class: `finding ${one.severity}` }, box, go);
+    const show = () => item.classList.toggle("done", box.checked);
+    box.addEventListener("change", () => { app.tick(key, box.checked); show(); });
+    show();
+    list.append(item);
+  }
+  return el("div", {}, el("p", { class: "hint" }, t("findingsHint")), list);
+}
+
+const SIGNS = { error: "⛔", warning: "▲", info: "●" };
+
+/** Music, cameras of this visit, language. @param {import("./app.js").App} app @param {(file: File) => Promise<void>} load */
+export function settingsPanel(app, load) {
+  const { t, settings, doc } = app;
+  const file = el("input", { type: "file", accept: "audio/*,.ogg,.mp3,.wav,.flac,.opus", id: "music-file" });
+  file.addEventListener("change", () => { if (file.files?.[0]) void load(file.files[0]); });
+  const language = el("select", { id: "language" }, el("option", { value: "" }, t("languageOfBrowser")),
+    ...Object.keys(doc.languages).map((name) => el("option", { value: name }, doc.languages[name].language ?? name)));
+  language.value = settings.language;
+  language.addEventListener("change", () => { app.set("language", language.value); location.reload(); });
+  const slider = (/** @type {"volume" | "speed" | "leadBeats" | "latency"} */ name, /** @type {number} */ min, /** @type {number} */ max, /** @type {number} */ step) => {
+    const input = el("input", { type: "range", id: name, min, max, step, value: settings[name] });
+    const shown = el("output", { for: name });
+    const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" ? `${Math.round(1000 * settings[name])} ms` : String(Math.round(100 * settings[name]) / 100); };
+    input.addEventListener("input", () => { app.set(name, Number(input.value)); show(); });
+    app.listeners.add((what) => { if (what === "settings") show(); });
+    show();
+    return el("p", { class: "field" }, el("label", { for: name }, t(name)), input, shown);
+  };
+  const music = el("p", { class: "hint", id: "music-state", role: "status" });
+  const tell = () => { music.textContent = app.sound.music ? t("musicIs") : t("musicMissing", { name: doc.words.music || "…" }); };
+  app.listeners.add((what) => { if (what === "music") tell(); });
+  tell();
+  return el("div", {},
+    el("p", { class: "field" }, el("label", { for: "music-file" }, t("musicFile")), file), music,
+    slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005),
+    el("p", { class: "field" }, el("label", { for: "language" }, t("languageLabel")), language),
+    el("p", { class: "hint" }, t("storedHint")));
+}

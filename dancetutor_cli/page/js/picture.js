@@ -1,0 +1,180 @@
+// The dancer's part of the page: canvas, cameras, one dancer or two, the ghost foot; and feet from above without WebGL.
+
+import { orbit, preset } from "./camera.js";
+import { lightsAt, marksOf } from "./feet.js";
+import { drawFromAbove } from "./topview.js";
+import { Viewer } from "./viewer.js";
+
+export const CAMERAS = ["back", "front", "mirror", "top", "free"];
+const SLOW = 24; // milliseconds between pictures beyond which the canvas gets fewer pixels
+const LEAST = 0.4; // of the pixels across that it keeps
+
+/**
+ * @typedef {object} Wanted
+ * @property {number} second
+ * @property {string} camera
+ * @property {boolean} both whether the second dancer is shown
+ * @property {import("./chart.js").Row | null} next whose feet are shown as ghosts
+ * @property {boolean} playing
+ */
+
+export class Picture {
+  /**
+   * @param {HTMLElement} place @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {import("./motion.js").Motion[]} motions @param {import("./settings.js").Settings} settings
+   */
+  constructor(place, doc, chart, motions, settings) {
+    this.place = place;
+    this.doc = doc;
+    this.chart = chart;
+    this.motions = motions;
+    this.settings = settings;
+    this.canvas = document.createElement("canvas");
+    this.canvas.className = "view";
+    place.append(this.canvas);
+    /** @type {Viewer | null} */
+    this.viewer = null;
+    this.scale = 1;
+    this.slow = 0;
+    this.last = 0;
+    this.poses = motions.map((motion) => motion.pose());
+    this.ghostPose = motions[0].pose();
+    this.skins = motions.map(() => new Float32Array(12 * doc.body.parents.length));
+    this.ghostSkin = new Float32Array(12 * doc.body.parents.length);
+    this.lights = new Float32Array(4 * chart.columns);
+    /** @type {(second: number, pose: import("./motion.js").Pose) => void} changes a pose: the author's other feet */
+    this.amend = () => {};
+    /** @type {() => void} */
+    this.onTurn = () => {};
+    this.listen();
+  }
+
+  /**
+   * Start WebGL; without it the canvas shows feet from above.
+   * @param {import("./blob.js").Arrays} arrays
+   */
+  async start(arrays) {
+    const skins = await Promise.all(Array.from({ length: this.doc.body.skins }, (_, k) => {
+      const data = /** @type {Uint8Array<ArrayBuffer>} */ (arrays.get(`skin.${k}`));
+      return createImageBitmap(new Blob([data], { type: "image/webp" }), { colorSpaceConversion: "none" });
+    }));
+    try {
+      this.viewer = new Viewer(this.canvas, this.doc, arrays, skins);
+    } catch {
+      this.flat();
+    }
+    this.canvas.addEventListener("webglcontextlost", () => this.flat());
+  }
+
+  /** Go on without WebGL, on a new canvas: the old one cannot be drawn on otherwise. */
+  flat() {
+    this.viewer = null;
+    const fresh = document.createElement("canvas");
+    fresh.className = "view";
+    this.canvas.replaceWith(fresh);
+    this.canvas = fresh;
+    this.listen();
+  }
+
+  /** Dragging turns the free camera, the wheel and two fingers come nearer. */
+  listen() {
+    /** @type {Map<number, {x: number, y: number}>} */
+    const fingers = new Map();
+    const canvas = this.canvas;
+    const apart = () => {
+      const [a, b] = [...fingers.values()];
+      return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      canvas.setPointerCapture(event.pointerId);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const finger = fingers.get(event.pointerId);
+      if (!finger || this.settings.camera !== "free") return;
+      const before = apart();
+      const [dx, dy] = [event.clientX - finger.x, event.clientY - finger.y];
+      fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      if (before > 0) this.settings.zoom = Math.min(Math.max((this.settings.zoom * apart()) / before, 0.5), 3);
+      else this.turn(0.4 * dx, 0.3 * dy);
+      this.onTurn();
+    });
+    for (const name of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(name, (event) => fingers.delete(/** @type {PointerEvent} */ (event).pointerId));
+    }
+    canvas.addEventListener("wheel", (event) => {
+      if (this.settings.camera !== "free") return;
+      event.preventDefault();
+      this.settings.zoom = Math.min(Math.max(this.settings.zoom * Math.exp(-event.deltaY / 800), 0.5), 3);
+      this.onTurn();
+    }, { passive: false });
+  }
+
+  /** Turn the free camera. @param {number} yaw @param {number} pitch degrees */
+  turn(yaw, pitch) {
+    this.settings.yaw = (this.settings.yaw + yaw) % 360;
+    this.settings.pitch = Math.min(Math.max(this.settings.pitch + pitch, 2), 88);
+  }
+
+  /** @param {string} name @param {number} width @param {number} height */
+  camera(name, width, height) {
+    if (name === "free") return orbit(this.doc, this.settings, width, height);
+    const camera = preset(this.doc, name === "mirror" ? "front" : name, width, height);
+    return { ...camera, mirror: name === "mirror" };
+  }
+
+  /** @param {Wanted} wanted */
+  draw(wanted) {
+    this.pace(wanted.playing);
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * (this.viewer ? this.scale : 1);
+    const box = this.place.getBoundingClientRect();
+    const width = Math.max(2, Math.round(box.width * ratio));
+    const height = Math.max(2, Math.round(box.height * ratio));
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    lightsAt(this.chart, wanted.second, this.doc.style.panel, this.doc.style.limbs_rgb, this.lights);
+    const count = wanted.both ? this.motions.length : 1;
+    const views = [];
+    for (let k = 0; k < count; ++k) {
+      const [motion, pose] = [this.motions[k], this.poses[k]];
+      motion.sample(wanted.second, pose);
+      motion.forward(pose);
+      if (k === 0) this.amend(wanted.second, pose);
+      motion.skin(pose, this.skins[k]);
+      const left = Math.round((k * width) / count);
+      const wide = Math.round(((k + 1) * width) / count) - left;
+      views.push({
+        camera: this.camera(wanted.camera, wide, height), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
+        skin: this.skins[k], root: pose.at(0), marks: marksOf(this.doc, pose), lights: this.lights,
+        ghost: k === 0 ? this.ghost(wanted.next) : null,
+      });
+    }
+    if (this.viewer) return this.viewer.draw(views);
+    const next = (wanted.next?.steps ?? []).map(({ column, limb }) => ({ column, limb }));
+    drawFromAbove(this.canvas, this.doc, { marks: views[0].marks, lights: this.lights, mirror: wanted.camera === "front", next });
+  }
+
+  /** Where the feet of the next row will be. @param {import("./chart.js").Row | null} next */
+  ghost(next) {
+    if (!next) return null;
+    const motion = this.motions[0];
+    motion.sample(next.second, this.ghostPose);
+    motion.forward(this.ghostPose);
+    this.amend(next.second, this.ghostPose);
+    motion.skin(this.ghostPose, this.ghostSkin);
+    return { skin: this.ghostSkin, feet: [0, 1].map((limb) => next.steps.some((step) => step.limb === limb)) };
+  }
+
+  /** Fewer pixels where drawing is slow, as with WebGL in software. @param {boolean} playing */
+  pace(playing) {
+    const now = performance.now();
+    const apart = now - this.last;
+    this.last = now;
+    if (!playing || apart > 400) return;
+    this.slow = 0.92 * this.slow + 0.08 * apart;
+    if (this.slow > SLOW && this.scale > LEAST) {
+      this.scale = Math.max(LEAST, this.scale * 0.85);
+      this.slow = 0;
+    }
+  }
+}

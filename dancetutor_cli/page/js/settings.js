@@ -1,0 +1,61 @@
+// What the page remembers between visits: its own settings, and per chart what was ticked off and changed. Nothing else.
+
+const KEY = "dancetutor";
+
+const DEFAULTS = {
+  language: "", camera: "back", speed: 1, claps: false, metronome: false, countIn: true, leadBeats: 4, ramp: false,
+  help: "all", latency: 0, volume: 0.9, yaw: 30, pitch: 20, zoom: 1,
+  /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
+  /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
+};
+
+/** @typedef {typeof DEFAULTS} Settings */
+
+/** @returns {Settings} */
+export function loadSettings() {
+  const stored = read(KEY);
+  const out = structuredClone(DEFAULTS);
+  for (const [name, value] of Object.entries(DEFAULTS)) {
+    if (typeof stored[name] === typeof value && stored[name] !== null) Object.assign(out, { [name]: stored[name] });
+  }
+  return out;
+}
+
+/** @param {Settings} settings */
+export function saveSettings(settings) {
+  write(KEY, settings);
+}
+
+/** @typedef {{ticked: string[], feet: [number, number, number][]}} Notes of one chart: findings ticked off, feet given */
+
+/** @param {string} chart @returns {Notes} */
+export function loadNotes(chart) {
+  const stored = read(`${KEY}:${chart}`);
+  const feet = Array.isArray(stored.feet) ? stored.feet.filter((one) => Array.isArray(one) && one.length === 3) : [];
+  const ticked = Array.isArray(stored.ticked) ? stored.ticked.filter((one) => typeof one === "string") : [];
+  return { ticked, feet: /** @type {[number, number, number][]} */ (feet) };
+}
+
+/** @param {string} chart @param {Notes} notes */
+export function saveNotes(chart, notes) {
+  write(`${KEY}:${chart}`, notes);
+}
+
+/** @param {string} key @returns {Record<string, any>} */
+function read(key) {
+  try {
+    const value = JSON.parse(localStorage.getItem(key) ?? "{}");
+    return value && typeof value === "object" ? value : {};
+  } catch {
+    return {};
+  }
+}
+
+/** @param {string} key @param {unknown} value */
+function write(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch {
+    // A browser that stores nothing for pages from the disk: the settings last as long as the page.
+  }
+}

@@ -1,0 +1,178 @@
+// The whole song as a strip: how dense it is, where she faces, findings, passages, the loop; to seek and to draw loops.
+
+import { clamp } from "./maths.js";
+
+const DRAG = 6; // pixels that make a drag out of a click
+const EDGE = 9; // pixels around an end of the loop that take hold of it
+
+export class Timeline {
+  /**
+   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {{start: number, end: number, seek: (s: number) => void, loop: (a: number, b: number) => void}} about
+   */
+  constructor(canvas, doc, chart, about) {
+    this.canvas = canvas;
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+    this.doc = doc;
+    this.chart = chart;
+    this.about = about;
+    this.density = densityOf(chart);
+    /** @type {{a: number, b: number} | null} */
+    this.drag = null;
+    /** @type {{from: number, other: number | null, x: number} | null} */
+    this.grip = null;
+    /** @type {{a: number, b: number} | null} */
+    this.loop = null;
+    canvas.addEventListener("pointerdown", (event) => this.down(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    canvas.addEventListener("pointerup", (event) => this.up(event));
+    canvas.addEventListener("pointercancel", () => { this.grip = this.drag = null; });
+  }
+
+  /** @param {number} second */
+  share(second) {
+    return (second - this.about.start) / (this.about.end - this.about.start);
+  }
+
+  /** @param {PointerEvent} event */
+  secondOf(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const share = clamp((event.clientX - box.left) / box.width, 0, 1);
+    return this.about.start + share * (this.about.end - this.about.start);
+  }
+
+  /** @param {PointerEvent} event */
+  down(event) {
+    this.canvas.setPointerCapture(event.pointerId);
+    const from = this.secondOf(event);
+    const width = this.canvas.getBoundingClientRect().width;
+    const away = (/** @type {number} */ s) => Math.abs(this.share(s) - this.share(from)) * width;
+    let other = null;
+    if (this.loop && away(this.loop.a) < EDGE) other = this.loop.b;
+    else if (this.loop && away(this.loop.b) < EDGE) other = this.loop.a;
+    this.grip = { from, other, x: event.clientX };
+  }
+
+  /** @param {PointerEvent} event */
+  move(event) {
+    if (!this.grip || Math.abs(event.clientX - this.grip.x) < DRAG) return;
+    const [one, two] = [this.grip.other ?? this.grip.from, this.secondOf(event)].map((s) => this.snap(s));
+    this.drag = { a: Math.min(one, two), b: Math.max(one, two) };
+  }
+
+  /** @param {PointerEvent} event */
+  up(event) {
+    if (this.drag && this.drag.b > this.drag.a) this.about.loop(this.drag.a, this.drag.b);
+    else if (this.grip) this.about.seek(this.secondOf(event));
+    this.grip = this.drag = null;
+  }
+
+  /** The nearest beat: loops begin and end on beats. @param {number} second */
+  snap(second) {
+    return this.chart.secondAt(Math.max(0, Math.round(this.chart.beatAt(second))));
+  }
+
+  /** @param {number} second @param {{a: number, b: number} | null} loop @param {(passage: number) => boolean} chosen */
+  draw(second, loop, chosen) {
+    this.loop = loop;
+    const { canvas, context: c } = this;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const box = canvas.getBoundingClientRect();
+    const width = Math.max(1, Math.round(box.width * ratio));
+    const height = Math.max(1, Math.round(box.height * ratio));
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
+    const x = (/** @type {number} */ s) => this.share(s) * width;
+    c.fillStyle = "#11142a";
+    c.fillRect(0, 0, width, height);
+    const bars = 0.68 * height;
+    const most = Math.max(4, ...this.density.map((bar) => bar.rate));
+    for (const bar of this.density) {
+      c.fillStyle = bar.end <= second ? "#5b66b8" : "#3c447f";
+      const tall = (bar.rate / most) * (bars - 10 * ratio);
+      c.fillRect(x(bar.start), bars - tall, Math.max(1, x(bar.end) - x(bar.start) - ratio), tall);
+    }
+    this.drawFacing(x, bars, height, ratio);
+    this.drawMarks(x, bars, ratio, chosen);
+    this.drawLoop(this.drag ?? loop, x, height, ratio);
+    c.fillStyle = "#fff";
+    c.fillRect(Math.round(x(second)) - ratio, 0, 2 * ratio, height);
+    canvas.setAttribute("aria-valuenow", second.toFixed(2));
+  }
+
+  /** Where she faces: up is left, down is right. @param {(s: number) => number} x @param {number} top @param {number} height @param {number} ratio */
+  drawFacing(x, top, height, ratio) {
+    const c = this.context;
+    const middle = (top + height) / 2 + ratio;
+    c.fillStyle = "rgba(255,255,255,0.18)";
+    c.fillRect(0, middle, this.canvas.width, ratio);
+    c.strokeStyle = "#c9cfe8";
+    c.lineWidth = 1.5 * ratio;
+    c.beginPath();
+    let before = middle;
+    for (const row of this.chart.rows) {
+      const y = middle - (clamp(row.facing, -180, 180) / 180) * (middle - top - 2 * ratio);
+      c.lineTo(x(row.second), before);
+      c.lineTo(x(row.second), y);
+      before = y;
+    }
+    c.stroke();
+  }
+
+  /** @param {(s: number) => number} x @param {number} bars @param {number} ratio @param {(passage: number) => boolean} chosen */
+  drawMarks(x, bars, ratio, chosen) {
+    const c = this.context;
+    this.doc.passages.forEach((/** @type {any} */ passage, /** @type {number} */ k) => {
+      c.fillStyle = chosen(k) ? "#fff" : "#ffb454";
+      c.fillRect(x(passage.start), bars - 4 * ratio, x(passage.end) - x(passage.start), 3 * ratio);
+      c.font = `700 ${10 * ratio}px system-ui, sans-serif`;
+      c.textBaseline = "top";
+      c.textAlign = "left";
+      c.fillText(String(k + 1), x(passage.start) + ratio, 1.5 * ratio);
+    });
+    for (const one of this.doc.findings) {
+      if (one.second === null) continue;
+      const at = x(one.second);
+      c.fillStyle = this.doc.style.callout[one.severity] ?? "#fff";
+      c.beginPath(); // shapes differ too: a triangle for errors and warnings, a dot for the rest
+      if (one.severity === "info") c.arc(at, bars + 4 * ratio, 2 * ratio, 0, 2 * Math.PI);
+      else {
+        c.moveTo(at, bars + ratio);
+        c.lineTo(at + 4 * ratio, bars + 8 * ratio);
+        c.lineTo(at - 4 * ratio, bars + 8 * ratio);
+      }
+      c.fill();
+    }
+  }
+
+  /** @param {{a: number, b: number} | null} loop @param {(s: number) => number} x @param {number} height @param {number} ratio */
+  drawLoop(loop, x, height, ratio) {
+    if (!loop) return;
+    const c = this.context;
+    c.fillStyle = "rgba(255,255,255,0.14)";
+    c.fillRect(x(loop.a), 0, x(loop.b) - x(loop.a), height);
+    c.fillStyle = "#fff";
+    c.font = `700 ${10 * ratio}px system-ui, sans-serif`;
+    c.textBaseline = "bottom";
+    for (const [edge, name, side] of /** @type {[number, string, CanvasTextAlign][]} */ ([[loop.a, "A", "left"], [loop.b, "B", "right"]])) {
+      c.fillRect(x(edge) - (side === "right" ? 2 * ratio : 0), 0, 2 * ratio, height);
+      c.textAlign = side;
+      c.fillText(name, x(edge) + (side === "left" ? 4 : -4) * ratio, height - 2 * ratio);
+    }
+  }
+}
+
+/** Rows a second in every measure. @param {import("./chart.js").Chart} chart */
+function densityOf(chart) {
+  /** @type {{start: number, end: number, rate: number}[]} */
+  const out = [];
+  for (const row of chart.rows) {
+    const measure = Math.floor(row.beat / 4 + 1e-6);
+    const [start, end] = [chart.secondAt(4 * measure), chart.secondAt(4 * measure + 4)];
+    const last = out[out.length - 1];
+    if (last && last.start === start) ++last.rate;
+    else out.push({ start, end, rate: 1 });
+  }
+  for (const bar of out) bar.rate /= Math.max(bar.end - bar.start, 0.12);
+  return out;
+}

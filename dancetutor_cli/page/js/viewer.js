@@ -1,0 +1,379 @@
+// The picture: stage, shadow, dancer and ghost foot in WebGL 2, with the dancer's shaders of the films.
+
+import { axes, matrix } from "./camera.js";
+import { cross, dot, minus } from "./maths.js";
+
+const SHADOW_REACH = 2.5; // metres of the world that the shadow map shows (video/prepare.py)
+const CAST_DEPTH = [-2, 6];
+const MOST_JOINTS = 256;
+const OFF_SURFACE = [0.012, 0.006];
+const GHOST = 0.55; // how much of the ghost foot is there
+const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel",
+  "panel_blank", "groove", "arrow"];
+
+/**
+ * @typedef {object} Shown what one part of the canvas shows
+ * @property {import("./camera.js").Camera} camera
+ * @property {[number, number, number, number]} box x, y, width, height in pixels, y from the bottom
+ * @property {Float32Array} skin skinning matrices of the dancer
+ * @property {[number, number, number]} root
+ * @property {import("./feet.js").Mark[]} marks four: left foot, right foot, palms
+ * @property {Float32Array} lights four numbers a panel
+ * @property {{skin: Float32Array, feet: boolean[]} | null} ghost
+ */
+
+/** @typedef {{program: WebGLProgram, at: Record<string, WebGLUniformLocation | null>}} Program */
+
+export class Viewer {
+  /**
+   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./blob.js").Arrays} arrays
+   * @param {ImageBitmap[]} skins
+   */
+  constructor(canvas, doc, arrays, skins) {
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
+    if (!gl) throw new Error("no WebGL 2");
+    this.gl = gl;
+    this.doc = doc;
+    const shaders = doc.shaders;
+    this.stage = build(gl, shaders["stage.vert"], shaders["stage.frag"]);
+    this.dancer = build(gl, shaders["skinned.vert"], shaders["dancer.frag"]);
+    this.depth = build(gl, shaders["skinned.vert"], shaders["depth.frag"]);
+    this.joints = gl.createBuffer();
+    gl.bindBuffer(gl.UNIFORM_BUFFER, this.joints);
+    gl.bufferData(gl.UNIFORM_BUFFER, MOST_JOINTS * 48, gl.DYNAMIC_DRAW);
+    gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.joints);
+    for (const one of [this.dancer, this.depth]) {
+      gl.uniformBlockBinding(one.program, gl.getUniformBlockIndex(one.program, "Joints"), 0);
+    }
+    this.mesh = makeMesh(gl, doc.body, arrays);
+    this.room = makeRoom(gl, doc.stage);
+    this.skins = skins.map((image) => skinTexture(gl, image));
+    this.tiles = tileTexture(gl, doc.stage);
+    this.lights = numbers(gl, new Float32Array(4 * doc.pad.panels.length), doc.pad.panels.length, 1);
+    this.texels = 1024;
+    this.map = shadowMap(gl, this.texels);
+    this.palette = new Float32Array(COLOURS.flatMap((name) => doc.look.stage[name].map((/** @type {number} */ c) => c / 255)));
+    gl.enable(gl.CULL_FACE);
+    gl.enable(gl.DEPTH_TEST);
+  }
+
+  /** @param {Shown[]} views */
+  draw(views) {
+    const gl = this.gl;
+    for (const view of views) {
+      const cast = this.cast(view);
+      this.setJoints(view.skin);
+      this.drawShadow(cast);
+      const [x, y, width, height] = view.box;
+      gl.viewport(x, y, width, height);
+      gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(x, y, width, height);
+      gl.clearColor(0.05, 0.05, 0.11, 1);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      gl.frontFace(view.camera.mirror ? gl.CW : gl.CCW);
+      const world = matrix(view.camera, width, height);
+      this.drawStage(view, world, cast);
+      this.drawBody(view, world, cast, null);
+      if (view.ghost) {
+        this.setJoints(view.ghost.skin);
+        gl.enable(gl.BLEND);
+        gl.blendColor(0, 0, 0, GHOST);
+        gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+        this.drawBody(view, world, cast, view.ghost.feet);
+        gl.disable(gl.BLEND);
+      }
+      gl.disable(gl.SCISSOR_TEST);
+    }
+  }
+
+  /** @param {Float32Array} skin */
+  setJoints(skin) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.UNIFORM_BUFFER, this.joints);
+    gl.bufferSubData(gl.UNIFORM_BUFFER, 0, skin);
+  }
+
+  /**
+   * The sun's axes and the shadow map's matrix: it stands beside the camera, the map lies on the world's texel grid.
+   * @param {Shown} view
+   */
+  cast(view) {
+    const { up, forward } = axes(view.camera);
+    const heading = Math.hypot(forward[0], forward[2]) > 1e-3 ? forward : up;
+    const look = this.doc.look.light;
+    const side = view.camera.mirror ? -1 : 1;
+    const yaw = Math.atan2(-heading[0], -heading[2]) + (side * look.azimuth * Math.PI) / 180;
+    const elevation = (look.elevation * Math.PI) / 180;
+    const flat = Math.cos(elevation);
+    const sun = [flat * Math.sin(yaw), Math.sin(elevation), flat * Math.cos(yaw)];
+    const u = [sun[2] / flat, 0, -sun[0] / flat];
+    const rows = [u, cross(u, sun), sun];
+    const scale = this.texels / SHADOW_REACH;
+    const light = new Float32Array(16);
+    for (const k of [0, 1]) {
+      const origin = Math.floor(dot(rows[k], view.root) * scale) / scale - SHADOW_REACH / 2;
+      for (let i = 0; i < 3; ++i) light[4 * k + i] = (rows[k][i] * 2) / SHADOW_REACH;
+      light[4 * k + 3] = (-origin * 2) / SHADOW_REACH - 1;
+    }
+    const [low, high] = CAST_DEPTH;
+    for (let i = 0; i < 3; ++i) light[8 + i] = (-rows[2][i] * 2) / (high - low);
+    light[11] = (high + low) / (high - low);
+    light[15] = 1;
+    return { sun, light };
+  }
+
+  /** @param {{sun: number[], light: Float32Array}} cast */
+  drawShadow(cast) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.map.frame);
+    gl.viewport(0, 0, this.texels, this.texels);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.disable(gl.CULL_FACE);
+    const { program, at } = this.depth;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.light, true, cast.light);
+    gl.uniform1f(at.to_map, 1);
+    gl.bindVertexArray(this.mesh);
+    for (const part of this.doc.body.parts) drawPart(gl, part);
+    gl.enable(gl.CULL_FACE);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  /** @param {Shown} view @param {Float32Array} world @param {{sun: number[], light: Float32Array}} cast */
+  drawStage(view, world, cast) {
+    const gl = this.gl;
+    const { stage, look } = this.doc;
+    const { program, at } = this.stage;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.camera, true, world);
+    gl.uniformMatrix4fv(at.light, true, cast.light);
+    gl.uniform3fv(at.palette, this.palette);
+    gl.uniform3f(at.size, look.stage.tile, look.stage.pool, this.doc.pad.width);
+    gl.uniform4f(at.pad, (stage.low[0] + stage.high[0]) / 2, (stage.low[2] + stage.high[2]) / 2,
+      (stage.high[0] - stage.low[0]) / 2, (stage.high[2] - stage.low[2]) / 2);
+    gl.uniform2f(at.corner_of_tiles, stage.corner[0], stage.corner[1]);
+    gl.uniform2i(at.tiles, stage.panel.length, stage.panel[0].length);
+    gl.uniform1f(at.dark, look.light.shadow);
+    const texel = Math.max(1, Math.round((look.light.shadow_soft * this.texels) / SHADOW_REACH / 2));
+    gl.uniform1f(at.spread, (texel * 1.35) / this.texels);
+    gl.uniform3f(at.contact, look.light.contact, look.light.contact_soft, look.stage.glow);
+    gl.uniform1f(at.radius, stage.sole);
+    gl.uniform4fv(at.foot, view.marks.flatMap((m) => m.line));
+    gl.uniform3fv(at.foot_state, view.marks.flatMap((m) => [m.ground, m.near, m.strength]));
+    gl.uniform3fv(at.foot_colour, view.marks.flatMap((m) => m.colour));
+    bind(gl, 0, this.tiles, at.tile_of);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this.lights);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, view.lights.length / 4, 1, gl.RGBA, gl.FLOAT, view.lights);
+    gl.uniform1i(at.lights, 1);
+    bind(gl, 2, this.map.texture, at.shadow);
+    gl.bindVertexArray(this.room.array);
+    gl.drawElements(gl.TRIANGLES, this.room.count, gl.UNSIGNED_SHORT, 0);
+  }
+
+  /**
+   * The dancer and her outline; of a ghost only the feet of the sides that are asked for.
+   * @param {Shown} view @param {Float32Array} world @param {{sun: number[], light: Float32Array}} cast
+   * @param {boolean[] | null} ghost
+   */
+  drawBody(view, world, cast, ghost) {
+    const gl = this.gl;
+    const { camera } = view;
+    const toon = this.doc.look.toon;
+    const [, , width, height] = view.box;
+    const { program, at } = this.dancer;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.camera, true, world);
+    gl.uniformMatrix4fv(at.light, true, cast.light);
+    gl.uniform3fv(at.eye, camera.position);
+    gl.uniform3fv(at.sun, cast.sun);
+    gl.uniform2f(at.pixels, width / 2, height / 2);
+    gl.uniform1f(at.focal, camera.focal * height);
+    gl.uniform2fv(at.off_surface, OFF_SURFACE);
+    gl.uniform1f(at.to_map, 0);
+    gl.uniform3f(at.bands, toon.bands[0], toon.bands[1], toon.soft);
+    gl.uniform3fv(at.levels, toon.levels);
+    gl.uniform2f(at.rim, toon.rim, toon.rim_from);
+    gl.uniform3fv(at.shade, toon.shade.map((/** @type {number} */ c) => c / 255));
+    gl.uniform3fv(at.outline_colour, toon.outline.map((/** @type {number} */ c) => c / 255));
+    gl.uniform1f(at.has_shadow, ghost ? 0 : 1);
+    bind(gl, 2, this.map.texture, at.shadow);
+    gl.bindVertexArray(this.mesh);
+    const depth = Math.max(dot(minus(view.root, camera.position), axes(camera).forward), 0.05);
+    const wide = (toon.outline_width * camera.focal * height) / depth;
+    for (const [outline, cull] of ghost ? [[0, gl.BACK]] : [[0, gl.BACK], [wide, gl.FRONT]]) {
+      gl.uniform1f(at.outline, outline);
+      gl.cullFace(cull);
+      for (const part of this.doc.body.parts) {
+        if ((ghost || camera.feetOnly) && !part.feet) continue;
+        if (ghost && !ghost[part.side]) continue;
+        bind(gl, 3, this.skins[part.skin], at.skin);
+        gl.uniform3fv(at.tint, part.tint);
+        drawPart(gl, part);
+      }
+    }
+    gl.cullFace(gl.BACK);
+  }
+}
+
+/** @param {WebGL2RenderingContext} gl @param {{first: number, count: number}} part */
+function drawPart(gl, part) {
+  gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
+}
+
+/** @param {WebGL2RenderingContext} gl @param {number} unit @param {WebGLTexture} texture @param {WebGLUniformLocation | null} at */
+function bind(gl, unit, texture, at) {
+  gl.activeTexture(gl.TEXTURE0 + unit);
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.uniform1i(at, unit);
+}
+
+/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
+function build(gl, vertex, fragment) {
+  const program = gl.createProgram();
+  for (const [kind, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`shader: ${gl.getShaderInfoLog(shader)}`);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`shaders: ${gl.getProgramInfoLog(program)}`);
+  /** @type {Record<string, WebGLUniformLocation | null>} */
+  const at = {};
+  const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+  for (let i = 0; i < count; ++i) {
+    const name = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(program, i)).name.replace("[0]", "");
+    at[name] = gl.getUniformLocation(program, name);
+  }
+  return { program, at };
+}
+
+/** @param {WebGL2RenderingContext} gl @param {any} body @param {import("./blob.js").Arrays} arrays */
+function makeMesh(gl, body, arrays) {
+  const n = body.vertices;
+  const array = gl.createVertexArray();
+  gl.bindVertexArray(array);
+  const place = arrays.get("mesh.position");
+  const uv = arrays.get("mesh.uv");
+  const floats = new Float32Array(5 * n);
+  for (let v = 0; v < n; ++v) {
+    for (let k = 0; k < 3; ++k) floats[5 * v + k] = body.low[k] + (place[k * n + v] / 65535) * body.size[k];
+    for (let k = 0; k < 2; ++k) floats[5 * v + 3 + k] = body.uv[0][k] + (uv[k * n + v] / 65535) * body.uv[1][k];
+  }
+  buffer(gl, gl.ARRAY_BUFFER, floats);
+  attribute(gl, 0, 3, gl.FLOAT, 20, 0, false);
+  attribute(gl, 3, 2, gl.FLOAT, 20, 12, false);
+  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.normal"), n, 3, Int8Array));
+  attribute(gl, 1, 3, gl.BYTE, 4, 0, true);
+  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.hull"), n, 3, Int8Array));
+  attribute(gl, 2, 3, gl.BYTE, 4, 0, true);
+  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.joints"), n, 4, Uint8Array));
+  attribute(gl, 4, 4, gl.UNSIGNED_BYTE, 4, 0, false);
+  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.weights"), n, 4, Uint8Array));
+  attribute(gl, 5, 4, gl.UNSIGNED_BYTE, 4, 0, true);
+  const columns = arrays.get("mesh.triangles");
+  const count = columns.length / 3;
+  const triangles = new Uint32Array(columns.length);
+  for (let t = 0; t < count; ++t) for (let k = 0; k < 3; ++k) triangles[3 * t + k] = columns[k * count + t];
+  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, triangles);
+  gl.bindVertexArray(null);
+  return array;
+}
+
+/**
+ * Columns of values as four bytes a vertex.
+ * @param {import("./blob.js").Numbers} columns @param {number} n @param {number} width
+ * @param {Int8ArrayConstructor | Uint8ArrayConstructor} kind
+ */
+function interleaved(columns, n, width, kind) {
+  const out = new kind(4 * n);
+  for (let k = 0; k < width; ++k) for (let v = 0; v < n; ++v) out[4 * v + k] = columns[k * n + v];
+  return out;
+}
+
+/** @param {WebGL2RenderingContext} gl @param {any} stage */
+function makeRoom(gl, stage) {
+  const array = gl.createVertexArray();
+  gl.bindVertexArray(array);
+  const floats = [];
+  const triangles = [];
+  for (let q = 0; q < stage.kinds.length; ++q) {
+    for (let c = 0; c < 4; ++c) floats.push(...stage.corners[q][c], ...stage.uv[q][c], stage.kinds[q]);
+    triangles.push(4 * q, 4 * q + 1, 4 * q + 2, 4 * q, 4 * q + 2, 4 * q + 3);
+  }
+  buffer(gl, gl.ARRAY_BUFFER, new Float32Array(floats));
+  attribute(gl, 0, 3, gl.FLOAT, 24, 0, false);
+  attribute(gl, 1, 2, gl.FLOAT, 24, 12, false);
+  attribute(gl, 2, 1, gl.FLOAT, 24, 20, false);
+  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, new Uint16Array(triangles));
+  gl.bindVertexArray(null);
+  return { array, count: triangles.length };
+}
+
+/** @param {WebGL2RenderingContext} gl @param {number} target @param {ArrayBufferView<ArrayBuffer>} data */
+function buffer(gl, target, data) {
+  gl.bindBuffer(target, gl.createBuffer());
+  gl.bufferData(target, data, gl.STATIC_DRAW);
+}
+
+/**
+ * @param {WebGL2RenderingContext} gl @param {number} number @param {number} width @param {number} kind
+ * @param {number} stride @param {number} offset @param {boolean} normalised
+ */
+function attribute(gl, number, width, kind, stride, offset, normalised) {
+  gl.enableVertexAttribArray(number);
+  gl.vertexAttribPointer(number, width, kind, normalised, stride, offset);
+}
+
+/** @param {WebGL2RenderingContext} gl @param {ImageBitmap} image */
+function skinTexture(gl, image) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image);
+  gl.generateMipmap(gl.TEXTURE_2D);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAX_LOD, 3); // the films' four levels: charts' gaps stay apart
+  return texture;
+}
+
+/** @param {WebGL2RenderingContext} gl @param {Float32Array} data @param {number} width @param {number} height */
+function numbers(gl, data, width, height) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, data);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  return texture;
+}
+
+/** @param {WebGL2RenderingContext} gl @param {any} stage */
+function tileTexture(gl, stage) {
+  const across = stage.panel.length;
+  const deep = stage.panel[0].length;
+  const data = new Float32Array(4 * across * deep);
+  for (let j = 0; j < deep; ++j) {
+    for (let i = 0; i < across; ++i) data.set([stage.panel[i][j], ...stage.arrow[i][j], 0], 4 * (j * across + i));
+  }
+  return numbers(gl, data, across, deep);
+}
+
+/** @param {WebGL2RenderingContext} gl @param {number} texels */
+function shadowMap(gl, texels) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, texels, texels);
+  for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+  const frame = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture, 0);
+  gl.drawBuffers([gl.NONE]);
+  gl.readBuffer(gl.NONE);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  return { texture, frame };
+}

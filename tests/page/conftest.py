@@ -1,0 +1,52 @@
+"""One small page for all tests of this room, and one browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from page_chromium import Browser
+
+from dancetutor_cli.jobs.bake import BakeTask
+from dancetutor_cli.jobs.page import Page, PageTask, make_page
+from dancetutor_cli.jobs.selection import Selection
+
+# Hostile on purpose: all that people write is text. Two measures of rest, then steps, a crossover, a jump and a hold.
+TITLE = "</script><script>window.hacked=1</script>\"'><img src=x onerror=window.hacked=1>{{data}}&amp;"
+SONG = (
+    "#VERSION:0.83;\n#TITLE:{title};\n#ARTIST:<b>{title}</b>;\n#MUSIC:x.wav;\n#OFFSET:0;\n#BPMS:0=120;\n"
+    "#NOTEDATA:;\n#STEPSTYPE:dance-single;\n#DIFFICULTY:Hard;\n#METER:9;\n#CREDIT:<script>window.hacked=1</script>;\n"
+    "#NOTES:\n0000\n0000\n0000\n0000\n,\n1000\n0100\n0001\n0100\n1000\n0001\n0010\n0001\n"
+    ",\n1001\n0000\n0200\n0000\n0000\n0300\n1000\n000M\n;\n"
+)
+
+
+def write_song(folder: Path, title: str = TITLE) -> Path:
+    """A song's file with that title."""
+    path = folder / "song.ssc"
+    path.write_text(SONG.replace("{title}", title.replace(";", "\\;").replace(":", "\\:")), "utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Page:
+    """The page of the hostile song."""
+    path = write_song(tmp_path_factory.mktemp("song"))
+    return make_page(PageTask(BakeTask(path, Selection(), "thesis", fps=30.0)))
+
+
+@pytest.fixture(scope="session")
+def page_file(page: Page, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same on the disk."""
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    path.write_bytes(page.html)
+    return path
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A headless Chromium; skips where there is none."""
+    one = Browser()
+    yield one
+    one.close()

@@ -1,0 +1,86 @@
+// Presses, misses, rows that wait, delays, the ramp; and links.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
+import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
+
+/** Rows at seconds 1, 2 (a jump), 3. */
+function chart() {
+  const second = [1, 2, 2, 3];
+  const column = [0, 0, 3, 1];
+  const rows = [[0], [1, 2], [3]].map((notes) => ({
+    second: second[notes[0]], steps: notes.map((note) => ({ note, column: column[note], limb: note % 2, part: 0 })),
+  }));
+  return {
+    second, rows, rowSeconds: rows.map((row) => row.second),
+    presses: [0, 1, 2, 3].map((c) => second.map((_, n) => n).filter((n) => column[n] === c)),
+  };
+}
+
+test("presses near a note count once, early, in time or late", () => {
+  const judge = new Judge(chart());
+  judge.restart(0);
+  assert.equal(judge.press(0, 0.91, 1), "early");
+  assert.equal(judge.press(0, 1.0, 1), null);
+  assert.equal(judge.press(0, 2.02, 1), "hit");
+  assert.equal(judge.press(3, 2.1, 1), "late");
+  assert.equal(judge.press(1, 2.5, 1), null);
+  assert.equal(judge.advance(4, 1), 1);
+  const tally = judge.tally(0, 10);
+  assert.deepEqual([tally.hit, tally.early, tally.late, tally.miss], [1, 1, 1, 1]);
+  assert.ok(Math.abs(tally.sum - (-0.09 + 0.02 + 0.1)) < 1e-9);
+});
+
+test("the window is of real time: half as wide in the music at half speed", () => {
+  const judge = new Judge(chart());
+  judge.restart(0);
+  assert.equal(judge.press(0, 1.1, 0.5), null);
+  assert.equal(judge.press(0, 1.05, 0.5), "late");
+});
+
+test("a row that waits is open until all its panels are pressed", () => {
+  const judge = new Judge(chart());
+  judge.restart(1.5);
+  assert.equal(judge.open(-Infinity).second, 2);
+  judge.press(3, 2, 1, true);
+  assert.equal(judge.open(-Infinity).second, 2);
+  judge.press(0, 2, 1, true);
+  assert.equal(judge.open(-Infinity).second, 3);
+  judge.press(1, 3, 1, true);
+  assert.equal(judge.open(-Infinity), null);
+});
+
+test("going back opens rows again", () => {
+  const judge = new Judge(chart());
+  judge.restart(0);
+  judge.advance(9, 1);
+  assert.equal(judge.tally(0, 9).miss, 4);
+  judge.restart(1.5);
+  assert.equal(judge.tally(0, 9).miss, 1);
+});
+
+test("the delay is the middle of all taps; strays do not count, too few are none", () => {
+  const beats = [1, 2, 3, 4, 5, 6];
+  assert.equal(latencyOf([1.05, 2.06, 3.04], beats), null);
+  const found = latencyOf([1.05, 2.06, 3.05, 4.05, 5.24, 6.49], beats);
+  assert.ok(Math.abs(found - 0.05) < 1e-9);
+});
+
+test("the ramp goes up after clean passes, back after misses, and ends at full speed", () => {
+  assert.equal(ramp(0.5, 0, true), 0.55);
+  assert.equal(ramp(0.5, 3, true), 0.45);
+  assert.equal(ramp(0.25, 3, true), 0.25);
+  assert.equal(ramp(1, 0, true), 1);
+  assert.equal(ramp(0.5, 9, false), 0.55);
+});
+
+test("links say measures and speed", () => {
+  assert.deepEqual(parseLink("#m8-16@0.75"), { from: 8, to: 16, rate: 0.75 });
+  assert.deepEqual(parseLink("#m8"), { from: 8, to: null, rate: null });
+  assert.deepEqual(parseLink("#@1.5"), { from: null, to: null, rate: 1.5 });
+  assert.deepEqual(parseLink("#m9-3"), { from: 9, to: null, rate: null });
+  for (const bad of ["", "#", "#m", "#x8", "#m8-16@fast", "#m8<script>"]) assert.equal(parseLink(bad), null);
+  assert.equal(makeLink(8, 16, 0.75), "#m8-16@0.75");
+  assert.equal(makeLink(8, 16.333, 1), "#m8-16.33");
+  assert.equal(makeLink(null, null, 1), "");
+});

@@ -1,0 +1,92 @@
+"""The file that `page` writes: whole, small, safe."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+import struct
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.jobs.page import Page
+from dancetutor_cli.page.blob import Blob
+from dancetutor_cli.page.document import languages
+
+
+def unpacked(html: bytes) -> dict[str, Any]:
+    """The JSON in a page."""
+    found = re.search(rb'id="data">([^<]*)<', html)
+    assert found
+    raw = zlib.decompress(base64.b64decode(found[1]))
+    (length,) = struct.unpack("<I", raw[:4])
+    doc: dict[str, Any] = json.loads(raw[4 : 4 + length])
+    return doc
+
+
+def test_people_s_words_are_never_markup(page: Page) -> None:
+    text = page.html.decode("utf-8")
+    assert text.count("<script") == 3 and text.count("</script>") == 3  # data, music, and the one script
+    assert "onerror=window" not in re.sub(r"<title>.*?</title>", "", text)
+    assert "<title>&lt;/script&gt;&lt;script&gt;" in text
+    words = unpacked(page.html)["words"]
+    assert "</script><script>window.hacked=1</script>" in words["title"]
+
+
+def test_the_policy_names_this_script_and_this_style_and_no_place(page: Page) -> None:
+    text = page.html.decode("utf-8")
+    found = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert found
+    policy = dict(part.strip().split(" ", 1) for part in found[1].split(";"))
+    assert policy["default-src"] == "'none'"
+    for name, element in (("script-src", r"<script>(.*?)</script>"), ("style-src", r"<style>(.*?)</style>")):
+        content = re.search(element, text, re.DOTALL)
+        assert content
+        digest = base64.b64encode(hashlib.sha256(content[1].encode()).digest()).decode()
+        assert policy[name] == f"'sha256-{digest}'"
+    assert "http" not in found[1]
+    assert not re.findall(r"https?://", text)
+
+
+def test_a_page_is_small(page: Page) -> None:
+    # The dancer and the page itself are what a short page holds; two minutes of motion are less than a megabyte more.
+    assert len(page.html) < 1_100_000
+    assert page.sizes["mesh"] + page.sizes["skin"] < 500_000
+
+
+@pytest.mark.parametrize("differences", [0, 1, 2])
+def test_arrays_come_back_from_their_planes(differences: int) -> None:
+    blob = Blob()
+    values = np.random.default_rng(1).integers(-30000, 30000, (3, 40))
+    blob.add("x", values, "i2", differences)
+    kind, count, row, rounds, offset = blob.index["x"]
+    assert (kind, count, row, rounds, offset) == ("i2", 120, 40, differences, 0)
+    planes = np.frombuffer(blob.whole(), dtype=np.uint8).reshape(2, 120).astype(np.int64)
+    back = (planes[0] + 256 * planes[1]).astype(np.uint16).astype(np.int16).reshape(3, 40)
+    for _ in range(differences):
+        back = np.cumsum(back, axis=1, dtype=np.int16)
+    assert (back == values).all()
+
+
+def test_every_language_has_every_label_with_the_same_places() -> None:
+    every = languages()
+    first = every["en"]
+    for name, labels in every.items():
+        assert set(labels) == set(first), name
+        for key, text in labels.items():
+            assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", first[key])), (name, key)
+
+
+def test_every_label_that_the_modules_use_exists() -> None:
+    folder = Path(__file__).resolve().parents[2] / "dancetutor_cli" / "page" / "js"
+    known = set(languages()["en"])
+    for path in folder.glob("*.js"):
+        for key in re.findall(r'\bt\(\s*"([\w-]+)"', path.read_text("utf-8")):
+            assert key in known, f"{path.name}: {key}"
+        for key in re.findall(r'\bname: "(\w+)", keys:', path.read_text("utf-8")):
+            assert key in known, f"{path.name}: {key}"
