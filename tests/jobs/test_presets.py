@@ -9,6 +9,7 @@ import pickle
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -16,16 +17,19 @@ from click.testing import CliRunner
 from dancetutor_cli import chart as charts
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.jobs import alternatives, causes, suggest
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.cache import ResultCache
+from dancetutor_cli.jobs.film_list import BatchRequest, film_list
 from dancetutor_cli.jobs.film_request import Request as FilmRequest
 from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.jobs.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.play import load_preset, preset_names
+from dancetutor_cli.play import Preset, load_preset, preset_names
+from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 
@@ -142,6 +146,33 @@ def test_the_configurations_that_come_along_name_presets(name: str, expected: li
     assert [chart["preset"] for chart in data["files"][0]["charts"]] == expected
     (song.parent / "dancetutor.yaml").write_text(f"extends: {name}\n")
     assert [analyzed(song), animated(song), annotated(song), filmed(song)] == [expected] * 4
+
+
+def test_a_batch_of_films_gives_each_chart_its_own(song: Path) -> None:
+    (song.parent.parent / "dancetutor.yaml").write_text(BY_DIFFICULTY.replace("presets/mine.yaml", "ddr"))
+    request = FilmRequest(Path(), Selection(), FilmLook(load_layout("highway"), (64, 48)), mute=True)
+    batch = BatchRequest((song.parent,), request, Encoding("mp4", (64, 48), 12), song.parent / "films")
+    films = film_list(batch).films
+    assert [look_up(film.request).preset.name for film in films] == ["beginner", "stamina", "beginner", "ddr"]
+
+
+def test_suggestions_and_alternatives_are_of_the_charts_own(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (song.parent.parent / "dancetutor.yaml").write_text(BY_DIFFICULTY.replace("presets/mine.yaml", "ddr"))
+    used: list[str] = []
+    for module, name in ((suggest, "with_suggestions"), (alternatives, "alternatives_of"), (causes, "causes_of")):
+        monkeypatch.setattr(module, name, _noting(used, getattr(module, name)))
+    run(song, "--suggest", "--alternatives", 1)
+    assert used == [name for name in ("beginner", "stamina", "beginner", "ddr") for _ in range(3)]
+
+
+def _noting(used: list[str], work: Callable[..., Any]) -> Callable[..., Any]:
+    """The same, but the names of the presets that it is called with are noted."""
+
+    def noting(*words: Any) -> Any:
+        used.extend(word.name for word in words if isinstance(word, Preset))
+        return work(*words)
+
+    return noting
 
 
 def test_a_preset_for_other_pads_works_and_says_so(song: Path) -> None:
