@@ -8,7 +8,7 @@ import numpy as np
 
 from dancetutor_cli.bake import bake, bake_plan, plan_of
 from dancetutor_cli.chart import load
-from dancetutor_cli.motion import ik
+from dancetutor_cli.motion.ik import solver as ik
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
@@ -90,7 +90,7 @@ def _hour_memory() -> float:
 
 
 def _ik_rate() -> float:
-    from dancetutor_cli.motion.ik import Targets
+    from dancetutor_cli.motion.ik.solver import Targets
 
     frames, rng = 20000, np.random.default_rng(1)
     turn = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))

@@ -10,27 +10,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.bake.grips import grips_of
 from dancetutor_cli.bake.keys import doubtful, key_times, refined
 from dancetutor_cli.bake.pieces import Done, Each, Piece, in_turn, joined, piece_ends, trimmed
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion import stage
-from dancetutor_cli.motion.ankles import ease_ankles
-from dancetutor_cli.motion.bar import bar_of, hold_share, holding
-from dancetutor_cli.motion.body import BodyPath, body_path, stepping
-from dancetutor_cli.motion.ease import smooth
-from dancetutor_cli.motion.feet import FootPath, foot_path
-from dancetutor_cli.motion.grips import grips_of
-from dancetutor_cli.motion.ik import Targets, solve
-from dancetutor_cli.motion.layers import add_layers
-from dancetutor_cli.motion.look import look
+from dancetutor_cli.motion.footwork.planner import Planner
+from dancetutor_cli.motion.footwork.walks import ground_of, with_walks
+from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.ik.rail import bar_of, hold_share, holding
+from dancetutor_cli.motion.ik.solver import Targets, solve
+from dancetutor_cli.motion.ik.targets import ik_targets, moved
+from dancetutor_cli.motion.layers.additive import add_layers
+from dancetutor_cli.motion.layers.gaze import look
 from dancetutor_cli.motion.model import Motion
-from dancetutor_cli.motion.paths import cubic, sample_path, smooth_path
-from dancetutor_cli.motion.plan import Planner
+from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
-from dancetutor_cli.motion.targets import ik_targets, moved
-from dancetutor_cli.motion.track import Plan
-from dancetutor_cli.motion.walk import ground_of, with_walks
+from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
+from dancetutor_cli.motion.swing.panels import panels_on_ground
+from dancetutor_cli.motion.trajectory.body import BodyPath, body_path, stepping
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path
 from dancetutor_cli.physics.hair import add_hair
 from dancetutor_cli.play.model import Limb, Part, Play
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -110,7 +110,7 @@ def plan_of(
 ) -> Plan:  # fmt: skip
     """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
     settings = settings or default_settings()
-    plan = Planner(play, stage.panels_on_ground(pad), _clock(chart, rate), settings).run()
+    plan = Planner(play, panels_on_ground(pad), _clock(chart, rate), settings).run()
     first, last = plan.first, plan.last
     plan = replace(plan, beats=_beats(chart, play, rate))
     plan = with_walks(plan, ground_of(pad, settings), mines_of(play, pad)[:, 0], gait, settings)
@@ -126,7 +126,7 @@ def plan_of(
 def mines_of(play: Play, pad: Pad) -> Array:
     """Second and place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
     row, column = np.nonzero(play.rows.mines)
-    return np.column_stack((play.rows.second[row], stage.panels_on_ground(pad)[column]))
+    return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
 
 
 def bake_plan(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.model import Grip
-from dancetutor_cli.motion.track import Plan
+from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import Skeleton

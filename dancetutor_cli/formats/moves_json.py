@@ -27,7 +27,7 @@ from typing import Any
 
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.model import Bar, Grip
-from dancetutor_cli.motion.track import FootTrack, Plan, Press
+from dancetutor_cli.motion.plan import FootTrack, Plan, Press
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
 SCHEMA = 1

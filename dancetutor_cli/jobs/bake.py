@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Motion
-    from dancetutor_cli.motion.track import Plan
+    from dancetutor_cli.motion.plan import Plan
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play
     from dancetutor_cli.play.preset import Preset

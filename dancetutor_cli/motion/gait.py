@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.ease import smooth
+from dancetutor_cli.motion.plan import Plan, Walk
 from dancetutor_cli.motion.settings import Gait, MotionSettings
-from dancetutor_cli.motion.track import Plan, Walk
+from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]

@@ -1,120 +1,140 @@
-"""From a play to moves, row by row: when each foot leaves and lands, where, and how far it turns (thesis 5.5, 5.6)."""
+"""What the dancer will do, before any joint is turned: where and when each foot stands and swings, hands, turns."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion.aside import SideSteps
-from dancetutor_cli.motion.evade import evade_mines
-from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.stance import SHORTEST, Stance
-from dancetutor_cli.motion.steps import Steps
-from dancetutor_cli.motion.touches import Touches
-from dancetutor_cli.motion.track import Plan, Turn
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.motion.model import Bar, Contact, Grip, Ground
 
 Array = NDArray[np.float64]
-LEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it
-WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
-STEEPEST = 1.875  # largest slope of `ease.smooth`
-NO_WAY = 1e-6  # metres
-HALF_TURN = 1e-6  # degrees from half a turn
-MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
 
-class Planner:
-    """Walks through the rows of a play once. `second(tick)` gives the time of a tick in seconds of the music."""
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """One foot leaves the ground at `lift` and comes down at `land` (seconds).
 
-    def __init__(self, play: Play, panels: Array, second: Callable[[int], float], settings: MotionSettings) -> None:
-        self.play, self.panels, self.settings = play, panels, settings
-        self.stance = Stance(settings, leading_foot(play, panels))
-        self.steps = Steps(play, panels, self.stance)
-        self.touches = Touches(play, panels, second, self.stance)
-        self.asides = SideSteps(play, panels, self.stance)
-        self.previous: float | None = None
-        self.turns: list[Turn] = []
-
-    def run(self) -> Plan:
-        """The plan of the whole song; DancetutorError if the play has no steps."""
-        for i in range(len(self.play.rows)):
-            self._row(i)
-        contacts = self.touches.ended()
-        if not contacts:
-            raise DancetutorError("the chart has no steps: there is nothing to dance")
-        return Plan(
-            self.stance.tracks(), tuple(self.turns), tuple(self.touches.presses), contacts, (0.0, 0.0),
-            contacts[0].start, max(c.end for c in contacts), lead=self.stance.lead,
-        )  # fmt: skip
-
-    def _row(self, i: int) -> None:
-        time = float(self.play.rows.second[i])
-        pressed: dict[int, list[int]] = {}
-        for column in np.flatnonzero(self.play.limb[i] >= 0):
-            pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
-        soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
-        self.stance.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
-        evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
-        self.stance.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
-        feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
-        if feet:
-            self._feet(i, time, feet, pressed)
-        for limb, columns in pressed.items():
-            for pressed_column in columns:
-                self.touches.add(i, time, limb, pressed_column)
-
-    def _stays(self, i: int, time: float) -> float:
-        """Until when mines matter to the feet that land at row i: for a while, and as long as they hold."""
-        held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
-        return max([time + MINES_AHEAD, *(self.touches.second(int(tick)) for tick in held if tick >= 0)])
-
-    def _feet(self, i: int, time: float, feet: list[int], pressed: dict[int, list[int]]) -> None:
-        """One foot steps or both jump, and the body turns with them; before that she may step aside."""
-        longest = self.settings.step.longest
-        aside = None if self.previous is None else self.asides.before(i, time, list(pressed), self.touches.presses)
-        if aside is not None:
-            self.turns.append(aside)
-            self.previous = max(foot.landed for foot in self.stance.feet)
-        turn = (self.play.facing[i] - self.stance.normal + 180.0) % 360.0 - 180.0
-        if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: the foot decides
-            turn = -180.0 if (feet[0] if len(feet) == 1 else self.stance.lead) == 0 else 180.0
-        before = self.stance.normal
-        self.stance.normal += turn
-        duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
-        if len(feet) == 2:
-            leaves = self.steps.jump(i, time, duration, pressed, self.stance.normal - before)
-        else:
-            leaves = self.steps.step(i, time, duration, feet[0], pressed[feet[0]])
-        yaw = self.stance.turned_to()
-        far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
-        self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
-        self.previous = time
-
-
-def leading_foot(play: Play, panels: Array) -> int:
-    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump tells.
-
-    It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
-    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
+    target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
+    height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
+    pitches : heel up, radians, at lift, at most, at landing, then standing
+    bulge : (x, z) added at the middle of the path, to go around the other foot
+    kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one),
+        "pivot" (turning on the ball, which stays down), "aside" (in a wait, to the other pad) or "walk"
+    level : height of the ground where it lands
+    turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
+    turning : the part of a jump's way that goes round that middle; the rest is straight
     """
-    feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
-    alone = np.flatnonzero(feet[0] != feet[1])
-    if len(alone):
-        return int(feet[1][alone[0]])
-    left, right = (np.asarray(play.limb == side) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT))
-    aside, ahead = (left | right) @ panels[:, 0], (left.astype(np.int8) - right) @ panels[:, 1]
-    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror
-        if max(abs(x), abs(z)) > NO_WAY:
-            return int(x < 0) if abs(x) > NO_WAY else int(z < 0)
-    return 0
+
+    lift: float
+    land: float
+    target: tuple[float, float]
+    yaw: float
+    height: float
+    pitches: tuple[float, float, float, float]
+    bulge: tuple[float, float] = (0.0, 0.0)
+    kind: str = "step"
+    tuck: float = 0.0
+    turn: float = 0.0
+    middle0: tuple[float, float] = (0.0, 0.0)
+    middle1: tuple[float, float] = (0.0, 0.0)
+    level: float = 0.0
+    turning: float = 0.5
 
 
-def _turn_start(time: float, duration: float, leaves: float, far: float) -> float:
-    """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
-    ground that body and foot would ever be turned much farther from each other than they are anyway."""
-    ahead = 2.0 * LEAD / (STEEPEST * max(far, LEAD)) * (time - leaves)
-    late = LATE * float(np.clip(far / WIDE - 1.0, 0.0, 1.0))  # for the body's path is smooth: it turns before it begins
-    return max(time - duration, leaves - ahead + late)
+@dataclass(frozen=True, slots=True)
+class FootTrack:
+    """All swings of a foot in order of time, never overlapping, and where it stood before the first: on what level."""
+
+    start: tuple[float, float]
+    start_yaw: float
+    swings: tuple[Swing, ...]
+    start_level: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """The body turns from where it was to `yaw` (radians, unwrapped) between `start` and `end` (seconds)."""
+
+    start: float
+    end: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """A palm is on a panel from `start` to `end`; side 0 left, 1 right; target (x, z).
+
+    turn : radians that the body turns to the hand's side for it, because the panel lies behind; positive left
+    lead : seconds that the hand has for the way down, after its last panel
+    """
+
+    start: float
+    end: float
+    side: int
+    target: tuple[float, float]
+    turn: float = 0.0
+    lead: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """A walk from `start` to `end`, seconds, with the landings in between, the first one of foot `first`.
+
+    gait : "flat" or "heels"; share : 0 to 1, how much of its quick form is in it
+    """
+
+    start: float
+    end: float
+    landings: tuple[float, ...]
+    first: int
+    share: float
+    gait: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact.
+
+    bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
+    walks : in order of time; ground : pad and floor, where she walks on both
+    beats : seconds of the song's beats, in order
+    lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
+        play is danced as the mirror image
+    """
+
+    feet: tuple[FootTrack, FootTrack]
+    turns: tuple[Turn, ...]
+    presses: tuple[Press, ...]
+    contacts: tuple[Contact, ...]
+    centre: tuple[float, float]
+    first: float
+    last: float
+    bar: Bar | None = None
+    grips: tuple[Grip, ...] = ()
+    walks: tuple[Walk, ...] = ()
+    ground: Ground | None = None
+    beats: tuple[float, ...] = ()
+    lead: int = 0
+
+    @property
+    def hand(self) -> float:
+        """1 for a plan that the left foot leads, -1 for its mirror image: the sign of what is chosen for variety."""
+        return 1.0 - 2.0 * self.lead
+
+
+def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
+    """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
+    out = []
+    left, right = ([s for s in f.swings if s.kind != "pivot"] for f in feet)
+    i = j = 0
+    while i < len(left) and j < len(right):
+        start, end = max(left[i].lift, right[j].lift), min(left[i].land, right[j].land)
+        if start < end:
+            out.append((start, end))
+        if left[i].land <= right[j].land:
+            i += 1
+        else:
+            j += 1
+    return np.array(out, dtype=np.float64).reshape(-1, 2)

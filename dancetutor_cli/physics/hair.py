@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
-from dancetutor_cli.motion.limbs import Vec, add, dot, length, qrot, scale, sub
-from dancetutor_cli.motion.paths import cubic
 from dancetutor_cli.motion.settings import HairSettings
+from dancetutor_cli.numerics.smoothing import cubic
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.limb import Vec, add, dot, length, qrot, scale, sub
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]

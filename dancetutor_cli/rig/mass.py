@@ -14,6 +14,7 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+GRAVITY = 9.81  # metres per second squared
 
 # joint that carries the part, fraction of the body's mass, rest position of the part's centre (x of the left side)
 _PARTS = (

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
+UP = np.array([0.0, 1.0, 0.0])
 
 
 def normalize(q: ArrayLike) -> Array:
@@ -127,3 +128,11 @@ def continuous(q: Array) -> Array:
     dot = np.sum(q[1:] * q[:-1], axis=-1, keepdims=True)
     sign = np.concatenate((np.ones_like(dot[:1]), np.cumprod(np.where(dot < 0, -1.0, 1.0), axis=0)))
     return np.asarray(q * sign)
+
+
+def leaning(tilt: Array, yaw: Array) -> Array:
+    """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
+    angle = np.linalg.norm(tilt, axis=1)
+    axis = np.column_stack((tilt[:, 1], np.zeros_like(angle), -tilt[:, 0]))
+    axis[angle < 1e-9] = [1.0, 0.0, 0.0]
+    return multiply(from_axis_angle(axis, angle), from_axis_angle(UP, yaw))

@@ -10,10 +10,10 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play
 
 from dancetutor_cli.bake import bake, plan_of, report
-from dancetutor_cli.motion.aside import footfalls
-from dancetutor_cli.motion.footsteps import stand_at
+from dancetutor_cli.motion.footwork.footfalls import stand_at
+from dancetutor_cli.motion.footwork.sidesteps import footfalls
+from dancetutor_cli.motion.plan import Plan, Swing
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.motion.track import Plan, Swing
 
 LAST = 5.4  # second of the last note on the first pad
 

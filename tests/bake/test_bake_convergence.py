@@ -10,9 +10,9 @@ from bake_plays import MEDLEY, chart, pad, play
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion import qp
-from dancetutor_cli.motion.banded import BandedLeastSquares
-from dancetutor_cli.motion.qp import ConvergenceError, Limits, Solution, solve_surely
+from dancetutor_cli.numerics import qp
+from dancetutor_cli.numerics.banded import BandedLeastSquares
+from dancetutor_cli.numerics.qp import ConvergenceError, Limits, Solution, solve_surely
 
 
 def problem(n: int = 9) -> tuple[BandedLeastSquares, Limits]:

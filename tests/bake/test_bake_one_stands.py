@@ -9,9 +9,9 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, mines_of, plan_of, report
-from dancetutor_cli.motion.feet import foot_path
-from dancetutor_cli.motion.height import LEAST_PHASE
-from dancetutor_cli.motion.track import Plan, airborne
+from dancetutor_cli.motion.plan import Plan, airborne
+from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.trajectory.height import LEAST_PHASE
 from dancetutor_cli.play.model import Part, Play
 
 CLEAR = ("feet on mines", "penetration", "flight gravity off by", "flight residual", "foot in foot", "contacts missed")

@@ -15,7 +15,7 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.moves_json import moves_data, write_moves
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from dancetutor_cli.formats.play_json import read_play
-from dancetutor_cli.motion.track import Press
+from dancetutor_cli.motion.plan import Press
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, prepare, solve_chart
 from dancetutor_cli.resources import charts_path

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from dancetutor_cli.motion.ankles import ease_ankles
-from dancetutor_cli.motion.feet import FootPath
+from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.swing.foot_path import FootPath
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import beyond, excess, within
 from dancetutor_cli.rig.skeleton import dancer_skeleton

@@ -14,7 +14,7 @@ import renderers_scene as rs
 from PIL import Image, ImageDraw
 
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.motion.stage import panels_on_ground
+from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.video import renderer
 from dancetutor_cli.video.camera import with_pan_range
 from dancetutor_cli.video.scene import foot_marks, hand_marks

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.motion.stage import panels_on_ground
+from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.pads.pad import load_pads
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.look import default_look

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.body import GRAVITY, GROUND, Body
 from dancetutor_cli.bake.quality.figures import Figure
-from dancetutor_cli.motion.paths import low_pass
+from dancetutor_cli.numerics.smoothing import low_pass
 
 Array = NDArray[np.float64]
 GROWN = 0.02  # metres by which the hull of the soles is grown

@@ -9,7 +9,7 @@ from dancetutor_cli.bake.quality.body import GROUND, Body, intervals, over_groun
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.motion.stage import HALF_PANEL
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import place, sole_points
 

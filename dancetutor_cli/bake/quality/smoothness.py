@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.body import Body
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.motion.model import Contact
-from dancetutor_cli.motion.paths import low_pass
+from dancetutor_cli.numerics.smoothing import low_pass
 from dancetutor_cli.play.model import Limb
 from dancetutor_cli.rig.skeleton import Skeleton
 

@@ -1,0 +1,128 @@
+"""How a foot comes down: where on its panel, how it is turned, how its heel is raised, and around which way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.footwork.footing import Foot, Stance
+from dancetutor_cli.motion.settings import StepSettings
+from dancetutor_cli.motion.swing.clearance import SHARES, detour, gaps_at, over
+from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.swing.panels import ball_of, landing_ball, middle_of, room_on
+from dancetutor_cli.play.model import Part
+
+Array = NDArray[np.float64]
+Pitches = tuple[float, float, float, float]
+_ACROSS = np.arange(-5, 6) / 5
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
+TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
+LATEST = 4  # swings of a foot that are looked at to see where it is
+STAYING = 0.7  # part of its way to the wanted place that a foot on its own panel leaves out
+PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A foot that stands: its ball (2,), and where its toes point, radians."""
+
+    ball: Array
+    toes: float
+
+    @property
+    def middle(self) -> Array:
+        """The middle of the sole."""
+        return middle_of(self.ball, self.toes)
+
+
+def pose(stance: Stance, foot: Foot) -> Pose:
+    """How a foot stands now."""
+    return Pose(foot.ball, stance.toes(foot))
+
+
+def landing(
+    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float, other: Pose, cut: float,
+    following: Array | None,
+) -> tuple[Array, float]:  # fmt: skip
+    """Where the ball lands and how the foot is turned (without toe-out).
+
+    panels : (c, 2); parts : (c,) which part of the foot presses a column; columns : those that it presses
+    yaw : wanted; other : the other foot then; cut : 0 for the panel's centre to 1 for its inner edge
+    following : (2,) the panel that this foot steps on next, None if that is far off
+    """
+    step = stance.settings.step
+    if len(columns) > 1:
+        return _bracket(stance, panels, parts, columns, foot, yaw)
+    toes = stance.toes(foot, yaw)
+    panel, room = panels[columns[0]], room_on(panels, columns[0])
+    ball = landing_ball(panel, toes, other.middle, cut, step.edge_margin, room)
+    # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
+    way = (foot.ball + (foot.ball if following is None else following)) / 2
+    ball = ball + step.on_the_way * cut * (np.clip(way, panel - room, panel + room) - ball)
+    if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
+        ball = ball + STAYING * (foot.ball - ball)
+    return beside(stance, panel, room, foot, ball, yaw, other)
+
+
+def beside(
+    stance: Stance, panel: Array, room: Array, foot: Foot, ball: Array, yaw: float, other: Pose
+) -> tuple[Array, float]:
+    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
+    apart = stance.settings.step.apart
+    toes = np.array([stance.toes(foot, yaw)])
+    free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
+    if free and not over(stance.mined, ball[None], toes)[0]:
+        return ball, yaw
+    balls = panel + room * PLACES * [foot.outward, 1.0]
+    turned = np.array([stance.limited(yaw + foot.outward * turn, stance.body_yaw()) for turn in TURNS])
+    grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
+    gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)
+    price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
+    price += np.maximum(apart - gaps, 0.0) * 1e6
+    price += over(stance.mined, grid, yaws + foot.outward * stance.toe_out) * 1e4
+    best = int(np.argmin(price))
+    return grid[best], float(yaws[best])
+
+
+def _bracket(
+    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float
+) -> tuple[Array, float]:
+    """Heel on one panel, toes on the other."""
+    toe = next((c for c in columns if parts[c] == Part.TOE), None)
+    heel = next((c for c in columns if parts[c] == Part.HEEL and c != toe), None)
+    if heel is None:
+        heel = next(c for c in columns if c != toe)
+    toe = next(c for c in columns if c != heel)
+    along = panels[toe] - panels[heel]
+    toes = float(np.arctan2(along[0], along[1]))
+    toes += 2 * np.pi * round((yaw - toes) / (2 * np.pi))
+    middle = (panels[toe] + panels[heel]) / 2
+    return ball_of(middle, toes), toes - foot.outward * stance.toe_out
+
+
+def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: float, columns: list[int]) -> Pitches:
+    """Pitches of a swing, radians: as the toes leave, at most, at landing and afterwards; fast steps stay flat."""
+    rest = step.stream_pitch * cut
+    if len(columns) > 1:
+        land = rest = 0.0  # heel and toes of a bracket come down together
+    out = np.radians([lift * (1.0 - 0.4 * cut), most * (1.0 - 0.6 * cut), land + 0.3 * rest, rest])
+    return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
+
+
+def shoes_apart(a: Pose, b: Pose) -> float:
+    """Least distance between the middle lines of two standing shoes, metres."""
+    return float(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0])
+
+
+def around(
+    stance: Stance, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
+) -> tuple[float, float]:
+    """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
+    a, b, apart = stance.toes(foot), stance.toes(foot, yaw), stance.settings.step.apart
+    if max(other.landed, other.turned) <= span[0]:
+        return detour(foot.ball, a, target, b, other.ball, stance.toes(other), apart, foot.outward)
+    times = span[0] + SHARES * (span[1] - span[0])
+    there = foot_path(stance.track(other, LATEST), times, stance.settings.step.heel_drop)
+    return detour(foot.ball, a, target, b, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)

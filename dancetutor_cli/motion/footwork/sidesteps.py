@@ -1,0 +1,198 @@
+"""Side-steps: in a short wait before notes of the other pad she goes there step by step, the near foot first.
+
+A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again;
+so the notes are reached by a normal step and not by a leap. Nor do they wait with one foot on each pad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
+from dancetutor_cli.motion.footwork.foothold import around, heel_up
+from dancetutor_cli.motion.footwork.footing import Foot, Stance, pair
+from dancetutor_cli.motion.footwork.walks import places_along, rectangle, walk_there
+from dancetutor_cli.motion.plan import Press, Swing, Turn
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
+from dancetutor_cli.motion.swing.timing import reduction
+from dancetutor_cli.play.model import Limb, Play
+
+Array = NDArray[np.float64]
+SPREADS = np.arange(0.34, 0.67, 0.04)  # metres between the feet as she steps aside, smallest first
+COMFORTABLE = 0.50  # what she takes if there is time
+SAME = 0.05  # metres; a foot so near its place stays where it is
+MOST = 6  # steps: three to the side, three to close
+FACING = 100.0  # degrees from the screen beyond which she does not step aside
+MINE = 0.2  # seconds around a mine
+AHEAD = 2.0  # seconds; a foot whose next note is later may stand anywhere
+
+
+@dataclass(frozen=True, slots=True)
+class _Next:
+    """What feet do next: when (2,), at which panel each (nan: nothing soon), and who does so in the next row."""
+
+    times: Array
+    places: Array
+    first: tuple[int, ...]
+
+
+class SideSteps:
+    """Puts side-steps into a stance before a row whose notes are far. panels : (c, 2) on the ground."""
+
+    def __init__(self, play: Play, panels: Array, stance: Stance) -> None:
+        self.play, self.panels, self.stance = play, panels, stance
+        self.ground = rectangle(panels, stance.settings)
+        self.places = places_along(self.ground, stance.lead)
+        self.mines = play.rows.second[play.rows.mines.any(axis=1)]
+        self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
+
+    def before(self, i: int, time: float, limbs: list[int], presses: list[Press]) -> Turn | None:
+        """Step aside before row i if that helps and there is time: the body's turn meanwhile, or None.
+
+        limbs : those that row i needs; presses : of palms, so far
+        """
+        settings, stance = self.stance.settings, self.stance
+        whole = 360.0 * round(stance.normal / 360.0)
+        hands = max(limbs) >= Limb.LEFT_HAND
+        if len(self.places) == 1 or hands or abs(stance.normal - whole) > FACING:
+            return None
+        begin = self._begin()
+        following = self._next(i, time, limbs)
+        if self._far(begin.balls, following) <= settings.aside.far:
+            return None
+        free = max([*(foot.free for foot in stance.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
+        start, ready = free + settings.aside.pause, time - settings.walk.settle
+        busy = (self.mines > start - MINE) & (self.mines < np.nanmax(following.times) + MINE)
+        if ready - start < 2 * settings.aside.quick or busy.any() or self._walks(begin, following, free, time):
+            return None
+        found = self._goal(begin, following, float(np.radians(whole)), ready - start)
+        if found is None:
+            return None
+        falls, duration = found
+        for k, (side, fall) in enumerate(falls):
+            self._move(stance.feet[side], fall, start + k * duration, duration)
+        stance.normal = whole
+        return Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
+
+    def _begin(self) -> Stand:
+        feet = self.stance.feet
+        yaws = np.array([self.stance.toes(foot) for foot in feet])
+        return Stand(np.array([foot.ball for foot in feet]), yaws, self.stance.turned_to())
+
+    def _next(self, i: int, time: float, limbs: list[int]) -> _Next:
+        rows = self.play.rows
+        times, places = np.full(2, np.nan), np.full((2, 2), np.nan)
+        for side in (0, 1):
+            k = int(np.searchsorted(self.steps[side], i))
+            if k < len(self.steps[side]):
+                row = int(self.steps[side][k])
+                times[side] = time if row == i else rows.second[row]
+                if times[side] < time + AHEAD:
+                    places[side] = self.panels[self.play.limb[row] == side].mean(axis=0)
+        return _Next(times, places, tuple(limb for limb in limbs if limb < Limb.LEFT_HAND))
+
+    def _far(self, balls: Array, following: _Next) -> float:
+        """How far she would stretch: between the feet now, and for the next row, in a step from the other foot, in a
+        jump from either foot's place."""
+        if len(following.first) == 2:
+            far = np.linalg.norm(following.places - balls, axis=1).max()
+        else:
+            far = np.linalg.norm(following.places[following.first[0]] - balls[1 - following.first[0]])
+        return float(max(far, np.linalg.norm(balls[0] - balls[1])))
+
+    def _walks(self, begin: Stand, following: _Next, free: float, time: float) -> bool:
+        """Whether there is time to walk, and reason to."""
+        if np.isnan(following.places).any():
+            return False
+        step = self.stance.settings.step
+        ready = time - step.longest * (1.0 - step.double_support)
+        wait = free, ready
+        found = walk_there(begin, following.places, self.ground, "flat", wait, self.stance.settings, self.stance.lead)
+        return found is not None
+
+    def _goal(
+        self, begin: Stand, following: _Next, heading: float, time: float
+    ) -> tuple[list[tuple[int, Footfall]], float] | None:
+        """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
+        aside, settings = self.stance.settings.aside, self.stance.settings
+        best, least = None, self._far(begin.balls, following) - aside.gain
+        for x in _between(self.places):
+            goal = stand_at(np.array([x, 0.0]), heading, settings)
+            own = np.linalg.norm(following.places - goal.balls, axis=1)
+            price = max(self._far(goal.balls, following), float(np.nanmax(own)))
+            price += aside.travel * abs(float(goal.middle[0] - begin.middle[0]))
+            if price < least - 1e-9:
+                found = self._falls(begin, goal, time)
+                best, least = (found, price) if found is not None else (best, least)
+        return best
+
+    def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
+        """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
+        aside = self.stance.settings.aside
+        few = len(footfalls(begin, goal, COMFORTABLE)) or MOST
+        for spread in SPREADS:
+            falls = footfalls(begin, goal, float(spread))
+            if 0 < len(falls) <= few and time / len(falls) >= aside.quick and self._free(begin, falls):
+                return falls, min(aside.slow, time / len(falls))
+        return None
+
+    def _free(self, begin: Stand, falls: list[tuple[int, Footfall]]) -> bool:
+        """Whether no shoe comes too near the other."""
+        places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+        for side, fall in falls:
+            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.stance.settings.step.apart:
+                return False
+            places[side] = (fall.ball, fall.yaw)
+        return True
+
+    def _move(self, foot: Foot, fall: Footfall, start: float, duration: float) -> None:
+        step, stance = self.stance.settings.step, self.stance
+        cut = float(reduction(duration, step.fast, step.longest))
+        height = step.height_slow + cut * (step.height_fast - step.height_slow)
+        pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
+        other = stance.feet[1 - foot.side]
+        lift = max(start + step.double_support * duration, foot.free)
+        bulge = around(stance, foot, (lift, start + duration), fall.ball, fall.heading, other)
+        swing = Swing(lift, start + duration, pair(fall.ball), fall.yaw, height, pitches, bulge, "aside")
+        foot.move(swing, fall.ball, fall.heading)
+        foot.evading = None
+
+
+def _between(places: Array) -> Array:
+    """Places (k,) half a panel apart from the first to the last of some along a line."""
+    count = round(abs(float(places[-1] - places[0])) / HALF_PANEL)
+    middle, way = (places[0] + places[-1]) / 2, np.sign(places[-1] - places[0])
+    return np.asarray(middle + way * HALF_PANEL * (np.arange(count + 1) - count / 2))
+
+
+def footfalls(begin: Stand, goal: Stand, spread: float) -> list[tuple[int, Footfall]]:
+    """Steps to the side along x: the near foot goes, at most `spread` from the other one, which follows.
+
+    Returns foot (0 left) and footfall of each; none if more than `MOST` are needed.
+    """
+    way = float(np.sign(goal.middle[0] - begin.middle[0]))
+    near = 0 if way > 0 else 1
+    at, to = way * begin.balls[:, 0], way * goal.balls[:, 0]
+    close = to[near] - to[1 - near]
+    out: list[tuple[int, Footfall]] = []
+    for k in range(2 * MOST):
+        side = near if k % 2 == 0 else 1 - near
+        reach = at[1 - near] + spread if side == near else at[near] - close
+        place = to[side] if to[side] - reach < SAME else reach
+        last = place == to[side]
+        if place > at[side] + SAME or (last and _off(begin, goal, side, out)):
+            ball = np.array([way * place, goal.balls[side, 1]])
+            out.append((side, Footfall(ball, float(goal.yaws[side]), goal.heading)))
+            at[side] = place
+        if all(not _off(begin, goal, s, out) for s in (0, 1)):
+            return out if len(out) <= MOST else []
+    return []
+
+
+def _off(begin: Stand, goal: Stand, side: int, falls: list[tuple[int, Footfall]]) -> bool:
+    """Whether a foot is not yet where it shall be."""
+    done = [fall.ball for s, fall in falls if s == side]
+    return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > SAME)

@@ -1,0 +1,186 @@
+"""Hands: hanging and swinging against the legs, or a palm going down to a panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.ik.palms import palm_down
+from dancetutor_cli.motion.ik.rail import hold
+from dancetutor_cli.motion.ik.solver import arm_rotations
+from dancetutor_cli.motion.ik.spine import shoulders_over, torso_turns
+from dancetutor_cli.motion.plan import Plan, Press
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.trajectory.body import BodyPath
+from dancetutor_cli.motion.trajectory.crouch import haste
+from dancetutor_cli.numerics.controller import Controller, follow
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import sample_path, smooth_path
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.limits import beyond
+from dancetutor_cli.rig.quaternion import UP, leaning
+from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import SIDES, palm_points
+
+Array = NDArray[np.float64]
+LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
+FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
+SLAP = 0.8  # metres per second with which a palm meets the floor at least
+FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
+POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
+EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
+AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that it keeps farther aside and ahead there
+HANG, SHALLOW, DEEP = 0.28, np.radians(25.0), np.radians(100.0)  # so far they do; of which bends
+WANDER = ((7.9, 0.37), (4.3, 0.23))  # seconds of two waves, and how much of one each hand and axis is behind the last
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
+PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
+
+
+@dataclass(frozen=True, slots=True)
+class HandTargets:
+    """Targets of both hands at f times, as in `ik.solver.Targets`; the second axis is left, right."""
+
+    wrists: Array
+    turn: Array
+    pinned: Array
+    pull: Array
+    elbows: Array
+
+
+def arm_targets(
+    plan: Plan, body: BodyPath, at: Array, shoulders: Array, chest: Array, skeleton: Skeleton, settings: MotionSettings
+) -> HandTargets:
+    """Targets at times `at` (f,); shoulders (f, 2, 3) and chest (f, 4) as the IK will be asked for them."""
+    lean, upright = quat.swing_twist(chest, UP)
+    hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
+    # in a deep bend the other arm goes some way with the chest, its hand to the knees
+    bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
+    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, HANG * bent), upright)
+    hang = hang + bent[:, None, None] * AWAY
+    wrists = shoulders + quat.rotate(along[:, None], hang) + lag
+    wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
+    out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
+    elbows = quat.rotate(upright[:, None], out)
+    turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
+    pinned, pull = np.zeros((len(at), 2)), np.zeros((len(at), 2))
+    hold(plan, at, wrists, turn, pinned, elbows, shoulders, chest, skeleton, settings)
+    for press in plan.presses:
+        _press(press, at, wrists, turn, pinned, pull, elbows, body, skeleton, settings)
+    return HandTargets(wrists, turn, pinned, pull, elbows)
+
+
+def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
+    """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
+
+    Both (n, 2, 3) at the body's times, the second in the world.
+    """
+    arms = settings.arms
+    swing = _swing(plan, body, settings)
+    hang = np.empty((len(swing), 2, 3))
+    quick = haste(plan, body.times, settings)[:, None]
+    hang[..., 0] = np.array([1.0, -1.0]) * arms.out
+    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * quick
+    hang[..., 2] = arms.forward + swing + arms.stream_forward * quick
+    hang += arms.wander * _wandering(body.times, plan.lead)
+    chest = leaning(body.tilt, body.chest_yaw)
+    upright = quat.from_axis_angle(UP, body.chest_yaw)
+    pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
+    rate = 1.0 / float(body.times[1] - body.times[0])
+    controller = Controller.of(settings.inertia.hand_frequency, settings.inertia.hand_damping)
+    lag = np.empty_like(hang)
+    for side, name in enumerate(SIDES):
+        arm = skeleton.rest[skeleton.index(f"{name}_shoulder")] - skeleton.offsets[0]
+        target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
+        lag[:, side] = follow(target, rate, controller) - target
+    far = np.linalg.norm(lag, axis=2, keepdims=True)
+    return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
+
+
+def _wandering(times: Array, lead: int) -> Array:
+    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image.
+
+    lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
+    """
+    hands = np.arange(6).reshape(2, 3)
+    slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in WANDER)
+    ways = np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
+    return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
+
+
+def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
+    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot."""
+    front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
+    ahead = []
+    for track in plan.feet[::-1]:  # the left hand goes with the right foot
+        path = foot_path(track, body.times, settings.step.heel_drop)
+        ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
+    both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
+    gait = walking(plan.walks, body.times, settings)
+    if gait is not None:
+        both = (1.0 - gait.own[:, None]) * both + gait.hands
+    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)
+
+
+def _press(
+    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, pull: Array, elbows: Array, body: BodyPath,
+    skeleton: Skeleton, settings: MotionSettings,
+) -> None:  # fmt: skip
+    down, side = settings.hands.reach_down, press.side
+    near = np.flatnonzero((at > press.start - press.lead) & (at < press.end + down))
+    if not len(near):
+        return
+    t = at[near]
+    hand, pole = _lay_down(press, body, skeleton)
+    wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(hand, palm_points(skeleton)[side].offset)
+    going = np.clip((t - press.start + press.lead) / press.lead, 0.0, 1.0)
+    leaving = np.clip((t - press.end) / down, 0.0, 1.0)
+    across = smooth(going) * (1.0 - smooth(leaving))
+    # straight down at a definite speed, so that the touch has a time; up again softly
+    sink = (1.0 - np.cos(np.pi / 2 * going)) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
+    free = wrists[near, side]
+    goal = free + across[:, None] * (wrist - free)
+    ahead = np.maximum(press.start - t, 0.0)
+    slap = SLAP * ahead * np.exp(-((ahead / 0.1) ** 2))
+    goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
+    wrists[near, side] = goal
+    turn[near, side] = hand
+    pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
+    pinned[near, side] = np.maximum(pinned[near, side], pin)
+    pull[near, side] = np.maximum(pull[near, side], pin)
+    elbows[near, side] += across[:, None] * (pole - elbows[near, side])
+
+
+def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, Array]:
+    """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
+
+    Of many ways the one that is easiest for shoulder and wrist as the body is at the note, and then the one whose
+    fingers point most from the body to the panel.
+    """
+    when, side = np.array([press.start]), press.side
+    ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
+    yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
+    pelvis_turn, chest, bent = torso_turns(tilt, yaw, chest_yaw)
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest, bent)
+    panel = np.array([press.target[0], 0.0, press.target[1]])
+    away = panel - shoulders[0].mean(axis=0)
+    liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
+    out = (1.0, -1.0)[side]
+    poles = quat.rotate(chest, POLES * [out, 1.0, 1.0])
+    aside = np.repeat(out * FINGERS, len(poles))
+    poles = np.tile(poles, (len(FINGERS), 1))
+    down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
+    hands = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
+    wrists = panel - quat.rotate(hands, palm_points(skeleton)[side].offset)
+    # the body is drawn on until the arm reaches
+    shoulder = np.tile(shoulders[0, side], (len(wrists), 1))
+    turns = arm_rotations(skeleton, side, shoulder, np.tile(chest, (len(wrists), 1)), wrists, hands, poles)
+    effort = EASY * aside**2
+    for name, joint in (("shoulder", turns[0]), ("radiocarpal", turns[2])):
+        effort += np.maximum(beyond(skeleton, f"{SIDES[side]}_{name}", joint) + EASE, 0.0) ** 2
+    best = int(np.argmin(effort))
+    return hands[best], poles[best]

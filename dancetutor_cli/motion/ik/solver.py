@@ -1,0 +1,308 @@
+"""Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames.
+
+Order of work in a frame (spec/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
+Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
+pulled after it; then rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.rig.limb import (
+    Quat,
+    Vec,
+    add,
+    cross,
+    dot,
+    length,
+    limb,
+    qbetween,
+    qconj,
+    qframe,
+    qlerp,
+    qmul,
+    qrot,
+    scale,
+    sub,
+    unit,
+)
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
+ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+PULL_LEGS = 60  # rounds of pulling the root until both legs reach
+PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """What the body shall reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
+
+    pelvis : (f, 3) position of the root joint; pelvis_turn : (f, 4) its rotation; chest_turn : (f, 4) of the chest
+    shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_turn : (f, 2, 4), world rotation of a pinned hand
+    pinned : (f, 2), 0 for a free hand to 1 for a palm that must be where `wrists` says, with that rotation
+    elbows : (f, 2, 3) directions; ankles : (f, 2, 3); feet_turn : (f, 2, 4); toes_turn : (f, 2, 4)
+    knees : (f, 2, 3) directions
+    pull : (f, 2), 0 to 1, how much of a pinned hand's missing distance the body goes; None: as `pinned`
+    """
+
+    pelvis: Array
+    pelvis_turn: Array
+    chest_turn: Array
+    shoulders: Array
+    wrists: Array
+    hand_turn: Array
+    pinned: Array
+    elbows: Array
+    ankles: Array
+    feet_turn: Array
+    toes_turn: Array
+    knees: Array
+    pull: Array | None = None
+
+
+_NAMES = (
+    "HumanoidRoot", "vl5", "vt10", "vt4",
+    "l_hip", "l_knee", "l_talocrural", "l_metatarsal", "r_hip", "r_knee", "r_talocrural", "r_metatarsal",
+    "l_sternoclavicular", "l_shoulder", "l_elbow", "l_radiocarpal",
+    "r_sternoclavicular", "r_shoulder", "r_elbow", "r_radiocarpal",
+)  # fmt: skip
+# places of the names above in the kernel's index array
+_VL5, _VT10, _VT4, _LEG, _ARM = 1, 2, 3, 4, 12
+
+
+def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> tuple[Array, Array]:
+    """Solve all frames.
+
+    Parameters
+    ----------
+    skeleton : one with the dancer's joints; targets : f frames; reach : longest distance hip to ankle, metres
+    follow : part of a missing distance to a pinned palm that the root moves in each round; the torso bends for the rest
+
+    Returns
+    -------
+    local rotations (f, j, 4) and root (f, 3). Feet are on their targets wherever the root could be pulled; a palm
+    pinned by 1 is on its target if torso and pelvis could follow it within `PULL_ROUNDS`.
+    """
+    joints = np.array([skeleton.index(name) for name in _NAMES])
+    frames = len(targets.pelvis)
+    rotations = np.zeros((frames, len(skeleton.names), 4))
+    rotations[..., 0] = 1.0
+    root = np.array(targets.pelvis, dtype=np.float64)
+    _solve(
+        skeleton.offsets, joints, _hinges(skeleton, joints), reach, follow, root, targets.pelvis_turn,
+        targets.chest_turn, targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned,
+        targets.pinned if targets.pull is None else targets.pull, targets.elbows, targets.ankles,
+        targets.feet_turn, targets.toes_turn, targets.knees, rotations,
+    )  # fmt: skip
+    return rotations, root
+
+
+def arm_rotations(
+    skeleton: Skeleton, side: int, shoulders: Array, chest: Array, wrists: Array, hands: Array, elbows: Array
+) -> tuple[Array, Array, Array]:
+    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist.
+
+    shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
+    """
+    joints = np.array([skeleton.index(name) for name in _NAMES])
+    out = np.zeros((len(shoulders), len(skeleton.names), 4))
+    _one_arm(skeleton.offsets, joints, _hinges(skeleton, joints), side, shoulders, chest, wrists, hands, elbows, out)
+    first = _ARM + 4 * side
+    return out[:, joints[first + 1]], out[:, joints[first + 2]], out[:, joints[first + 3]]
+
+
+def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
+    """Axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
+    out = np.zeros((2, 3))
+    for side in (0, 1):
+        arm = skeleton.offsets[joints[_ARM + 4 * side + 2]]
+        out[side] = np.cross(arm, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(arm, [0.0, 0.0, 1.0]))
+    return out
+
+
+@njit(cache=True, inline="always")
+def _vec(a: Array) -> Vec:
+    return (a[0], a[1], a[2])
+
+
+@njit(cache=True, inline="always")
+def _quat(a: Array) -> Quat:
+    return (a[0], a[1], a[2], a[3])
+
+
+@njit(cache=True, inline="always")
+def _put(out: Array, q: Quat) -> None:
+    out[0], out[1], out[2], out[3] = q
+
+
+@njit(cache=True)
+def _pull_root(root: Vec, turn: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
+    """Move the root as little as needed until both ankles are within reach of their hips."""
+    left, right = qrot(turn, hips[0]), qrot(turn, hips[1])
+    for _ in range(PULL_LEGS):
+        a, b = sub(ankles[0], add(root, left)), sub(ankles[1], add(root, right))
+        far_a, far_b = length(a) - reach, length(b) - reach
+        if far_a < 1e-6 and far_b < 1e-6:
+            break
+        # where both legs are too short each draws half: neither comes first
+        share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
+        if far_a > 0.0:
+            root = add(root, scale(a, share * far_a / length(a)))
+        if far_b > 0.0:
+            root = add(root, scale(b, share * far_b / length(b)))
+    return root
+
+
+@njit(cache=True)
+def _chain(start: Vec, p2: Vec, p3: Vec, end: Vec, l1: float, l2: float, l3: float) -> tuple[Vec, Vec, Vec]:
+    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`; p2, p3 are the joints between."""
+    p4 = end
+    for _ in range(6):
+        p4 = end  # backward: from the end to the start
+        p3 = add(p4, scale(unit(sub(p3, p4)), l3))
+        p2 = add(p3, scale(unit(sub(p2, p3)), l2))
+        p2 = add(start, scale(unit(sub(p2, start)), l1))  # forward again
+        p3 = add(p2, scale(unit(sub(p3, p2)), l2))
+        p4 = add(p3, scale(unit(sub(end, p3)), l3))
+        if length(sub(p4, end)) < 1e-5:
+            break
+    return p2, p3, p4
+
+
+@njit(cache=True)
+def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
+    """Chest rotation from where its middle line and its shoulder line point."""
+    x = unit(sub(across, scale(up, dot(across, up))))
+    rest_x = (1.0, 0.0, 0.0)
+    return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
+
+
+@njit(cache=True)
+def _torso(
+    root: Vec, turn: Quat, chest: Quat, left: Vec, right: Vec, offsets: Array, joints: Array
+) -> tuple[Quat, Quat, Quat, Vec, Vec]:
+    """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
+    o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
+    lo = add(_vec(offsets[joints[_ARM]]), _vec(offsets[joints[_ARM + 1]]))
+    ro = add(_vec(offsets[joints[_ARM + 4]]), _vec(offsets[joints[_ARM + 5]]))
+    rest_mid = scale(add(lo, ro), 0.5)
+    p1 = add(root, qrot(turn, _vec(offsets[joints[_VL5]])))
+    q1, q2 = qlerp(turn, chest, 0.34), qlerp(turn, chest, 0.67)
+    # a back that is pushed together always rounds backward: without this it would snap from side to side
+    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
+    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
+    middle = scale(add(left, right), 0.5)
+    p2, p3, p4 = _chain(p1, p2, p3, middle, length(o10), length(o4), length(rest_mid))
+    q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
+    q1 = _aim(qlerp(turn, q3, 0.34), o10, sub(p2, p1))
+    q2 = _aim(qlerp(turn, q3, 0.67), o4, sub(p3, p2))
+    return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
+
+
+@njit(cache=True, inline="always")
+def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
+    """q, swung by as little as needed so that the bone points in the direction."""
+    return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
+
+
+@njit(cache=True)
+def _solve(
+    offsets: Array, joints: Array, hinges: Array, reach: float, follow: float, root: Array, pelvis_turn: Array,
+    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, pull: Array, elbows: Array,
+    ankles: Array, feet_turn: Array, toes_turn: Array, knees: Array, rotations: Array,
+) -> None:  # fmt: skip
+    hips = (_vec(offsets[joints[_LEG]]), _vec(offsets[joints[_LEG + 4]]))
+    arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
+    for f in range(len(root)):
+        turn = _quat(pelvis_turn[f])
+        place, out = _vec(root[f]), rotations[f]
+        goals = (_vec(ankles[f, 0]), _vec(ankles[f, 1]))
+        left, right = _vec(shoulders[f, 0]), _vec(shoulders[f, 1])
+        place = _pull_root(place, turn, hips, goals, reach)
+        q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
+        if pull[f, 0] > 0.0 or pull[f, 1] > 0.0:
+            for _ in range(PULL_ROUNDS):
+                gl = _excess(sl, _vec(wrists[f, 0]), arm * ARM_REACH, pull[f, 0])
+                gr = _excess(sr, _vec(wrists[f, 1]), arm * ARM_REACH, pull[f, 1])
+                if length(gl) + length(gr) < 1e-5:
+                    break
+                both = add(gl, gr)
+                place = _pull_root(add(place, scale(both, follow)), turn, hips, goals, reach)
+                left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
+                right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
+                q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
+        root[f, 0], root[f, 1], root[f, 2] = place
+        _put(out[joints[0]], turn)
+        _put(out[joints[_VL5]], qmul(qconj(turn), q1))
+        _put(out[joints[_VT10]], qmul(qconj(q1), q2))
+        _put(out[joints[_VT4]], qmul(qconj(q2), q3))
+        for side in range(2):
+            hip = add(place, qrot(turn, hips[side]))
+            shoulder = sl if side == 0 else sr
+            _arm(f, side, shoulder, q3, arm, offsets, joints, hinges, wrists, hand_turn, pinned, elbows, out)
+            _leg(f, side, hip, turn, offsets, joints, reach, ankles, feet_turn, toes_turn, knees, out)
+
+
+@njit(cache=True)
+def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
+    """How far a shoulder is from where its arm could reach the wrist's target."""
+    v = sub(wrist, shoulder)
+    d = length(v)
+    return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
+
+
+@njit(cache=True)
+def _arm(
+    f: int, side: int, shoulder: Vec, chest: Quat, arm: float, offsets: Array, joints: Array, hinges: Array,
+    wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, out: Array,
+) -> None:  # fmt: skip
+    base = _ARM + 4 * side
+    upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
+    most = arm * (0.985 + 0.0145 * pinned[f, side])
+    reach = sub(_vec(wrists[f, side]), shoulder)
+    world, bend = limb(upper, lower, _vec(hinges[side]), reach, _vec(elbows[f, side]), most)
+    _put(out[joints[base + 1]], qmul(qconj(chest), world))
+    _put(out[joints[base + 2]], bend)
+    forearm = qmul(world, bend)
+    free = (1.0, 0.0, 0.0, 0.0)
+    pin = qmul(qconj(forearm), _quat(hand_turn[f, side]))
+    _put(out[joints[base + 3]], qlerp(free, pin, pinned[f, side]) if pinned[f, side] > 0.0 else free)
+
+
+@njit(cache=True)
+def _leg(
+    f: int, side: int, hip: Vec, turn: Quat, offsets: Array, joints: Array, most: float, ankles: Array,
+    feet_turn: Array, toes_turn: Array, knees: Array, out: Array,
+) -> None:  # fmt: skip
+    base = _LEG + 4 * side
+    upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
+    reach = sub(_vec(ankles[f, side]), hip)
+    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(knees[f, side]), most + 1e-5)
+    shank, foot = qmul(world, bend), _quat(feet_turn[f, side])
+    _put(out[joints[base]], qmul(qconj(turn), world))
+    _put(out[joints[base + 1]], bend)
+    _put(out[joints[base + 2]], qmul(qconj(shank), foot))
+    _put(out[joints[base + 3]], qmul(qconj(foot), _quat(toes_turn[f, side])))
+
+
+@njit(cache=True)
+def _one_arm(
+    offsets: Array, joints: Array, hinges: Array, side: int, shoulders: Array, chest: Array, wrists: Array,
+    hands: Array, elbows: Array, out: Array,
+) -> None:  # fmt: skip
+    arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
+    goals, turns = np.zeros((1, 2, 3)), np.zeros((1, 2, 4))
+    pinned, poles = np.ones((1, 2)), np.zeros((1, 2, 3))
+    for f in range(len(shoulders)):
+        goals[0, side], turns[0, side], poles[0, side] = wrists[f], hands[f], elbows[f]
+        _arm(
+            0, side, _vec(shoulders[f]), _quat(chest[f]), arm, offsets, joints, hinges, goals, turns, pinned, poles,
+            out[f],
+        )  # fmt: skip

@@ -1,0 +1,85 @@
+"""Targets of the full-body IK at the times of the output, from the paths of feet, body and hands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.gait import turned, walking
+from dancetutor_cli.motion.ik.arms import arm_targets
+from dancetutor_cli.motion.ik.solver import Targets
+from dancetutor_cli.motion.ik.spine import shoulders_over, torso_turns
+from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.swing.foot_path import FootPath
+from dancetutor_cli.motion.trajectory.body import BodyPath, ankle_of
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import sample_path
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.quaternion import UP
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+ACROSS = np.array([1.0, 0.0, 0.0])
+STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
+FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
+HALF_HIPS = 0.09  # metres from the middle of the pelvis to a hip
+KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
+KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
+
+
+def ik_targets(
+    plan: Plan, body: BodyPath, feet: tuple[FootPath, FootPath], at: Array, skeleton: Skeleton, settings: MotionSettings
+) -> Targets:
+    """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+    ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
+    yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    pelvis_turn, chest_turn, bent = torso_turns(tilt, yaw, chest_yaw)
+    gait = walking(plan.walks, at, settings)
+    if gait is not None:
+        pelvis_turn, chest_turn = turned(gait, pelvis_turn, chest_turn)
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest_turn, bent)
+    hands = arm_targets(plan, body, at, shoulders, chest_turn, skeleton, settings)
+    ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
+    straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
+    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
+    # toes stay level while the heel is up, and go up with the foot
+    toes = [
+        quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
+        for t, f in zip(straight, feet, strict=True)
+    ]
+    return Targets(
+        pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
+        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet, pelvis, ankles), hands.pull,
+    )  # fmt: skip
+
+
+def moved(targets: Targets, by: Array) -> Targets:
+    """The same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
+    shoulders = targets.shoulders + by[:, None]
+    wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])
+    return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
+
+
+def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath], pelvis: Array, ankles: Array) -> Array:
+    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
+
+    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
+    """
+    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
+    out = []
+    for side, foot in enumerate(feet):
+        outward = 1.0 if side == 0 else -1.0
+        leg = ankles[:, side] - pelvis
+        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - HALF_HIPS, -leg[:, 1])
+        toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
+        aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT
+        most = np.minimum(outward * toes + FROM_TOES, MOST_ASIDE)
+        straddled = smooth((lean - STRADDLE[0]) / (STRADDLE[1] - STRADDLE[0]))
+        aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
+        out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
+    return np.stack(out, axis=1)

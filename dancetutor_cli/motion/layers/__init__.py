@@ -1,0 +1,1 @@
+"""What comes on top of the solved body: gaze, breath, blinks, wrists."""

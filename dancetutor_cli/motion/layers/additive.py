@@ -1,0 +1,74 @@
+"""Small movements on top of all others, multiplied in each joint's own space: breath, blinks, a bob of the head.
+
+Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They touch no joint
+between the root and a foot, so no contact moves; while a palm is on the floor they are off.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.settings import LayerSettings
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.skeleton import EYELID_CLOSING, Skeleton
+from dancetutor_cli.rig.soles import hand_direction, palm_normal
+
+Array = NDArray[np.float64]
+ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+WRIST_TIME = 5.7  # seconds in which a free hand drops and comes up
+BLINK = 0.16  # seconds from open to open
+SEED = 20140513
+
+
+def add_layers(
+    skeleton: Skeleton, times: Array, rotations: Array, stepping: Array, free: Array, settings: LayerSettings,
+    lead: int,
+) -> None:  # fmt: skip
+    """Add all layers to `rotations` (f, j, 4) in place.
+
+    Parameters
+    ----------
+    times : (f,) seconds; stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
+    lead : as in `Plan`; free : (f,) 0 where a palm is on the floor, else 1
+    """
+    breath = np.sin(2 * np.pi * times / settings.breath_time)
+    raised = np.radians(settings.breath_shoulders) * breath * free
+    for side, sign in (("l", 1.0), ("r", -1.0)):
+        _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * raised)
+    for side, phase, bent in (("lr"[lead], 0.0, 0.8), ("rl"[lead], 0.4, 1.2)):
+        hand = hand_direction(skeleton, side)
+        drop = bent + 0.35 * np.sin(2 * np.pi * (times / WRIST_TIME + phase))
+        _turn(
+            skeleton,
+            rotations,
+            f"{side}_radiocarpal",
+            np.cross(hand, palm_normal(skeleton, side)),
+            np.radians(settings.wrists) * drop * free,
+        )
+    bob = np.radians(settings.head_bob) * stepping * free
+    _turn(skeleton, rotations, "skullbase", FRONT, -bob)
+    nod = np.radians(settings.breath_nod) * breath
+    _turn(skeleton, rotations, "vc4", ACROSS, nod)
+    closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time)
+    for side in "lr":
+        _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
+
+
+def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: Array) -> None:
+    if joint in skeleton.names:
+        j = skeleton.index(joint)
+        rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle(axis, angle))
+
+
+def eyelids(times: Array, every: float) -> Array:
+    """How far the lids are closed (f,), 0 to 1: a blink about `every` seconds, always at the same ones."""
+    cell = np.floor(times / every).astype(np.int64)
+    out = np.zeros_like(times)
+    for c in np.unique(cell):
+        start = (c + np.random.default_rng([SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
+        s = (times - start) / BLINK
+        near = (s > 0) & (s < 1)
+        out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]
+    return out

@@ -1,0 +1,44 @@
+"""Head and eyes: after everything else they turn to the screen, as far as a neck can (thesis 5.7)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.trajectory.body import BodyPath, screen_yaw
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import sample_path
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.quaternion import UP, leaning
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+NECK_SHARE = 0.4  # part of the head's turn that the neck takes
+HEAD_TILT, BENT_TILT = 0.35, 0.6  # the head leans this part of the chest's lean; and so much of a deep bend
+BENT_YAW = 0.35  # in a deep bend the head turns only this part of the way from the chest to the screen
+SHALLOW, DEEP = np.radians(25.0), np.radians(85.0)  # of bends: the first changes nothing, the second is deep
+
+
+def look(
+    skeleton: Skeleton, rotations: Array, root: Array, body: BodyPath, at: Array, settings: MotionSettings
+) -> None:
+    """Turn neck, head and eyes of `rotations` (f, j, 4), in place."""
+    _, world = world_transforms(skeleton, rotations, root)
+    chest = world[:, skeleton.index("vt4")]
+    head_yaw, chest_yaw = (sample_path(yaw, body.times, at) for yaw in (body.head_yaw, body.chest_yaw))
+    tilt = sample_path(body.tilt, body.times, at)
+    # who bends down to a panel looks at it: no neck turns so far back
+    bent = smooth((np.linalg.norm(tilt, axis=1) - SHALLOW) / (DEEP - SHALLOW))
+    head_yaw = chest_yaw + (1.0 + (BENT_YAW - 1.0) * bent) * (head_yaw - chest_yaw)
+    lean = HEAD_TILT + (BENT_TILT - HEAD_TILT) * bent
+    whole = quat.multiply(quat.conjugate(chest), leaning(lean[:, None] * tilt, head_yaw))
+    neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), NECK_SHARE))
+    rotations[:, skeleton.index("vc4")] = neck
+    rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)
+    limit = np.radians(settings.look.eyes_limit)
+    gap = (screen_yaw(root[:, [0, 2]], settings) - head_yaw + np.pi) % (2 * np.pi) - np.pi
+    eyes = quat.from_axis_angle(UP, np.clip(settings.look.eyes_weight * gap, -limit, limit))
+    for side in "lr":
+        rotations[:, skeleton.index(f"{side}_eyeball_joint")] = eyes

@@ -1,0 +1,110 @@
+"""A swinging foot goes around the standing one: shoes are capsules, and the path bends as little as it must."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.swing.panels import BALL_AHEAD, HALF_PANEL
+from dancetutor_cli.motion.swing.timing import swung, travelled
+
+Array = NDArray[np.float64]
+HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
+_ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
+_WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
+_WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
+# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
+SOLE = np.array(
+    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
+     (0.084, -0.034)]
+)  # fmt: skip
+OVER = 0.004  # metres that a shoe keeps from a panel with a mine
+SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
+SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
+
+
+def detour(
+    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: Array | float, apart: float,
+    outward: float,
+) -> tuple[float, float]:  # fmt: skip
+    """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
+
+    Parameters
+    ----------
+    start, end : (2,) ball of the swinging foot; yaws in radians
+    other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
+    apart : metres; where no detour is enough, the best one is taken
+    outward : 1 for the left foot, -1 for the right one: of equal detours each takes the other's mirror image
+    """
+    path = end - start
+    length = float(np.linalg.norm(path))
+    axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
+    axes = axes * [[outward], [1.0]]
+    e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (end_yaw - start_yaw))
+    straight = start + e[:, None] * path - BALL_AHEAD * ahead
+    aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
+    still = shoe_line(other - BALL_AHEAD * aim, aim)
+    gaps = segment_gaps(*shoe_line(straight, ahead), *still)
+    need = enough(gaps, e, apart) - 1e-3
+    if (gaps >= need).all():
+        return 0.0, 0.0
+    places = straight + bend(e)[:, None] * (_WAYS @ axes)[:, None]
+    room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
+    chosen = _WAYS[np.argmax(room >= min(0.0, room.max()))] @ axes
+    return float(chosen[0]), float(chosen[1])
+
+
+def enough(gaps: Array, e: Array, apart: float) -> Array:
+    """Room (k,) to ask for on a way: its ends are given, so it is no more than there is at both; e : how far it is."""
+    return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
+
+
+def shoe_line(middle: Array, ahead: Array) -> tuple[Array, Array]:
+    """Both ends (..., 2) of a shoe's middle line; ahead (..., 2) : unit vectors along it."""
+    return middle - HALF_SHOE * ahead, middle + HALF_SHOE * ahead
+
+
+def bend(share: Array) -> Array:
+    """How much of a detour there is (...) at each share (...) of the way: it starts at once, for shoes are long."""
+    return np.asarray(np.sin(np.pi * share))
+
+
+def headings(yaw: Array) -> Array:
+    """Unit vectors (..., 2), x and z, of yaws (...)."""
+    return np.stack((np.sin(yaw), np.cos(yaw)), axis=-1)
+
+
+def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
+    """Least distance (k,) in metres between the middle lines of shoes, balls (k, 2) and yaws (k,), and another shoe."""
+    ahead = headings(yaws)
+    middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
+    rest = other - BALL_AHEAD * still
+    return segment_gaps(*shoe_line(middle, ahead), *shoe_line(rest, still))
+
+
+def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
+    """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
+    ahead = headings(toes)
+    across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + OVER
+    return np.asarray(inside.any(axis=(1, 2)))
+
+
+def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
+    gaps = [_point_gap(p, c, d) for p in (a, b)] + [_point_gap(np.broadcast_to(p, a.shape), a, b) for p in (c, d)]
+    apart = np.minimum.reduce(gaps)
+    crossing = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
+    return np.where(crossing, 0.0, apart)
+
+
+def _point_gap(p: Array, a: Array, b: Array) -> Array:
+    along = b - a
+    s = np.clip(np.sum((p - a) * along, axis=-1) / np.sum(along * along, axis=-1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(p - a - s[..., None] * along, axis=-1))
+
+
+def _side(a: Array, b: Array, p: Array) -> Array:
+    u, v = b - a, p - a
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

@@ -1,0 +1,135 @@
+"""Foot paths: where each foot is at any time, from its swings. Nothing here knows joints above the ankle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.plan import FootTrack
+from dancetutor_cli.motion.swing.clearance import bend
+from dancetutor_cli.motion.swing.jump_ways import turning
+from dancetutor_cli.motion.swing.timing import swung, travelled
+from dancetutor_cli.numerics.ease import smooth
+
+Array = NDArray[np.float64]
+EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
+HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
+WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
+NO_TIME = 0.03  # seconds on the ground in which a heel stays as it has landed
+HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
+
+
+@dataclass(frozen=True, slots=True)
+class FootPath:
+    """One foot at f times.
+
+    ball : (f, 3), the ball of the foot over the ground (y = 0: standing)
+    yaw, pitch : (f,) radians; pitch is heel up, the toes stay level with the ground
+    down : (f,) bool, the ball stands on the ground; progress : (f,) 0 to 1 of the swing, 0 while standing
+    """
+
+    ball: Array
+    yaw: Array
+    pitch: Array
+    down: NDArray[np.bool_]
+    progress: Array
+
+
+def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
+    """Sample a foot at `times` (f,), seconds."""
+    swings = track.swings
+    lift = np.array([s.lift for s in swings])
+    land = np.array([s.land for s in swings])
+    place = np.array([track.start, *(s.target for s in swings)])
+    yaw = np.array([track.start_yaw, *(s.yaw for s in swings)])
+    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; swing done - 1 has begun
+    i = np.maximum(done - 1, 0)
+    if not swings:
+        still = np.zeros_like(times)
+        ball = np.column_stack((np.full_like(times, place[0, 0]), still, np.full_like(times, place[0, 1])))
+        ball[:, 1] = track.start_level
+        return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
+    swinging = (done > 0) & (times < land[i])
+    s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
+    ground = np.where(swinging[:, None], _ground(track, place, i, s), place[done])
+    level = np.array([track.start_level, *(w.level for w in swings)])
+    up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
+    ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
+    turned = yaw[i] + swung(s) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
+    pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
+    turned = np.where(swinging, turned, yaw[done])
+    return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
+
+
+def _climb(before: Array, after: Array, s: Array) -> Array:
+    """Height of the ground under a swing: up at once, down late, for between levels there is an edge."""
+    return np.asarray(
+        before + np.where(after > before, smooth(s / EDGE), smooth((s - 1.0 + DOWN) / DOWN)) * (after - before)
+    )
+
+
+def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
+    """The ball (f, 3) of a foot whose toes are up (pitch below 0): the heel's edge is where it would be if flat."""
+    up = -np.minimum(pitch, 0.0)
+    back = HEEL_BACK * (1.0 - np.cos(up)) + BALL_UP * np.sin(up)
+    out = ball.copy()
+    out[:, 0] -= back * np.sin(yaw)
+    out[:, 2] -= back * np.cos(yaw)
+    out[:, 1] += HEEL_BACK * np.sin(up) - BALL_UP * (1.0 - np.cos(up))
+    return out
+
+
+def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
+    """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet."""
+    e = travelled(s)
+    start, end = place[i], place[i + 1]
+    straight = start + e[:, None] * (end - start)
+    bulge = np.array([w.bulge for w in track.swings])[i] * bend(e)[:, None]
+    jumps = np.array([w.kind == "jump" for w in track.swings])
+    share = np.where(jumps, [w.turning for w in track.swings], 0.0)[i][:, None]
+    middles = np.array([(w.middle0, w.middle1) for w in track.swings])[i]
+    turn = np.array([w.turn for w in track.swings])[i]
+    round_ = turning(start, end, (middles[:, 0], middles[:, 1]), turn, e)
+    return np.asarray((1 - share) * straight + share * round_ + bulge)
+
+
+def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+    """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
+    height, tuck = np.array([(w.height, w.tuck) for w in track.swings])[i].T
+    kind = np.array([w.kind for w in track.swings])[i]
+    evade = 1.0 - (2.0 * s - 1.0) ** 4
+    # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
+    pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
+    jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
+    step = np.sin(np.pi * s**1.35)
+    return np.asarray(
+        np.where(kind == "jump", jump, height * np.where((kind == "evade") | (kind == "gallop"), evade, step))
+    )
+
+
+def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+    lift, most, land, _ = np.array([w.pitches for w in track.swings])[i].T
+    up = lift + smooth(s / 0.4) * (most - lift)
+    return np.asarray(up + smooth((s - 0.4) / 0.6) * (land - most))
+
+
+def _stand_pitch(
+    track: FootTrack, times: Array, done: NDArray[np.int64], lift: Array, land: Array, heel_drop: float
+) -> Array:
+    """Heel of a standing foot: comes down after landing, rises before the next swing."""
+    pitches = np.array([w.pitches for w in track.swings])
+    landed = np.concatenate(([-1e9], land))[done]
+    rest = np.concatenate(([0.0], pitches[:, 3]))[done]
+    touch = np.concatenate(([0.0], pitches[:, 2]))[done]
+    leaves = np.concatenate((lift, [1e9]))[done]
+    leave = np.concatenate((pitches[:, 0], [0.0]))[done]
+    stood = leaves - landed
+    rest = np.where(stood < NO_TIME, touch, rest)
+    drop = np.minimum(heel_drop, 0.6 * stood)
+    early = np.array([WALKING_RISE if w.kind == "walk" else HEEL_RISE for w in track.swings] + [HEEL_RISE])[done]
+    rise = np.minimum(early, 0.4 * stood)
+    falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
+    return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

@@ -1,0 +1,30 @@
+"""How far a swing has come at each part of its time, and how much there is of it if time is short."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dancetutor_cli.numerics.ease import smooth
+
+Array = NDArray[np.float64]
+OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
+TURNED = 0.95  # part of a swing after which the foot points where it lands
+
+
+def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
+    """How much a move is cut for lack of time: 0 at `longest`, 1 at `fast` or less, growing as a cube
+    (thesis 5.6.1)."""
+    s = np.clip((longest - np.asarray(duration, dtype=np.float64)) / max(longest - fast, 1e-9), 0.0, 1.0)
+    return np.asarray(s**3)
+
+
+def travelled(s: ArrayLike) -> Array:
+    """How far over the ground a swing has come at each part of its time: slow at both ends."""
+    free = np.clip((np.asarray(s, dtype=np.float64) - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
+    return np.asarray((1.0 - np.cos(np.pi * free)) / 2)
+
+
+def swung(s: ArrayLike) -> Array:
+    """How far a foot has turned at each part of its swing: a little sooner than it lands."""
+    return smooth(np.asarray(s, dtype=np.float64) / TURNED)

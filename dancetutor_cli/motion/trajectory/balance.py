@@ -1,0 +1,204 @@
+"""Where the centre of mass travels over the ground, so that the dancer keeps her balance.
+
+The cart-table model (Kajita 2003): the zero-moment point is  x - y / (y'' + g) x'' . It has to stay under the feet that
+stand, and the pelvis where both legs reach their feet; within that the path has the least jerk. In flight nothing
+pushes sideways, so it is straight. Where a song asks for the impossible, limits give way by as little as they must.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
+from dancetutor_cli.motion.swing.foot_path import FootPath
+from dancetutor_cli.motion.trajectory.height import span
+from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
+from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
+from dancetutor_cli.numerics.smoothing import cubic, low_pass, sample_path
+
+Array = NDArray[np.float64]
+NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
+UNIT = 0.03  # metres; scales the programme
+HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
+FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
+HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
+FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
+ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
+ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
+NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
+GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
+
+
+def balanced_path(
+    feet: tuple[FootPath, FootPath], lever: Array, seen: Array, offset: Array, times: Array,
+    settings: MotionSettings, tightened: int = 0, hand: float = 1.0,
+) -> tuple[Array, bool]:  # fmt: skip
+    """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
+
+    Parameters
+    ----------
+    feet : at the n even `times`, seconds
+    lever : (n,) y / (y'' + g), seconds squared; ignored in flight; seen : the same without trembling above 10 Hz
+    offset : (n, 2) from the pelvis to the centre of mass, as far as known
+    settings : of the body, and how the weight sways while both feet stand
+    hand : as in `Plan`; on its side she begins to sway
+    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
+    """
+    body, rate = settings.body, NODE_RATE if tightened else ROUGH_RATE
+    nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
+    feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
+    lever, seen = (np.interp(nodes, times, x) for x in (lever, seen))
+    offset = sample_path(offset, times, nodes)
+    room = _room(feet)
+    feet = _carrying(feet)
+    low, high, middle = _support(feet)
+    middle = middle + hand * _sway(feet, nodes, settings.layers)
+    down = np.stack([f.down for f in feet])
+    weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
+    flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
+    want = _Wanted(middle, low, high, weight, offset, *room)
+    what = f"the path of her balance {span(times)}"
+    found = _solved(want, flight, lever, rate, body, what)
+    softened = found.softened
+    for _ in range(tightened):
+        path = found.x.reshape(-1, 2)
+        want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), seen, rate), flight)
+        found = _solved(want, flight, lever, rate, body, what)
+        softened |= found.softened
+    return cubic(nodes, found.x.reshape(-1, 2), times), softened
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """What the path shall do at each of n nodes.
+
+    middle : (n, 2) where the zero-moment point shall be; low, high : (n, 4) where it may be, along `ACROSS`
+    weight : (n,) how much the former counts; offset : (n, 2) from the pelvis to the centre of mass
+    nearest, farthest : (n, 2) where the pelvis may be
+    """
+
+    middle: Array
+    low: Array
+    high: Array
+    weight: Array
+    offset: Array
+    nearest: Array
+    farthest: Array
+
+
+def _room(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array]:
+    """Lowest and highest place (n, 2) of the pelvis from which both legs reach."""
+    ankles = [f.ball[:, [0, 2]] - ANKLE_BEHIND * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
+    return np.maximum(*ankles) - FARTHEST, np.minimum(*ankles) + FARTHEST
+
+
+def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
+    """A foot at the sampled times nearest to other ones: standing and swinging are not mixed."""
+    i = np.clip(np.round((nodes - times[0]) / (times[1] - times[0])).astype(np.int64), 0, len(times) - 1)
+    return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
+
+
+def _carrying(feet: tuple[FootPath, FootPath]) -> tuple[FootPath, FootPath]:
+    """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
+    down = np.stack([f.down for f in feet])
+    firm = down.copy()
+    firm[:, 1:] &= down[:, :-1]
+    firm[:, :-1] &= down[:, 1:]
+    firm = np.where(firm.any(axis=0), firm, down)
+    return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
+
+
+def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
+    """Where the zero-moment point may be, (n, 4) lowest and highest along `ACROSS`, and (n, 2) where best.
+
+    The limits are a hull of the soles that stand; its eight sides have the same directions at all times.
+    """
+    lows, highs, middles = [], [], []
+    for foot in feet:
+        ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
+        across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
+        back = np.where(foot.pitch < HEEL_DOWN, BACK_HEEL, BACK_TOES)[:, None]
+        middle = foot.ball[:, [0, 2]] + (FRONT + back) / 2 * ahead
+        half = np.abs(ahead @ ACROSS.T) * (FRONT - back) / 2 + np.abs(across @ ACROSS.T) * HALF_WIDTH
+        down = foot.down[:, None]
+        lows.append(np.where(down, middle @ ACROSS.T - half, np.inf))
+        highs.append(np.where(down, middle @ ACROSS.T + half, -np.inf))
+        middles.append(middle)
+    left, right = feet[0].down[:, None], feet[1].down[:, None]
+    best = np.where(left == right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
+    return np.minimum(*lows), np.maximum(*highs), best
+
+
+def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) -> Array:
+    """(n, 2): how far the weight wanders from foot to foot while both stand."""
+    across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
+    across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
+    both = feet[0].down & feet[1].down
+    phase = np.sin(2 * np.pi * times / layers.sway_time) + 0.4 * np.sin(2 * np.pi * times / (0.37 * layers.sway_time))
+    return np.asarray(across * (layers.sway * phase * both)[:, None])
+
+
+def _zero_moment(path: Array, lever: Array, rate: float) -> Array:
+    """The zero-moment point (n, 2) of a path (n, 2); at its ends the path."""
+    out = path.copy()
+    out[1:-1] -= lever[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
+    return out
+
+
+def _tightened(want: _Wanted, low: Array, high: Array, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
+    """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
+
+    What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
+    goes from foot to foot within a few hundredths of a second, some of that is needed to arrive in time.
+    """
+    along = zmp @ ACROSS.T
+    stand = ~flight[:, None]
+    span = np.subtract(high, low, where=stand, out=np.zeros_like(low))
+    inside = np.minimum(NARROWEST, span) / 2
+    lower = want.low + np.where(stand, np.clip(low - along, 0.0, NARROWER), 0.0)
+    upper = want.high - np.where(stand, np.clip(along - high, 0.0, NARROWER), 0.0)
+    return replace(
+        want,
+        low=np.where(stand, np.minimum(lower, high - inside), low),
+        high=np.where(stand, np.maximum(upper, low + inside), high),
+    )
+
+
+def _solved(
+    want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings, what: str
+) -> Solution:
+    """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
+    n = len(want.middle)
+    problem = BandedLeastSquares(2 * n, 1, 8)
+    inner = np.arange(1, n - 1)
+    second = differences(2) * rate**2
+    zmp = (np.array([0.0, 1.0, 0.0]) - lever[inner, None] * second) / UNIT
+    stand = ~flight[inner]
+    k, fly = inner[stand], inner[~stand]
+    jerk = np.tile(differences(3) * (rate * body.smooth) ** 3 / UNIT, (n - 3, 1))
+    # between two feet too far apart for both legs the pelvis is in the middle
+    low, high = (b + want.offset for b in (want.nearest, want.farthest))
+    low, high = np.minimum(low, (low + high) / 2), np.maximum(high, (low + high) / 2)
+    limits = []
+    for a in (0, 1):
+        axis = np.eye(2)[a]
+        problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], want.middle[k, a, None] / UNIT)
+        straight = _both(np.tile(second, (len(fly), 1)), axis)
+        problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
+        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), want.middle[:, a, None] / UNIT)
+        problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.zeros((n - 3, 1)))
+        every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)
+        limits.append(Limits(*every, low[:, a] / UNIT, high[:, a] / UNIT, GIVE_REACH))
+    for d, direction in enumerate(ACROSS):
+        along = 2 * k - 2, _both(zmp[stand], direction)
+        limits.append(Limits(*along, want.low[k, d] / UNIT, want.high[k, d] / UNIT, GIVE_SUPPORT))
+    return solve_surely(problem, limits, what)
+
+
+def _both(coefficients: Array, direction: Array) -> Array:
+    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction."""
+    count, width = coefficients.shape
+    return (coefficients[:, :, None] * direction).reshape(count, 2 * width)

@@ -1,0 +1,157 @@
+"""The height of the centre of mass over the whole song as one quadratic programme.
+
+Unknown is the height at nodes in time; take-offs and landings are nodes. In flight it falls with g, exactly. On the
+ground the jerk is least, while the height stays near a wanted one, below what the legs reach, and the ground
+pushes with a force that legs can give. A landing and the next move share one ground phase: they overlap by themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.settings import BodySettings
+from dancetutor_cli.numerics.banded import BandedLeastSquares
+from dancetutor_cli.numerics.qp import Limits, solve_surely
+from dancetutor_cli.rig.mass import GRAVITY
+
+Array = NDArray[np.float64]
+NODE_RATE = 80.0  # nodes per second
+UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
+GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
+LEAST_PHASE = 0.012  # seconds; shorter flights are left out: nobody sees them
+
+
+@dataclass(frozen=True, slots=True)
+class HeightPath:
+    """Piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second.
+
+    softened : whether legs reach farther or push harder there than they should, as in `qp.Solution`
+    """
+
+    times: Array
+    values: Array
+    slopes: Array
+    softened: bool = False
+
+    def at(self, times: Array) -> Array:
+        """Height (f,) at any times; a cubic through a parabola's points and slopes is that parabola."""
+        i = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
+        h = self.times[i + 1] - self.times[i]
+        s = np.clip((times - self.times[i]) / h, 0.0, 1.0)
+        a, b = self.values[i], self.values[i + 1]
+        u, v = self.slopes[i] * h, self.slopes[i + 1] * h
+        return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
+
+
+def height_path(
+    times: Array, wanted: Array, highest: Array, above: Array, flights: Array, body: BodySettings
+) -> HeightPath:
+    """Solve the programme.
+
+    Parameters
+    ----------
+    times : (n,) even; wanted, highest : (n,) metres at those times, the latter ignored in flight
+    above : (n,) metres, how far the centre of mass is over the pelvis, whose jerk on the ground is least
+    flights : (k, 2) of take-off and landing, seconds, in order; body : settings
+    """
+    flights = flights[(flights[:, 1] - flights[:, 0] > LEAST_PHASE)]
+    flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
+    flights = _apart(flights)
+    nodes, flying = _nodes(times[0], times[-1], flights)
+    inner = np.arange(1, len(nodes) - 1)
+    in_flight = flying[inner - 1] & flying[inner]
+    problem = _objective(
+        nodes, flying, in_flight, np.interp(nodes, times, wanted), np.interp(nodes, times, above), body
+    )
+    acceleration = _second(nodes) / GRAVITY
+    standing = ~in_flight
+    touching = (flying[inner - 1] | flying[inner])[standing]
+    n = int(standing.sum())
+    force = Limits(
+        inner[standing] - 1, acceleration[standing],
+        np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0), GIVE_FORCE,
+    )  # fmt: skip
+    ground = np.flatnonzero(~(np.concatenate(([True], flying)) & np.concatenate((flying, [True]))))
+    top = np.interp(nodes[ground], times, highest)
+    room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT, GIVE_ROOM)
+    solution = solve_surely(problem, [force, room], f"the height of her body {span(times)}")
+    return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
+
+
+def span(times: Array) -> str:
+    """The seconds from the first to the last of some times, for people."""
+    return f"from {times[0]:.1f} s to {times[-1]:.1f} s"
+
+
+def _apart(flights: Array) -> Array:
+    """Flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
+    keep, landed = [], -np.inf
+    for k, (start, end) in enumerate(flights):
+        if start - landed >= LEAST_PHASE:
+            keep.append(k)
+            landed = end
+    return np.asarray(flights[keep])
+
+
+def _nodes(start: float, end: float, flights: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Node times, and for each interval between nodes whether it is flight."""
+    times, flying = [np.array([start])], []
+    edges = [(a, b, fly) for pair in zip([start, *flights[:, 1]], [*flights[:, 0], end], strict=True) for a, b, fly in
+             [(pair[0], pair[1], False)]]  # fmt: skip
+    phases = sorted([*edges, *((a, b, True) for a, b in flights)])
+    for a, b, fly in phases:
+        count = max(3, int(np.ceil((b - a) * NODE_RATE)))
+        times.append(a + (b - a) * np.arange(1, count + 1) / count)
+        flying.append(np.full(count, fly))
+    return np.concatenate(times), np.concatenate(flying)
+
+
+def _second(t: Array) -> Array:
+    """Coefficients (n - 2, 3) of the second derivative at each inner node of an uneven grid."""
+    a, b = t[1:-1] - t[:-2], t[2:] - t[1:-1]
+    return np.stack((2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b))), axis=1)
+
+
+def _third(t: Array) -> Array:
+    """Coefficients (n - 3, 4) of the third derivative on four neighbouring nodes: 6 times the divided difference."""
+    x = np.stack([t[k : len(t) - 3 + k] for k in range(4)], axis=1)
+    out = np.empty_like(x)
+    for i in range(4):
+        out[:, i] = 6.0 / np.prod([x[:, i] - x[:, j] for j in range(4) if j != i], axis=0)
+    return out
+
+
+def _objective(
+    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wanted: Array, above: Array,
+    body: BodySettings,
+) -> BandedLeastSquares:  # fmt: skip
+    n = len(nodes)
+    problem = BandedLeastSquares(n, 1)
+    step = np.gradient(nodes) * NODE_RATE
+    ground = ~(np.concatenate(([False], flying)) | np.concatenate((flying, [False])))
+    problem.add(np.arange(n), np.full((n, 1), 1 / UNIT), np.where(ground, step, 1e-3), wanted[:, None] / UNIT)
+    inner = np.flatnonzero(in_flight)
+    fall = _second(nodes)[in_flight] / GRAVITY
+    problem.add(inner, fall, np.full(len(inner), 1e6), np.full((len(inner), 1), -1.0))
+    jerk = _third(nodes) * body.height_smooth**3 / UNIT
+    parts = np.stack([flying[k : n - 3 + k] for k in range(3)], axis=1)
+    weight = np.where(parts.any(axis=1), 0.02, 1.0) * np.where(parts.all(axis=1), 0.0, step[1:-2])
+    throws = sum(jerk[:, k] * above[k : n - 3 + k] for k in range(4))
+    problem.add(np.arange(n - 3), jerk, weight, np.asarray(throws)[:, None])
+    return problem
+
+
+def _slopes(t: Array, x: Array, flying: NDArray[np.bool_]) -> Array:
+    """Slopes at the nodes: of the parabola where one side is flight, else of the parabola through three nodes."""
+    h = np.diff(t)
+    rise = np.diff(x) / h
+    out = np.empty_like(x)
+    out[1:-1] = (rise[:-1] * h[1:] + rise[1:] * h[:-1]) / (h[:-1] + h[1:])
+    out[0], out[-1] = rise[0], rise[-1]
+    after, before = np.flatnonzero(flying), np.flatnonzero(flying) + 1
+    out[after] = rise[after] + GRAVITY * h[after] / 2  # at the start of a flight interval
+    out[before] = rise[before - 1] - GRAVITY * h[before - 1] / 2  # and at its end
+    return out

@@ -1,0 +1,1 @@
+"""Banded systems, quadratic programmes, smoothing and filters over time: no dancer in them."""

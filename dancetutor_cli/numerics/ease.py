@@ -1,0 +1,20 @@
+"""Easing: how far a move has come (0 to 1) at each part of its time (0 to 1). All accept arrays and clip outside."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def smooth(s: ArrayLike) -> Array:
+    """Slow in and out without a jump of the acceleration: 6s^5 - 15s^4 + 10s^3."""
+    s = np.clip(np.asarray(s, dtype=np.float64), 0.0, 1.0)
+    return np.asarray(s**3 * (10.0 + s * (6.0 * s - 15.0)))
+
+
+def cubic_out(s: ArrayLike) -> Array:
+    """Fast at first: 1 - (1 - s)^3."""
+    s = np.clip(np.asarray(s, dtype=np.float64), 0.0, 1.0)
+    return np.asarray(1.0 - (1.0 - s) ** 3)

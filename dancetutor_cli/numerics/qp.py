@@ -1,0 +1,203 @@
+"""Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
+
+Limits may give way at a price, so that one impossible place in a song does not leave it without a solution.
+Solved by an interior-point method (Mehrotra 1992); every step solves one banded system, so the cost is linear in the
+length of the song.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.numerics.banded import BandedLeastSquares, _factor, _solve_one
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-6
+ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of the second try, with limits that give way more
+SOFTER, SOFT = 100.0, 0.01  # how much more they give way then, and how much those do that did not
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """m limits  low <= sum_i coefficients_i x[start + i] <= high ; infinite sides are left out.
+
+    start : (m,); coefficients : (m, q), q at most the problem's reach; low, high : (m,)
+    give : a limit that is exceeded by e costs  e^2 / give , which is added to the sum; 0 for limits that hold
+    """
+
+    start: NDArray[np.int64]
+    coefficients: Array
+    low: Array
+    high: Array
+    give: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
+
+    softened : whether the limits had to give way more than was asked for, for there was no convergence without
+    """
+
+    x: Array
+    found: bool
+    rounds: int
+    softened: bool = False
+
+
+class ConvergenceError(DancetutorError):
+    """A programme has no solution that the method finds, even with limits that give way."""
+
+
+def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
+    """As `solve`, but what it returns is a minimum: once more with softer limits where the first try did not converge.
+
+    what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
+    """
+    found = solve(problem, limits)
+    if found.found:
+        return found
+    softer = [replace(part, give=max(SOFTER * part.give, SOFT)) for part in limits]
+    found = solve(problem, softer, MORE_ROUNDS)
+    if not (found.found and np.isfinite(found.x).all()):
+        raise ConvergenceError(f"{what} was not found in {found.rounds} rounds; choose another part with --section")
+    return replace(found, softened=True)
+
+
+def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
+    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
+
+    most : rounds after which it is given up, None for `ROUNDS`
+    """
+    if problem.right.shape[1] != 1:
+        raise ValueError("limits are for one path at a time")
+    nodes, reach = problem.bands.shape
+    starts, rows, highs, gives = [], [], [], []
+    for part in limits:
+        wide = np.zeros((len(part.start), reach))
+        wide[:, : part.coefficients.shape[1]] = part.coefficients
+        # rows near the end are moved forward, so that none reaches beyond the last node
+        start = np.minimum(part.start, nodes - reach)
+        for k in np.flatnonzero(start < part.start):
+            wide[k] = np.roll(wide[k], part.start[k] - start[k])
+        for sign, bound in ((1.0, part.high), (-1.0, -part.low)):
+            use = np.isfinite(bound)
+            starts.append(start[use])
+            rows.append(sign * wide[use])
+            highs.append(bound[use])
+            gives.append(np.full(len(highs[-1]), part.give))
+    every = np.concatenate(rows)
+    width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
+    stacked = np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives)
+    right = np.ascontiguousarray(problem.right[:, 0])
+    x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, most or ROUNDS)
+    return Solution(x, bool(found), int(rounds))
+
+
+@njit(cache=True)
+def _times_band(bands: Array, x: Array) -> Array:
+    n, reach = bands.shape
+    out = np.zeros(n)
+    for i in range(n):
+        out[i] += bands[i, 0] * x[i]
+        for k in range(1, min(reach, n - i)):
+            out[i] += bands[i, k] * x[i + k]
+            out[i + k] += bands[i, k] * x[i]
+    return out
+
+
+@njit(cache=True)
+def _times_rows(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, x: Array) -> Array:
+    out = np.zeros(len(start))
+    for r in range(len(start)):
+        total = 0.0
+        for i in range(width[r]):
+            total += rows[r, i] * x[start[r] + i]
+        out[r] = total
+    return out
+
+
+@njit(cache=True)
+def _add_transposed(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, z: Array, out: Array) -> None:
+    for r in range(len(start)):
+        for i in range(width[r]):
+            out[start[r] + i] += rows[r, i] * z[r]
+
+
+@njit(cache=True)
+def _longest_step(value: Array, change: Array) -> float:
+    step = 1.0
+    for i in range(len(value)):
+        if change[i] < 0.0:
+            step = min(step, -value[i] / change[i])
+    return step
+
+
+@njit(cache=True)
+def _direction(
+    factor: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, give: Array, dual: Array,
+    primal: Array, s: Array, z: Array, aim: Array,
+) -> tuple[Array, Array, Array]:  # fmt: skip
+    """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
+    right = -dual
+    for r in range(len(start)):
+        push = (aim[r] - s[r] * z[r] + z[r] * primal[r]) / (s[r] + give[r] * z[r])
+        for i in range(width[r]):
+            right[start[r] + i] -= rows[r, i] * push
+    dx = _solve_one(factor, right)
+    ds, dz = np.empty_like(s), np.empty_like(z)
+    for r in range(len(start)):
+        change = primal[r]
+        for i in range(width[r]):
+            change += rows[r, i] * dx[start[r] + i]
+        dz[r] = (aim[r] - s[r] * z[r] + z[r] * change) / (s[r] + give[r] * z[r])
+        ds[r] = give[r] * dz[r] - change
+    return dx, ds, dz
+
+
+@njit(cache=True)
+def _interior_point(
+    bands: Array, right: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, high: Array,
+    give: Array, tolerance: float, most: int,
+) -> tuple[Array, bool, int]:  # fmt: skip
+    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own."""
+    x = _solve_one(_factor(bands), right)
+    m = len(high)
+    if m == 0:
+        return x, True, 0
+    s = np.maximum(high - _times_rows(start, width, rows, x), 0.1)
+    z = np.full(m, 0.1)
+    scale = 1.0 + np.abs(right).max()
+    for turn in range(most):
+        dual = _times_band(bands, x) - right
+        _add_transposed(start, width, rows, z, dual)
+        primal = _times_rows(start, width, rows, x) + s - give * z - high
+        mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
+        if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
+            return x, True, turn
+        system = bands.copy()
+        for r in range(m):
+            w = z[r] / (s[r] + give[r] * z[r])
+            for i in range(width[r]):
+                weighted = w * rows[r, i]
+                if weighted != 0.0:  # in a programme of two coordinates every other one
+                    for j in range(i, width[r]):
+                        system[start[r] + i, j - i] += weighted * rows[r, j]
+        factor = _factor(system)
+        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, np.zeros(m))
+        ap, ad = _longest_step(s, ds), _longest_step(z, dz)
+        after = ((s + ap * ds) * (z + ad * dz)).sum() / m
+        centre = (after / mu) ** 3
+        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, centre * mu - ds * dz)
+        ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
+        if give.max() > 0.0:
+            ap = ad = min(ap, ad)
+        x += ap * dx
+        s += ap * ds
+        z += ad * dz
+    return x, False, most

@@ -1,0 +1,115 @@
+"""The body turns with the feet: not long before they leave the ground, and never far from a foot that stands."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.bake.bake import _may_rise
+from dancetutor_cli.motion.footwork.footing import FARTHEST_TURN, FREE_WINDOW, NO_TIME, Stance
+from dancetutor_cli.motion.footwork.jumps import fly
+from dancetutor_cli.motion.footwork.planner import LEAD, _turn_start
+from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.ik.targets import FROM_TOES, _knee_poles
+from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.plan import FootTrack, Plan, Swing
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
+from dancetutor_cli.motion.swing.timing import swung
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.play.model import Part
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.limits import beyond
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+
+@pytest.mark.parametrize("far", [60.0, 120.0, 180.0, 220.0])
+@pytest.mark.parametrize(("duration", "flight"), [(0.2, 0.155), (0.43, 0.24), (0.3, 0.27)])
+def test_a_body_that_turns_is_little_ahead_of_the_foot_that_turns_with_it(
+    far: float, duration: float, flight: float
+) -> None:
+    begin = _turn_start(10.0, duration, 10.0 - flight, far)
+    times = np.linspace(10.0 - duration, 10.0, 200)
+    body = far * smooth((times - begin) / (10.0 - begin))
+    foot = far * swung((times - 10.0 + flight) / flight)
+    assert (body - foot).max() <= LEAD + 3.0
+    assert begin >= 10.0 - duration
+
+
+def test_small_turns_begin_with_their_move() -> None:
+    assert _turn_start(10.0, 0.4, 9.64, 10.0) == 9.6
+
+
+@pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
+def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[float, float]) -> None:
+    stance = Stance(default_settings(), 0)
+    stance.normal = 180.0  # the play would have her face backward
+    for foot, yaw in zip(stance.feet, np.radians(yaws), strict=True):
+        foot.yaw = float(yaw)
+    body = stance.turned_to()
+    apart = abs(np.radians(yaws[0] - yaws[1])) / 2  # from feet that point so far apart it is in the middle
+    assert max(abs(body - foot.yaw) for foot in stance.feet) <= max(FARTHEST_TURN, apart) + 1e-9
+
+
+def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
+    """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
+    stance = Stance(default_settings(), 0)
+    goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in stance.feet]
+    fly(stance, 1.0, 1.24, goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    swing = stance.feet[0].swings[-1]
+    for share, least in ((0.1, 0.25), (0.2, 0.5)):
+        height = foot_path(stance.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        falling = swing.height * 4 * share * (1 - share)
+        assert height - falling >= least * swing.tuck
+
+
+def test_a_heel_does_not_drop_in_no_time() -> None:
+    """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
+    stance = Stance(default_settings(), 0)
+    foot = stance.feet[0]
+    for lift, land, kind in ((1.0, 1.2, "step"), (1.2 + FREE_WINDOW, 1.4, "pivot"), (1.41, 1.6, "step")):
+        foot.move(Swing(lift, land, (0.3, 0.1), 0.2, 0.05, (0.2, 0.4, 0.15, 0.0), kind=kind), foot.ball, foot.yaw)
+    times = np.linspace(1.19, 1.43, 2401)
+    path = foot_path(stance.tracks()[0], times, 0.09)
+    assert NO_TIME > 0.01
+    assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
+
+
+def test_knees_point_farther_outward_in_a_straddle() -> None:
+    """A leg that leans aside turns its knee out, but not much farther than its toes point."""
+    still = np.zeros(2)
+    yaws = {0: 0.2, 1: -0.2}
+    feet = [FootPath(np.zeros((2, 3)), np.full(2, yaw), still, np.ones(2, dtype=bool), still) for yaw in yaws.values()]
+    pelvis = np.tile([0.0, 0.85, 0.0], (2, 1))
+    ankles = np.array([[[0.10, 0.08, 0.0], [-0.10, 0.08, 0.0]], [[0.62, 0.08, 0.0], [-0.62, 0.08, 0.0]]])
+    poles = _knee_poles(still, (feet[0], feet[1]), pelvis, ankles)
+    aside = np.arctan2(poles[..., 0], poles[..., 2]) * [1.0, -1.0]  # outward, radians: (stand or straddle, side)
+    np.testing.assert_allclose(aside[:, 0], aside[:, 1], atol=1e-9)
+    assert (aside[1] > aside[0] + 0.15).all()
+    assert (aside[1] <= 0.2 + FROM_TOES + 1e-9).all()
+
+
+def test_an_ankle_is_eased_only_where_its_foot_is_high() -> None:
+    """A sole that is turned a finger above the ground would touch it too soon."""
+    skeleton = dancer_skeleton()
+    joint = skeleton.index("l_talocrural")
+    rotations = np.tile(quat.IDENTITY, (2, len(skeleton.names), 1))
+    rotations[:, joint] = quat.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.full(2, np.radians(-50.0)))
+    still, up = np.zeros(2), np.array([[0.0, 0.003, 0.0], [0.0, 0.05, 0.0]])
+    foot = FootPath(up, still, still, np.zeros(2, dtype=bool), still)
+    eased = rotations.copy()
+    ease_ankles(skeleton, eased, (foot, foot))
+    np.testing.assert_array_equal(eased[0], rotations[0])
+    assert beyond(skeleton, "l_talocrural", eased[1:, joint])[0] <= 0.0
+
+
+def test_a_heel_that_presses_does_not_rise_for_its_ankle() -> None:
+    contacts = (
+        Contact(2.0, 2.4, 0, 0, 1, Part.HEEL, 0, (0.28, 0.0)),
+        Contact(3.0, 3.4, 1, 3, 1, Part.WHOLE, 1, (-0.28, 0.0)),
+    )
+    track = FootTrack((0.0, 0.0), 0.0, ())
+    plan = Plan((track, track), (), (), contacts, (0.0, 0.0), 2.0, 3.4)
+    times = np.array([1.9, 2.0, 2.2, 2.4, 2.5, 3.1])
+    np.testing.assert_allclose(_may_rise(plan, times)[:, 0], [1, 0, 0, 0, 1, 1])
+    np.testing.assert_allclose(_may_rise(plan, times)[:, 1], 1.0)

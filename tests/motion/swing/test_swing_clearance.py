@@ -1,0 +1,109 @@
+"""Shoes keep clear of each other: where a foot lands beside the other one, and the way it takes around it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.motion.footwork.foothold import beside, pose
+from dancetutor_cli.motion.footwork.footing import Stance
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.swing.clearance import HALF_SHOE, SHARES, detour, over
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
+from dancetutor_cli.motion.swing.timing import swung, travelled
+
+APART = default_settings().step.apart
+
+
+def line_points(middle: np.ndarray, yaw: float) -> np.ndarray:
+    """Points (k, 2) along the middle line of a shoe, by brute force instead of the segments' formula."""
+    return middle + np.linspace(-HALF_SHOE, HALF_SHOE, 60)[:, None] * np.array([np.sin(yaw), np.cos(yaw)])
+
+
+def gap(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a[:, None] - b[None], axis=2).min())
+
+
+@pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
+def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
+    """The right foot lands on the panel on whose middle the left one stands."""
+    stance = Stance(default_settings(), 0)
+    panel = np.array([0.14, 0.0])
+    left, right = stance.feet
+    left.ball, left.yaw = ball_of(panel, yaw), yaw
+    ball, turned = beside(stance, panel, np.full(2, 0.116), right, left.ball, yaw, pose(stance, left))
+    shoes = [
+        line_points(middle_of(b, stance.toes(f, y)), stance.toes(f, y))
+        for f, b, y in ((left, left.ball, left.yaw), (right, ball, turned))
+    ]
+    assert gap(*shoes) >= APART - 1e-3
+    assert np.abs(ball - panel).max() <= HALF_PANEL
+
+
+@pytest.mark.parametrize("turned", [None, 0.6])
+def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
+    start, end, other, yaw = np.array([0.2, -0.25]), np.array([0.15, 0.3]), np.array([0.17, 0.02]), 0.1
+    to, pivot = yaw if turned is None else turned, ball_of(other, yaw)
+    now = yaw + swung(SHARES) * (to - yaw)
+    balls = ball_of(start, 0.0), ball_of(end, 0.2)
+    bulge = detour(balls[0], 0.0, balls[1], 0.2, pivot, now, APART, 1.0)
+    least = np.inf
+    for s in np.linspace(0.05, 0.95, 60):
+        share, aim = float(travelled(s)), yaw + float(swung(s)) * (to - yaw)
+        ball = balls[0] + share * (balls[1] - balls[0]) + np.sin(np.pi * share) * np.array(bulge)
+        own = float(swung(s)) * 0.2
+        shoes = line_points(middle_of(ball, own), own), line_points(middle_of(pivot, aim), aim)
+        least = min(least, gap(*shoes))
+    assert least >= APART - 0.004
+    assert np.linalg.norm(bulge) > 0.03  # straight through would hit it
+
+
+def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
+    stance = Stance(default_settings(), 0)
+    panel, neighbour = np.array([0.14, 0.0]), np.array([-0.14, 0.0])
+    stance.mined = neighbour[None]
+    left, right = stance.feet
+    right.ball = np.array([0.5, 0.3])
+    ball, yaw = beside(stance, panel, np.full(2, 0.1), left, np.array([0.05, 0.09]), 0.6, pose(stance, right))
+    toes = stance.toes(left, yaw)
+    heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
+    assert min(heel[0], ball[0]) > 0.03  # half a sole from the edge at x = 0
+    assert np.abs(ball - panel).max() <= 0.1 + 1e-9
+
+
+def test_a_heel_that_only_just_reaches_over_a_mine_counts() -> None:
+    """The corner of a panel under the middle of the heel, none of whose own corners is over the panel."""
+    ball, toes = np.array([-0.187, 0.0]), np.radians(-24.0)
+    assert over(np.array([[0.0, -0.28]]), ball[None], np.array([toes]))[0]
+    assert not over(np.array([[0.0, -0.28]]), ball[None] - [0.08, 0.0], np.array([toes]))[0]
+
+
+def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
+    """Its heel swings past the middle of the other shoe, which lies across behind it."""
+    place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
+    bulge = detour(place, -turn, place, turn, other, aim, APART, 1.0)
+
+    def least(aside: tuple[float, float]) -> float:
+        gaps = []
+        for s in SHARES:
+            e, yaw = float(travelled(s)), -turn + float(swung(s)) * 2 * turn
+            ball = place + np.sin(np.pi * e) * np.array(aside)
+            shoes = line_points(middle_of(ball, yaw), yaw), line_points(middle_of(other, aim), aim)
+            gaps.append(gap(*shoes))
+        return min(gaps)
+
+    assert least((0.0, 0.0)) < APART - 0.01
+    assert least(bulge) >= APART - 2e-3
+
+
+def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
+    """Its toes on the left panel; turned to the front its heel would lie on the down panel, which has a mine."""
+    stance = Stance(default_settings(), 0)
+    left = stance.feet[0]
+    left.ball, left.yaw = np.array([0.187, -0.046]), float(np.radians(65.0))
+    far = np.array([-0.2, 0.1])
+    free = stance.pivot_yaw(left, 0.0, far, 0.0)
+    stance.mined = np.array([[0.0, -0.28]])
+    kept = stance.pivot_yaw(left, 0.0, far, 0.0)
+    assert over(stance.mined, left.ball[None], np.array([stance.toes(left, free)]))[0]
+    assert not over(stance.mined, left.ball[None], np.array([stance.toes(left, kept)]))[0]
