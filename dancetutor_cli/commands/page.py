@@ -27,6 +27,11 @@ SUFFIXES = (".html", ".htm")
 @click.option("--music", is_flag=True, help="Put the song's music into the page; otherwise it asks for the file.")
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
+@click.option(
+    "--beside",
+    metavar="next|PRESET|FILE.json",
+    help="A second dancer beside her: the next best play, another preset's, or one of a JSON file.",
+)
 @gait_option
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
@@ -37,7 +42,7 @@ SUFFIXES = (".html", ".htm")
 @preset_option
 def command(
     path: Path, output: Path | None, music: bool, play_file: Path | None, bar: bool, gait: str, jobs: int, quiet: bool,
-    character: str, preset: str, **selection: Any,
+    beside: str | None, character: str, preset: str | None, **selection: Any,
 ) -> None:  # fmt: skip
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
@@ -47,6 +52,7 @@ def command(
     from dancetutor_cli.files import write_atomic
     from dancetutor_cli.jobs.bake import BakeTask
     from dancetutor_cli.jobs.page import PageTask, make_page
+    from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.library import one_song
     from dancetutor_cli.reports.safe import safe
 
@@ -55,8 +61,8 @@ def command(
     file = one_song(path)
     bake = BakeTask(file, Selection(**selection), preset, play_file=play_file, bar=bar, gait=gait, jobs=jobs)
     if not quiet:
-        tell_of_compiling(preset)
-    page = make_page(PageTask(bake, character, music))
+        tell_of_compiling(choice_for(file, preset))
+    page = make_page(PageTask(bake, character, music, beside))
     target = output or Path(_default_name(page.title, page.label))
     check_file(target, SUFFIXES)
     write_atomic(target, page.html)

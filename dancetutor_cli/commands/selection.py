@@ -57,8 +57,8 @@ def section_option(command: _Command) -> _Command:
     option = click.option(
         "--section",
         metavar="START:END",
-        help="Only this part: seconds (10:25), beats (b16:b48), measures (m4:m12), or what is around the third "
-        "finding of a rule (DT201:3).",
+        help="Only this part: seconds (10:25), beats (b16:b48), measures (m4:m12), what is around the third "
+        "finding of a rule (DT201:3), or the third hardest passage (hardest:3).",
     )
     return option(command)
 

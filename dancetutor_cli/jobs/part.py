@@ -14,13 +14,14 @@ if TYPE_CHECKING:
 SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
 AROUND = 8  # beats before and after a finding
 _FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
+_HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 
 
 def check_part(text: str) -> None:
     """UsageError for what is no part of any chart: so that a slip is told before a chart is read."""
     from dancetutor_cli.chart.section import check_section
 
-    if not _FINDING.fullmatch(text):
+    if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
         check_section(text)
 
 
@@ -29,7 +30,8 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
 
     Parameters
     ----------
-    text : START:END in seconds, beats or measures (`chart.section`), or RULE:N, four measures around the N-th finding
+    text : START:END in seconds, beats or measures (`chart.section`); RULE:N, four measures around the N-th finding; or
+        hardest:N, the N-th hardest passage (`lint.passages`)
     preset : with which the feet are found that the finding is about
     end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
     """
@@ -38,7 +40,22 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
     if match := _FINDING.fullmatch(text):
         first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
         return max(0.0, first), min(end, last)
+    if match := _HARDEST.fullmatch(text):
+        first, last = _hardest(song, chart, preset, int(match[1]))
+        return first, min(end, last)
     return parse_section(text, chart.timing, end)
+
+
+def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[float, float]:
+    from dancetutor_cli.jobs.feet import solve_with_feet
+    from dancetutor_cli.lint.passages import hardest
+
+    play, _ = solve_with_feet(song, chart, preset)
+    found = () if play is None else hardest(play, chart.timing)
+    if not 1 <= number <= len(found):
+        many = f"{len(found)} passage{'' if len(found) == 1 else 's'}"
+        raise UsageError(f"section hardest:{number}: the chart has {many} harder than the rest of it")
+    return max(0.0, found[number - 1].start), found[number - 1].end
 
 
 def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:

@@ -1,0 +1,212 @@
+"""The hardest passages of a chart: where the feet have most to do, read from the solver's play alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.play.model import Limb, Play, StepKind
+from dancetutor_cli.resources import config_path
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+
+_CROSSED = ("crossover-half", "crossover-full")
+_SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
+_SHORTEST = 0.12  # seconds: a measure that warps leave less of has no speed anyone could play
+
+
+@dataclass(frozen=True, slots=True)
+class PassageSettings:
+    """configs/passages.yaml. What a row weighs is `step` and the rest of what it is; a passage is `measures` long."""
+
+    measures: int
+    most: int
+    harder: float
+    close: float
+    step: float
+    jump: float
+    bracket: float
+    hand: float
+    crossover: float
+    spin: float
+    footswitch: float
+    doublestep: float
+    jack: float
+    turn: float
+    unsure: float
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """One passage: measures `first` to `last`, from `start` to `end` seconds.
+
+    score : weight of its rows a second; rate : rows a second; steps : rows
+    crossovers : how often the left and the right foot cross over; turn : the farthest she faces away, degrees
+    spins, brackets, footswitches, doublesteps, jacks, jumps, hands : rows with such a move
+    stream : rows in streams; unsure : rows in which the other foot is nearly as good
+    """
+
+    first: int
+    last: int
+    start: float
+    end: float
+    score: float
+    rate: float
+    steps: int
+    crossovers: tuple[int, int]
+    turn: float
+    spins: int
+    brackets: int
+    footswitches: int
+    doublesteps: int
+    jacks: int
+    jumps: int
+    hands: int
+    stream: int
+    unsure: int
+
+
+@cache
+def passage_settings() -> PassageSettings:
+    """The numbers of configs/passages.yaml; FileError says what is wrong with them."""
+    from dancetutor_cli.errors import FileError
+    from dancetutor_cli.marked_yaml import read
+
+    path = config_path("passages.yaml")
+    source = read(path)
+    names = {field.name: field.type for field in fields(PassageSettings)}
+    source.only((), tuple(names))
+    values: dict[str, float] = {}
+    for name in names:
+        value = source.data.get(name)
+        if isinstance(value, bool) or not isinstance(value, int | float) or value < 0:
+            raise FileError(path, f"'{name}' must be a number, 0 or more")
+        values[name] = int(value) if names[name] == "int" else float(value)
+    return PassageSettings(**values)  # type: ignore[arg-type]
+
+
+def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None) -> tuple[Passage, ...]:
+    """The hardest passages, the hardest first; none overlap, none for a chart without steps.
+
+    Passages begin with a measure. Each is as many measures as the settings say (fewer at the chart's end), and its rows
+    weigh more a second than `harder` times the chart's mean.
+    """
+    settings = settings or passage_settings()
+    stepped = _seen(play)
+    rows = np.flatnonzero(stepped.any(axis=1))
+    if not len(rows):
+        return ()
+    weight = _weights(play, rows, stepped, settings)
+    measure = play.rows.tick[rows] // TICKS_PER_MEASURE
+    per_measure = np.bincount(measure - measure[0], weights=weight)
+    ticks = (measure[0] + np.arange(len(per_measure) + 1)) * TICKS_PER_MEASURE
+    edges = np.asarray(timing.seconds(ticks), dtype=np.float64)
+    length = min(settings.measures, len(per_measure))
+    totals = np.convolve(per_measure, np.ones(length), "valid")
+    spans = edges[length:] - edges[:-length]
+    scores = np.where(spans > _SHORTEST, totals / np.maximum(spans, _SHORTEST), 0.0)
+    least = settings.harder * per_measure.sum() / max(edges[-1] - edges[0], _SHORTEST)
+    out: list[Passage] = []
+    taken = np.zeros(len(per_measure), dtype=bool)
+    for at in np.argsort(-scores, kind="stable").tolist():
+        if len(out) == settings.most or scores[at] < least or scores[at] <= 0:
+            break
+        if taken[at : at + length].any():
+            continue
+        taken[at : at + length] = True
+        inside = rows[(measure - measure[0] >= at) & (measure - measure[0] < at + length)]
+        first = int(measure[0]) + at
+        span = (float(edges[at]), float(edges[at + length]))
+        out.append(_passage(play, inside, stepped, first, first + length, span, float(scores[at]), settings))
+    return tuple(out)
+
+
+def _seen(play: Play) -> NDArray[np.bool_]:
+    """Which cells (n, c) a person sees a step in: not the virtual taps of rolls."""
+    steps = play.rows.steps
+    return np.asarray((steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
+
+
+def _marks(play: Play, rows: NDArray[np.int64], names: tuple[str, ...]) -> NDArray[np.bool_]:
+    """Which of the rows have one of these moves."""
+    return np.array([any(name in play.moves[row] for name in names) for row in rows.tolist()], dtype=bool)
+
+
+def _begins(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where a run of marked rows begins: feet that stay crossed cross over once."""
+    return np.asarray(marked & ~np.concatenate([[False], marked[:-1]]))
+
+
+def _turned(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """How far she turns into each row, degrees."""
+    facing = play.facing[rows]
+    change = np.abs(np.diff(facing, prepend=facing[:1]))
+    return np.asarray(np.minimum(change, 360.0 - np.minimum(change, 360.0)))
+
+
+def _unsure(play: Play, rows: NDArray[np.int64], close: float) -> NDArray[np.bool_]:
+    """Rows whose best play with other limbs costs hardly more, of those that could be stepped otherwise."""
+    if play.margin is None:
+        return np.zeros(len(rows), dtype=bool)
+    mean = max(float(play.cost.sum()) / max(len(play.rows), 1), 1.0)
+    margin = play.margin[rows]
+    return np.asarray((margin >= 0) & (margin <= close * mean))
+
+
+def _weights(
+    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], settings: PassageSettings
+) -> NDArray[np.float64]:
+    out = np.full(len(rows), settings.step)
+    for share, names in (
+        (settings.bracket, ("bracket",)),
+        (settings.hand, ("hand",)),
+        (settings.spin, ("spin",)),
+        (settings.footswitch, _SWITCHES),
+        (settings.doublestep, ("doublestep",)),
+        (settings.jack, ("jack",)),
+    ):
+        out += share * _marks(play, rows, names)
+    out += settings.crossover * _begins(_marks(play, rows, _CROSSED))
+    out += settings.jump * ((stepped[rows].sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",)))
+    out += settings.turn * _turned(play, rows) / 90.0
+    return np.asarray(out + settings.unsure * _unsure(play, rows, settings.close))
+
+
+def _passage(
+    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], first: int, last: int,
+    span: tuple[float, float], score: float, settings: PassageSettings,
+) -> Passage:  # fmt: skip
+    def count(*names: str) -> int:
+        return int(_marks(play, rows, names).sum())
+
+    start, end = span
+    crossing = rows[_begins(_marks(play, rows, _CROSSED))]
+    limbs = play.limb[crossing]
+    by = [int((limbs == limb).any(axis=1).sum()) for limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+    two = (stepped[rows].sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",))
+    return Passage(
+        first=first,
+        last=last,
+        start=start,
+        end=end,
+        score=score,
+        rate=len(rows) / (end - start),
+        steps=len(rows),
+        crossovers=(by[0], by[1]),
+        turn=float(np.abs(play.facing[rows]).max(initial=0.0)),
+        spins=count("spin"),
+        brackets=count("bracket"),
+        footswitches=count(*_SWITCHES),
+        doublesteps=count("doublestep"),
+        jacks=count("jack"),
+        jumps=int(two.sum()),
+        hands=count("hand"),
+        stream=count("stream"),
+        unsure=int(_unsure(play, rows, settings.close).sum()),
+    )

@@ -1,0 +1,101 @@
+"""The hardest passages: what the practice page lists and `--section hardest:1` means."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli import chart as charts
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.feet import solve_with_feet
+from dancetutor_cli.jobs.part import check_part, part_of
+from dancetutor_cli.lint.passages import Passage, hardest, passage_settings
+from dancetutor_cli.page.document import languages
+from dancetutor_cli.page.sentences import sentence
+from dancetutor_cli.play import Play, load_preset
+from dancetutor_cli.resources import charts_path
+
+DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+
+
+@pytest.fixture(scope="module")
+def song() -> charts.Song:
+    return charts.load(DEMO)
+
+
+def played(song: charts.Song, index: int = 3) -> Play:
+    play, _ = solve_with_feet(song, song.charts[index], load_preset("itg"))
+    assert play is not None
+    return play
+
+
+def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: charts.Song) -> None:
+    found = hardest(played(song), song.charts[3].timing)
+    first = found[0]
+    assert first.first <= 11 < first.last  # the spin and the doublestep are in measures 11 and 12
+    assert first.spins == 1 and first.doublesteps == 1 and sum(first.crossovers) >= 1
+    assert [one.score for one in found] == sorted((one.score for one in found), reverse=True)
+
+
+@pytest.mark.parametrize("index", range(6))
+def test_passages_keep_apart_and_lie_on_measures(song: charts.Song, index: int) -> None:
+    chart = song.charts[index]
+    found = hardest(played(song, index), chart.timing)
+    assert len(found) <= passage_settings().most
+    taken: set[int] = set()
+    for one in found:
+        mine = set(range(one.first, one.last))
+        assert not mine & taken
+        taken |= mine
+        ends = chart.timing.seconds_of_beats(np.array([4.0 * one.first, 4.0 * one.last]))
+        assert (one.start, one.end) == pytest.approx(tuple(ends))
+        assert one.rate == pytest.approx(one.steps / (one.end - one.start))
+
+
+def test_a_harder_move_makes_a_passage_harder(song: charts.Song) -> None:
+    play, timing = played(song), song.charts[3].timing
+    settings = passage_settings()
+    before = hardest(play, timing, settings)[0].score
+    assert hardest(play, timing, replace(settings, spin=settings.spin + 7.5))[0].score == pytest.approx(before + 1.0)
+
+
+def test_nothing_stands_out_where_all_is_alike(song: charts.Song) -> None:
+    play = played(song)
+    assert hardest(play, song.charts[3].timing, replace(passage_settings(), harder=50.0)) == ()
+
+
+def test_a_section_can_be_the_hardest_passage(song: charts.Song) -> None:
+    chart = song.charts[3]
+    found = hardest(played(song), chart.timing)
+    check_part("hardest:1")
+    part = part_of("Hardest:2", song, chart, load_preset("itg"), 60.0)
+    assert part == (found[1].start, found[1].end)
+    with pytest.raises(UsageError, match=rf"section hardest:99: the chart has {len(found)} passages"):
+        part_of("hardest:99", song, chart, load_preset("itg"), 60.0)
+    with pytest.raises(UsageError, match="cannot be read"):
+        check_part("hardest:x")
+
+
+def test_sentences_tell_what_the_feet_do() -> None:
+    passage = Passage(8, 12, 1.0, 9.0, 5.0, 4.0, 32, (2, 0), 135.0, 0, 1, 0, 0, 0, 3, 0, 0, 1)
+    assert sentence(passage, languages()["en"]) == (
+        "32 steps, the left foot crosses over 2 times, a foot takes two panels at once once, both feet jump 3 times, "
+        "she turns up to 135°, in one row the other foot is nearly as good."
+    )
+    assert "der linke Fuß kreuzt 2-mal" in sentence(passage, languages()["de"])
+
+
+def test_wrong_settings_are_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "passages.yaml"
+    path.write_text("measures: -1\n")
+    monkeypatch.setattr("dancetutor_cli.lint.passages.config_path", lambda name: path)
+    passage_settings.cache_clear()
+    try:
+        with pytest.raises(Exception, match=r"passages.yaml.*'measures' must be a number"):
+            passage_settings()
+    finally:
+        monkeypatch.undo()
+        passage_settings.cache_clear()
