@@ -14,6 +14,7 @@ from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
     gait_option,
+    motion_option,
     number,
     preset_option,
     section_option,
@@ -67,6 +68,7 @@ _FILE = click.Path(path_type=Path)
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @gait_option
+@motion_option
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
 )
@@ -75,7 +77,7 @@ _FILE = click.Path(path_type=Path)
 @preset_option
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
-    gait: str, jobs: int,
+    gait: str, motion: Path | None, jobs: int,
     report_to: str | None, plot: Path | None, character: str, preset: str | None, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
@@ -98,7 +100,9 @@ def command(
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(character)
-    task = BakeTask(one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs)
+    task = BakeTask(
+        one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs, motion
+    )  # fmt: skip
     tell_of_compiling(choice_for(task.path, preset))
     asked = ask(task)
     for note in asked.notes:

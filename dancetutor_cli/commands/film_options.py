@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import Selection, character_option, gait_option, number, section_option
+from dancetutor_cli.commands.selection import (
+    Selection,
+    character_option,
+    gait_option,
+    motion_option,
+    number,
+    section_option,
+)
 from dancetutor_cli.video.sides import LEAST_SIDE, MOST_SIDE
 
 if TYPE_CHECKING:
@@ -49,6 +56,7 @@ _OPTIONS = (
     character_option,
     click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
     gait_option,
+    motion_option,
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -148,6 +156,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         character=check_character(options["character"]),
         bar=options["bar"],
         gait=options["gait"],
+        motion=options["motion"],
     )
 
 

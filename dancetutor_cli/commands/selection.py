@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -13,6 +14,7 @@ __all__ = [
     "Selection",
     "character_option",
     "gait_option",
+    "motion_option",
     "number",
     "preset_option",
     "section_option",
@@ -79,9 +81,20 @@ def gait_option(command: _Command) -> _Command:
     """Add --gait; the function gets keyword argument `gait`."""
     option = click.option(
         "--gait",
-        type=click.Choice(("flat", "heels")),
         default="flat",
         show_default=True,
-        help="How she walks on and off: in flat shoes, or as in high heels.",
+        metavar="NAME|FILE",
+        help="How she walks on and off: flat, heels, or a file as those in configs/gaits.",
+    )
+    return option(command)
+
+
+def motion_option(command: _Command) -> _Command:
+    """Add --motion; the function gets keyword argument `motion`, to be given to `motion.settings.load_settings`."""
+    option = click.option(
+        "--motion",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="How she moves: a YAML file that names the numbers of configs/motion.yaml that it changes.",
     )
     return option(command)

@@ -31,7 +31,8 @@ class BakeTask:
     preset : name or file of the solver's costs, None: what `jobs.presets` finds for the chart
     play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
-    bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
+    bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
+    motion : file with numbers of the motion that are other than those of configs/motion.yaml
     jobs : processes among which the pieces of a long song are shared
     """
 
@@ -45,6 +46,7 @@ class BakeTask:
     bar: bool = False
     gait: str = "flat"
     jobs: int = 1
+    motion: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,7 @@ def ask(task: BakeTask) -> Asked:
     from dancetutor_cli import chart as charts
     from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
 
+    check_motion(task.motion, task.gait)
     if task.section is not None:
         check_part(task.section)
     choice = choice_for(task.path, task.preset)
@@ -85,6 +88,15 @@ def ask(task: BakeTask) -> Asked:
     return Asked(song, chart, at_rate(play, task.rate), pad, section, notes)
 
 
+def check_motion(motion: Path | None, gait: str) -> None:
+    """Say what is wrong with a file of motion or with a gait: FileError or UsageError, before the work."""
+    from dancetutor_cli.motion.gait import load_gait
+    from dancetutor_cli.motion.settings import load_settings
+
+    load_settings(motion)
+    load_gait(gait)
+
+
 def at_rate(play: Play, rate: float) -> Play:
     """A play whose seconds are those of the music as it is heard at a rate: at half speed notes come twice as late."""
     return replace(play, rows=replace(play.rows, second=play.rows.second / rate))
@@ -93,6 +105,7 @@ def at_rate(play: Play, rate: float) -> Play:
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
     """The motion; times are seconds of the music as it is played, at the task's rate."""
     from dancetutor_cli.bake import bake
+    from dancetutor_cli.motion.settings import load_settings
 
     return bake(
         asked.chart,
@@ -103,6 +116,7 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
         rate=task.rate,
         bar=task.bar,
         gait=task.gait,
+        settings=load_settings(task.motion),
         each=partial(_shared, task.jobs),
     )
 
@@ -137,8 +151,10 @@ def _piece(_: object, function: Callable[[Piece], Done], piece: Piece) -> Done:
 def plan_asked(asked: Asked, task: BakeTask) -> Plan:
     """Only the moves."""
     from dancetutor_cli.bake import plan_of
+    from dancetutor_cli.motion.settings import load_settings
 
-    return plan_of(asked.chart, asked.play, asked.pad, rate=task.rate, bar=task.bar, gait=task.gait)
+    settings = load_settings(task.motion)
+    return plan_of(asked.chart, asked.play, asked.pad, settings, rate=task.rate, bar=task.bar, gait=task.gait)
 
 
 def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Play, Pad]:

@@ -30,6 +30,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         "selection": subject.chart.index,  # however it was chosen
         "preset": _plain(subject.preset),  # whoever chose it, with all that it extends
         "character": _character(request.character),
+        "gait": _gait(request.gait),
         "feet": feet_fingerprint(request.path),
         "findings": _findings(request.path),
         "music": None if subject.music is None else file_hash(subject.music),
@@ -57,6 +58,13 @@ def _character(name: str) -> str:
     from dancetutor_cli.character import BUILT_IN
 
     return name if name in BUILT_IN else file_hash(Path(name))
+
+
+def _gait(name: str) -> str:
+    """The content of a gait's file; those by name are part of the program."""
+    from dancetutor_cli.motion.gait import gait_names
+
+    return name if name in gait_names() else file_hash(Path(name))
 
 
 def _findings(path: Path) -> str:

@@ -243,6 +243,7 @@ def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[f
         return {}
     from dancetutor_cli.bake import bake
     from dancetutor_cli.jobs.bake import at_rate
+    from dancetutor_cli.motion.settings import load_settings
 
     passes = subject.clock.passes
     return {
@@ -255,6 +256,7 @@ def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[f
             rate=rate,
             bar=request.bar,
             gait=request.gait,
+            settings=load_settings(request.motion),
         )
         for rate in sorted({one.rate for one in passes})
     }

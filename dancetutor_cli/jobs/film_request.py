@@ -46,7 +46,8 @@ class Request:
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
-    bar : she holds the bar behind the pad; gait : how she walks on and off, "flat" or "heels"
+    bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
+    motion : file with numbers of the motion that are other than those of configs/motion.yaml
     sync : seconds by which the music plays late against the notes
     """
 
@@ -63,6 +64,7 @@ class Request:
     character: str = "dancer"
     bar: bool = False
     gait: str = "flat"
+    motion: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +97,10 @@ def look_up(request: Request) -> Subject:
     from dancetutor_cli import chart as charts
     from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
 
+    if request.look.layout.dancer is not None:
+        from dancetutor_cli.jobs.bake import check_motion
+
+        check_motion(request.motion, request.gait)
     if request.section is not None:
         check_part(request.section)
     choice = choice_for(request.path, request.preset)

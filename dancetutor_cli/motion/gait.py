@@ -8,13 +8,18 @@ seconds (the blog of the project's sources), so feet that land at one normalised
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.errors import UsageError, did_you_mean
+from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.motion.plan import Plan, Walk
-from dancetutor_cli.motion.settings import Gait, MotionSettings
+from dancetutor_cli.motion.settings import numbers
 from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.resources import config_path
 from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]
@@ -24,6 +29,24 @@ HALF_HIPS = 0.088  # metres from the middle of the pelvis to a hip
 HANDS_BACK = 0.06  # metres that hands hang farther back than in a dance
 FADE = 0.45  # seconds over which standing becomes walking and walking standing
 GAZE_AHEAD = 0.35  # seconds by which the gaze is ahead of the walk
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """A way to walk: a cycle of two steps, from one landing of the left foot to the next; see `configs/gaits`."""
+
+    period: float
+    stride: float
+    height: float
+    push_pitch: float
+    heel_pitch: float
+    hip_drop: float
+    pelvis_yaw: float
+    chest_yaw: float
+    hips: float
+    arch: float
+    arms: float
+    plant: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,14 +103,27 @@ def blended(slow: Gait, quick: Gait, share: float) -> Gait:
     return Gait(**{name: (getattr(quick, name) - value) * share + value for name, value in values.items()})
 
 
-def gaits_of(name: str, settings: MotionSettings) -> tuple[Gait, Gait]:
-    """The slow and the quick gait of a way to walk, "flat" or "heels"."""
-    if name == "heels":
-        return settings.heels_stroll, settings.heels_brisk
-    return settings.stroll, settings.brisk
+def gait_names() -> list[str]:
+    """The gaits that the program comes with."""
+    return sorted(path.stem for path in config_path("gaits").glob("*.yaml"))
 
 
-def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> GaitPose | None:
+@cache
+def load_gait(name: str) -> tuple[Gait, Gait]:
+    """The slow and the quick form of a gait: one of `configs/gaits` by name, or a file.
+
+    Raises UsageError for a name that there is not, FileError with the line for a file that is wrong.
+    """
+    path = config_path(f"gaits/{name}.yaml") if name in gait_names() else Path(name)
+    if path.suffix.lower() not in (".yaml", ".yml") and not path.is_file():
+        near = did_you_mean(name, gait_names())
+        raise UsageError(f"there is no gait '{name}'{near}; there are: {', '.join(gait_names())}, or give a .yaml file")
+    source = read(path)
+    source.only((), ("slow", "quick"))
+    return numbers(source, "slow", Gait), numbers(source, "quick", Gait)
+
+
+def walking(walks: tuple[Walk, ...], times: Array) -> GaitPose | None:
     """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
     total: GaitPose | None = None
     for walk in walks:
@@ -100,7 +136,7 @@ def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> 
         first = 0.5 if walk.first == 1 else 1.0
         phases = first + np.array([STANCE - 1.0, *(0.5 * np.arange(len(walk.landings)))])
         phase = np.interp(times[near], landings, phases)
-        pose = blended_pose(*gaits_of(walk.gait, settings), walk.share, phase)
+        pose = blended_pose(*load_gait(walk.gait), walk.share, phase)
         total = total or _standing_pose(len(times))
         for f in fields(GaitPose):
             value = getattr(pose, f.name)
@@ -108,10 +144,10 @@ def walking(walks: tuple[Walk, ...], times: Array, settings: MotionSettings) -> 
     return total
 
 
-def gaze_ahead(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+def gaze_ahead(plan: Plan, times: Array) -> Array:
     """How much (f,) of her look is where she goes and not at the screen: on her way to the pad and from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
-    gait = walking(walks, times + GAZE_AHEAD, settings)
+    gait = walking(walks, times + GAZE_AHEAD)
     return np.zeros(len(times)) if gait is None else gait.own
 
 

@@ -199,24 +199,6 @@ class AsideSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Gait:
-    """A way to walk: a cycle of two steps, from one landing of the left foot to the next."""
-
-    period: float
-    stride: float
-    height: float
-    push_pitch: float
-    heel_pitch: float
-    hip_drop: float
-    pelvis_yaw: float
-    chest_yaw: float
-    hips: float
-    arch: float
-    arms: float
-    plant: float
-
-
-@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 

@@ -1,19 +1,17 @@
-"""The numbers of the motion: read from `configs/motion.yaml`, checked, and given names."""
+"""The numbers of the motion: read from `configs/motion.yaml` and from a file of changes, checked, and given names."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.marked_yaml import read
+from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.motion.sections import (
     ArmSettings,
     AsideSettings,
     BodySettings,
-    Gait,
     HairSettings,
     HandSettings,
     InertiaSettings,
@@ -27,12 +25,18 @@ from dancetutor_cli.motion.sections import (
 )
 from dancetutor_cli.resources import config_path
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    Kind = TypeVar("Kind", bound=DataclassInstance)
+else:
+    Kind = TypeVar("Kind")
+
 __all__ = [
     "ArmSettings",
     "AsideSettings",
     "BarSettings",
     "BodySettings",
-    "Gait",
     "HairSettings",
     "HandSettings",
     "InertiaSettings",
@@ -46,6 +50,7 @@ __all__ = [
     "WalkSettings",
     "default_settings",
     "load_settings",
+    "numbers",
 ]
 
 
@@ -86,48 +91,51 @@ class MotionSettings:
     bar: BarSettings
     walk: WalkSettings
     aside: AsideSettings
-    stroll: Gait
-    brisk: Gait
-    heels_stroll: Gait
-    heels_brisk: Gait
     sampling: SamplingSettings
 
 
 _SECTIONS: dict[str, type[Any]] = get_type_hints(MotionSettings)
+LARGEST = 1000
 
 
-def load_settings(path: Path) -> MotionSettings:
-    """Read and check a motion file. Raises FileError naming the file, the place and the names that exist."""
-    data = read(path).data
-    _check_names(path, "", data, list(_SECTIONS))
-    sections = {name: _section(path, name, kind, data[name]) for name, kind in _SECTIONS.items()}
-    return MotionSettings(**sections)
+def load_settings(path: Path | None = None) -> MotionSettings:
+    """The numbers of `configs/motion.yaml`, with those on top that another file names.
+
+    Raises FileError naming the file, the line and the names that exist.
+    """
+    base = default_settings()
+    if path is None:
+        return base
+    source = read(path)
+    source.only((), list(_SECTIONS))
+    changed = {name: numbers(source, name, type(getattr(base, name)), getattr(base, name)) for name in source.data}
+    return replace(base, **changed)
+
+
+def numbers(source: MarkedYaml, name: str, kind: type[Kind], base: Kind | None = None) -> Kind:
+    """The section `name` of a file as a dataclass of numbers; what it does not name is that of `base`.
+
+    Raises FileError with the line: for a name that there is not, no number, or one missing without a base.
+    """
+    known = [field.name for field in fields(kind)]
+    if name not in source.data:
+        raise source.error((), f"'{name}' is missing")
+    source.only((name,), known)
+    given = source.data[name]
+    for key, value in given.items():
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise source.error((name, key), f"{name}.{key} must be a number, not {value!r}")
+        if not 0 <= value <= LARGEST:
+            raise source.error((name, key), f"{name}.{key} must be between 0 and {LARGEST}, not {value}")
+    lacking = [key for key in known if key not in given]
+    if base is None and lacking:
+        raise source.error((name,), f"{name}.{lacking[0]} is missing")
+    return kind(**{key: float(given[key]) if key in given else getattr(base, key) for key in known})
 
 
 @cache
 def default_settings() -> MotionSettings:
     """The settings that the program comes with."""
-    return load_settings(config_path("motion.yaml"))
-
-
-def _section(path: Path, name: str, kind: type[Any], data: object) -> Any:
-    names = [f.name for f in fields(kind)]
-    _check_names(path, f"{name}.", data, names)
-    assert isinstance(data, dict)
-    for key, value in data.items():
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise FileError(path, f"{name}.{key} must be a number, not {value!r}")
-        if not 0 <= value <= 1000:
-            raise FileError(path, f"{name}.{key} must be between 0 and 1000, not {value}")
-    return kind(**{key: float(value) for key, value in data.items()})
-
-
-def _check_names(path: Path, prefix: str, data: object, names: list[str]) -> None:
-    if not isinstance(data, dict):
-        raise FileError(path, f"{prefix.rstrip('.') or 'the file'} must hold the names {', '.join(names)}")
-    for key in data:
-        if key not in names:
-            raise FileError(path, f"there is no {prefix}{key}; there are {', '.join(names)}")
-    for key in names:
-        if key not in data:
-            raise FileError(path, f"{prefix}{key} is missing")
+    source = read(config_path("motion.yaml"))
+    source.only((), list(_SECTIONS))
+    return MotionSettings(**{name: numbers(source, name, kind) for name, kind in _SECTIONS.items()})

@@ -8,10 +8,9 @@ from bake_plays import L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.chart import load
-from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, walking
+from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, load_gait, walking
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.resources import charts_path
@@ -82,8 +81,7 @@ def test_without_time_she_stands_there() -> None:
 
 
 def test_both_gaits_are_blended_at_one_normalised_time() -> None:
-    settings = default_settings()
-    slow, quick = settings.stroll, settings.brisk
+    slow, quick = load_gait("flat")
     phase = np.linspace(0.0, 2.0, 41)
     for share in (0.0, 0.3, 1.0):
         assert blended(slow, quick, share).period == pytest.approx((quick.period - slow.period) * share + slow.period)
@@ -95,21 +93,20 @@ def test_both_gaits_are_blended_at_one_normalised_time() -> None:
 
 def test_steps_last_half_a_blended_cycle() -> None:
     plan = plan_of(chart(), play(EVENTS), pad())
-    settings = default_settings()
     for walk in plan.walks:
-        period = blended(settings.stroll, settings.brisk, walk.share).period
+        period = blended(*load_gait("flat"), walk.share).period
         np.testing.assert_allclose(np.diff(walk.landings), period / 2)
 
 
 def test_a_walk_goes_through_its_cycle_at_an_even_pace() -> None:
     """Each foot lands at its normalised time, and what is between has the blended length of the cycle."""
-    plan, settings = plan_of(chart(), play(EVENTS), pad()), default_settings()
+    plan = plan_of(chart(), play(EVENTS), pad())
     walk = plan.walks[0]
-    period = blended(settings.stroll, settings.brisk, walk.share).period
+    period = blended(*load_gait("flat"), walk.share).period
     at = np.arange(walk.start + FADE, walk.end - FADE, 0.01)
     phase = (1.0 if walk.first == 0 else 0.5) + (at - walk.landings[0]) / period
-    wanted = blended_pose(settings.stroll, settings.brisk, walk.share, phase)
-    seen = walking((walk,), at, settings)
+    wanted = blended_pose(*load_gait("flat"), walk.share, phase)
+    seen = walking((walk,), at)
     assert seen is not None and (at < walk.landings[0]).any()
     np.testing.assert_allclose(seen.hands, wanted.hands, atol=1e-9)
     np.testing.assert_allclose(seen.roll, wanted.roll, atol=1e-9)

@@ -55,6 +55,8 @@ def other_values(song: Path) -> dict[str, list[Any]]:
     (folder / "font.ttf").write_bytes(b"letters")
     (folder / "base.yaml").write_text("extends: itg\nroll-window: 0.25\n")
     (folder / "mine.yaml").write_text("extends: base.yaml\n")
+    (folder / "strut.yaml").write_text("slow: {}")
+    (folder / "motion.yaml").write_text("jump: {far: 0.5}")
     (folder / "her.glb").write_bytes(b"a character")
     look = request_of(song).look
     looks = {
@@ -83,7 +85,8 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "play": [folder / "play.json"],
         "character": ["mannequin", str(folder / "her.glb")],
         "bar": [True],
-        "gait": ["heels"],
+        "gait": ["heels", str(folder / "strut.yaml")],
+        "motion": [folder / "motion.yaml"],
     }
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.gait import STANCE, blended, gaits_of
+from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.plan import FootTrack, Swing, Turn, Walk
-from dancetutor_cli.motion.settings import Gait, MotionSettings
+from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import bend, detour, gaps_at
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
 from dancetutor_cli.numerics.ease import smooth
@@ -80,7 +80,7 @@ def footsteps(
 
     lead : the foot that goes first where both have the same room
     """
-    slow, quick = gaits_of(gait, settings)
+    slow, quick = load_gait(gait)
     distance = float(np.linalg.norm(goal.middle - begin.middle))
     turning = _turns(begin.heading, heading, settings) + _turns(heading, goal.heading, settings)
     for share in SPEEDS:

@@ -119,7 +119,7 @@ def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
         path = foot_path(track, body.times, settings.step.heel_drop)
         ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
     both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
-    gait = walking(plan.walks, body.times, settings)
+    gait = walking(plan.walks, body.times)
     if gait is not None:
         both = (1.0 - gait.own[:, None]) * both + gait.hands
     return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)

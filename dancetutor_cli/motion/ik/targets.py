@@ -38,7 +38,7 @@ def ik_targets(
     yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     pelvis_turn, chest_turn, bent = torso_turns(tilt, yaw, chest_yaw)
-    gait = walking(plan.walks, at, settings)
+    gait = walking(plan.walks, at)
     if gait is not None:
         pelvis_turn, chest_turn = turned(gait, pelvis_turn, chest_turn)
     shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest_turn, bent)

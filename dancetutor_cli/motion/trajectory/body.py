@@ -86,7 +86,7 @@ def body_path(
     ground = mass_ground - above[:, [0, 2]]
     turned = _yaw_target(plan.turns, times) + _turned_for_hands(plan.presses, times, settings)
     yaw = smooth_path(turned[:, None], np.ones(len(times)), rate, YAW_SMOOTH)[:, 0]
-    gait = walking(plan.walks, times, settings)
+    gait = walking(plan.walks, times)
     sink = np.zeros(len(times)) if gait is None else gait.sink
     bent = _bent(plan.presses, deeper, times, settings)
     crouch = jump_crouch(plan, times, settings.jump)
@@ -99,7 +99,7 @@ def body_path(
         feet, airborne(plan.feet), times, ground, yaw, stance, bent, sink, above[:, 1], skeleton, settings
     )
     height = mass_height.at(times) - above[:, 1]
-    ahead = gaze_ahead(plan, times, settings)
+    ahead = gaze_ahead(plan, times)
     chest, head = _looking(yaw, plan.presses, times, ground, rate, settings, ahead)
     loose = (1.0 - held) * (1.0 - reaching.max(axis=1)) * (1.0 if gait is None else 1.0 - gait.own)
     chest = chest + loose * counter_twist(feet, times, ground, mass_ground, yaw, chest, head, skeleton, settings.arms)
