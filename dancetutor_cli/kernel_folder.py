@@ -10,7 +10,6 @@ import hashlib
 import os
 import stat
 import sys
-import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -18,6 +17,7 @@ from pathlib import Path
 
 from dancetutor_cli.resources import PACKAGE
 
+CHECKSUM = 32  # bytes of SHA-256
 VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choice
 
 
@@ -60,6 +60,12 @@ def _kernel_folder(named: str | None) -> KernelFolder:
     return KernelFolder(temporary, temporary is not None, f"{' and '.join(refused)} cannot be written")
 
 
+def kept_stamp(index: Path) -> str:
+    """Of which code the kernels of an index file were made: what `kernels` wrote behind its checksum."""
+    with index.open("rb") as file:
+        return file.read(2 * CHECKSUM)[CHECKSUM:].hex()
+
+
 def users_folder(name: str) -> Path | None:
     """Where this system keeps a user's caches; None for a user without a home, as in a container."""
     try:
@@ -74,6 +80,8 @@ def users_folder(name: str) -> Path | None:
 
 def _usable(folder: Path) -> bool:
     """Whether files can be put there; makes the folder."""
+    import tempfile  # which takes as long as a small chart
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -84,6 +92,8 @@ def _usable(folder: Path) -> bool:
 
 def _temporary() -> Path | None:
     """A folder for temporary files that only this user can write: the machine code of others must not be run."""
+    import tempfile
+
     owner = os.getuid() if hasattr(os, "getuid") else "user"
     try:
         folder = Path(tempfile.gettempdir()) / f"dancetutor-kernels-{owner}"

@@ -9,16 +9,16 @@ from __future__ import annotations
 import hashlib
 import pickle
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numba
 from numba.core import caching as _caching
 
-from dancetutor_cli.kernel_folder import kernel_folder
+from dancetutor_cli.kernel_folder import CHECKSUM, kernel_folder
 
 caching: Any = _caching  # has types in some versions only
-_DIGEST = 32  # bytes of SHA-256
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
 
 
@@ -40,38 +40,40 @@ else:
 
 
 class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
-    """The index and the data of one kernel, each behind its checksum; what does not fit it is not there."""
+    """The index and the data of one kernel, each behind a checksum and the stamp of its code.
+
+    What does not fit the checksum is not there, nor an index of other code.
+    """
 
     def _load_index(self) -> dict[Any, str]:
-        found = _checked(Path(self._index_path))
-        if found is None or found[0] != (self._version, self._source_stamp):
-            return {}
-        overloads: dict[Any, str] = found[1]
+        found = self._checked(Path(self._index_path))
+        overloads: dict[Any, str] = found[1] if found is not None and found[0] == self._version else {}
         return overloads
 
     def _save_index(self, overloads: dict[Any, str]) -> None:
-        self._write(self._index_path, ((self._version, self._source_stamp), overloads))
+        self._write(self._index_path, (self._version, overloads))
 
     def _load_data(self, name: str) -> Any:
-        return _checked(Path(self._data_path(name)))
+        return self._checked(Path(self._data_path(name)))
 
     def _save_data(self, name: str, data: Any) -> None:
         self._write(self._data_path(name), data)
 
     def _write(self, path: str, content: Any) -> None:
-        data = self._dump(content)
+        data = bytes.fromhex(self._source_stamp) + self._dump(content)
         with self._open_for_write(path) as file:
             file.write(hashlib.sha256(data).digest() + data)
 
-
-def _checked(path: Path) -> Any:
-    """What a file of ours holds; None if it is not there, or not what was written."""
-    try:
-        whole = path.read_bytes()
-    except OSError:
-        return None
-    data = whole[_DIGEST:]
-    return pickle.loads(data) if hashlib.sha256(data).digest() == whole[:_DIGEST] else None
+    def _checked(self, path: Path) -> Any:
+        """What a file of ours holds; None if it is not there, not what was written, or made of other code."""
+        try:
+            whole = path.read_bytes()
+        except OSError:
+            return None
+        digest, data = whole[:CHECKSUM], whole[CHECKSUM:]
+        if hashlib.sha256(data).digest() != digest or data[:CHECKSUM].hex() != self._source_stamp:
+            return None
+        return pickle.loads(data[CHECKSUM:])
 
 
 class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
@@ -80,6 +82,23 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
     def __init__(self, function: Any, source: str) -> None:
         super().__init__(function, source)
         self._cache_path = str(kernel_folder().of_module(Path(source)))
+        self._source = Path(source)
+
+    def get_source_stamp(self) -> str:
+        """A digest of the code, not the time of its file: what is compiled outlives an installation anew."""
+        return stamp_of(self._source)
+
+
+@cache
+def stamp_of(source: Path) -> str:
+    """A digest of a module with kernels and of what else in its folder they may be made of."""
+    if source.parent.name == "play":
+        from dancetutor_cli.play.compiled import source_stamp
+
+        return source_stamp()
+    beside = (path for path in sorted(source.parent.glob("*.py")) if b"njit" in path.read_bytes())
+    files = [source, *beside]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
 class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]

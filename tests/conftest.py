@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import tarfile
 from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("DANCETUTOR_KERNELS", "compiled")  # whatever is compiled already, and in every process of a test
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared"
 

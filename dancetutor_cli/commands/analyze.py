@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from dancetutor_cli.reports.formats import FORMATS
 from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
+    from dancetutor_cli.jobs.analyze import Task
     from dancetutor_cli.jobs.lint_run import LintRun, Request
     from dancetutor_cli.reports.tally import Tally
 
@@ -177,7 +178,7 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     report.begin()
     folder = None if options["no_cache"] else default_folder()
     cache = None if folder is None else ResultCache(folder)
-    for raw in analyze_all(tasks, options["jobs"], cache, lambda task: tell_of_compiling(task.presets)):
+    for raw in analyze_all(tasks, options["jobs"], cache, _before_work):
         result = run.without_known(raw)
         tally.add(result)
         if options["quiet"]:
@@ -191,6 +192,15 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
         click.echo(write_sheet(options["sheet"], tasks), err=True)
     _finish(run, tally, options)
     return tally.exit_status
+
+
+def _before_work(tasks: Sequence[Task]) -> None:
+    """Decide whether kernels have to be compiled for these files, and say so."""
+    solves_often = any(task.suggest or task.alternatives for task in tasks)
+    from dancetutor_cli.jobs.selection import note_bytes
+
+    size = None if solves_often else sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
+    tell_of_compiling(tasks[0].presets, size)
 
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:

@@ -103,7 +103,9 @@ def command(
     task = BakeTask(
         one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs, motion
     )  # fmt: skip
-    tell_of_compiling(choice_for(task.path, preset))
+    from dancetutor_cli.jobs.selection import note_bytes
+
+    tell_of_compiling(choice_for(task.path, preset), note_bytes(task.path, task.selection))
     asked = ask(task)
     for note in asked.notes:
         click.echo(f"warning: {safe(note)}", err=True)

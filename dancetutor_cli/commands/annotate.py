@@ -101,7 +101,11 @@ def command(
     talk = _Talk(order, check, dry_run)
     talk.begin()
     if not strip:
-        tell_of_compiling(choice_of(preset))
+        from dancetutor_cli.jobs.selection import note_bytes
+
+        tell_of_compiling(
+            choice_of(preset), sum(note_bytes(item.source, Selection()) for song in songs for item in song)
+        )
     for outcome in _outcomes(songs, order, jobs):
         talk.tell(outcome)
     return talk.end()

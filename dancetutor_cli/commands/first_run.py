@@ -13,20 +13,24 @@ if TYPE_CHECKING:
 _NOT_KEPT = "nothing compiled is kept, and each run compiles again; set NUMBA_CACHE_DIR to a folder that can be written"
 
 
-def tell_of_compiling(choice: PresetChoice) -> None:
+def tell_of_compiling(choice: PresetChoice, size: int | None = None, *, quiet: bool = False) -> None:
     """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
+
+    size : bytes of the note data to be solved; little is solved without compiling. None: compile in any case
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
     from dancetutor_cli.kernel_folder import kernel_folder
+    from dancetutor_cli.play.compiled import interpret, is_compiled
 
+    presets = list(choice.candidates())
+    if size is not None and interpret(presets, size):
+        return
     folder = kernel_folder()
-    if folder.fault:
+    if folder.fault and not quiet:
         where = f"compiled kernels are kept in {folder.root or 'the installation'}" if folder.kept else _NOT_KEPT
         click.echo(f"note: {folder.fault}: {where}", err=True)
-    if not sys.stderr.isatty():
+    if quiet or not sys.stderr.isatty():
         return
-    from dancetutor_cli.play.compiled import is_compiled
-
-    if not all(is_compiled(preset) for preset in choice.candidates()):
+    if not all(is_compiled(preset) for preset in presets):
         click.echo("compiling the solver's kernels (once; `dancetutor warmup` does it ahead) ...", err=True)

@@ -111,9 +111,9 @@ def _render_one(
     if folder is not None:
         check_folder(folder)
     request = film_request(path, options, kind)
-    if not quiet:
-        tell_of_compiling(choice_for(path, request.preset))
     subject = look_up(request)
+    start, end = subject.chart.notes_span
+    tell_of_compiling(choice_for(path, request.preset), end - start, quiet=quiet)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     if folder is None:
         check_file(target)

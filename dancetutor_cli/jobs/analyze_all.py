@@ -19,12 +19,12 @@ def analyze_all(
     tasks: Sequence[Task],
     jobs: int | None,
     cache: ResultCache | None,
-    before_work: Callable[[Task], None] = lambda task: None,
+    before_work: Callable[[Sequence[Task]], None] = lambda tasks: None,
 ) -> Iterator[FileResult]:
     """The result of every task, in the order of the tasks, as early as they are known.
 
     jobs : worker processes for what is not in the cache; None: one for each core, 1: this process does it
-    before_work : called with the first task whose result is not in the cache
+    before_work : called with the tasks whose results are not in the cache, if there are any
     """
     keys = [cache.key(task) if cache else None for task in tasks]
     known = {n: found for n, key in enumerate(keys) if cache and key and (found := cache.get(key)) is not None}
@@ -32,7 +32,7 @@ def analyze_all(
     if cache and missing:
         cache.prune()
     if missing:
-        before_work(tasks[missing[0]])
+        before_work([tasks[n] for n in missing])
     work = _in_workers if jobs != 1 and len(missing) >= _WORTH_WORKERS else _here
     fresh = work([tasks[n] for n in missing], jobs)
     done: dict[int, FileResult] = dict(known)

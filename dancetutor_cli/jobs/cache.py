@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -65,6 +64,8 @@ class ResultCache:
 
     def put(self, key: str, result: FileResult) -> None:
         """Keep a result."""
+        import tempfile  # which takes long, and an unchanged file does without
+
         path = self._path(key)
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -25,13 +25,13 @@ _ARROWS = {(-1, 0): "←", (0, -1): "↓", (0, 1): "↑", (1, 0): "→", (-1, -1
 def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...]:
     """The findings, those with a beat together with the rows around it: up to four, two of them before it."""
     ticks = np.array([round(finding.beat * TICKS_PER_BEAT) for finding in findings if finding.beat is not None])
-    if not len(ticks):
+    if not len(ticks) or not len(play.rows):
         return tuple(findings)
     at = play.rows.tick.searchsorted(ticks)
     first = np.maximum(np.minimum(at - _BEFORE, len(play.rows) - ROWS), 0).tolist()
-    here = np.where(np.isin(ticks, play.rows.tick), at, -1).tolist()
+    here = np.where(play.rows.tick[np.minimum(at, len(play.rows) - 1)] == ticks, at, -1).tolist()
     count = min(ROWS, len(play.rows))
-    shown = np.unique([row + more for row in first for more in range(count)]).astype(np.int64)
+    shown = np.array(sorted({row + more for row in first for more in range(count)}), dtype=np.int64)
     drawn = dict(zip(shown.tolist(), _drawn(play, shown), strict=True))
     excerpts = (
         tuple([drawn[row]._replace(here=True) if row == this else drawn[row] for row in range(start, start + count)])

@@ -1,30 +1,74 @@
-"""Whether the solver's kernels are in numba's cache; found out without importing numba."""
+"""Whether the solver's kernels are compiled, and whether that is worth it; found out without importing numba.
+
+Compiling takes ten to twenty seconds, once. A chart or two are solved quicker by the kernels' own Python, which is the
+same code: only what is so much work that compiling pays, now or in runs like this one, is worth the wait.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.kernel_folder import kernel_folder
+from dancetutor_cli.kernel_folder import kept_stamp, kernel_folder
 from dancetutor_cli.play.preset import Preset
 
+VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
 _HERE = Path(__file__).parent
+_SOURCES = ("explore", "itg_costs", "itg_moves", "kernel", "state", "store", "tables", "thesis_moves", "vocabulary")
+_TINY = 12_000  # bytes of chart files that Python solves in less time than it takes to load what is compiled
+_SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
+_OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid
+
+
+@cache
+def source_stamp() -> str:
+    """A digest of the kernels' code: what is compiled holds as long as this does, also in a newer version."""
+    return hashlib.sha256(b"".join((_HERE / f"{name}.py").read_bytes() for name in _SOURCES)).hexdigest()
 
 
 def is_compiled(preset: Preset) -> bool:
-    """Whether a solve with this preset need not compile first; True where that cannot be known.
-
-    There is an index `MODULE.KERNEL-LINE.pyXY.nbi` for each kernel, which counts for nothing when the module is newer.
-    """
+    """Whether a solve with this preset need not compile first; True where that cannot be known."""
     written = kernel_folder()
     folders = {written.of_module(_HERE / "kernel.py"), _HERE / "__pycache__"}
     try:
         return written.kept and all(
-            any(
-                index.stat().st_mtime >= (_HERE / f"{module}.py").stat().st_mtime
-                for folder in folders
-                for index in folder.glob(pattern)
-            )
-            for module, pattern in (("kernel", "kernel.*.nbi"), ("explore", f"explore.explore_{preset.model}-*.nbi"))
+            any(kept_stamp(index) == source_stamp() for folder in folders for index in folder.glob(pattern))
+            for pattern in ("kernel.*.nbi", f"explore.explore_{preset.model}-*.nbi")
         )
     except OSError:
         return True
+
+
+def is_interpreted() -> bool:
+    """Whether this process runs kernels as Python, as `interpret` has decided."""
+    return os.environ.get(VARIABLE) == "python"
+
+
+def interpret(presets: Iterable[Preset], size: int) -> bool:
+    """Decide whether this process and its workers run kernels as Python; to be asked before one is imported.
+
+    size : bytes of the note data to be solved
+    """
+    if VARIABLE in os.environ:
+        return is_interpreted()
+    if size > _SMALL or (size > _TINY and all(is_compiled(preset) for preset in presets)):
+        return False
+    if size <= _TINY:
+        os.environ[VARIABLE] = "python"
+        return True
+    note = kernel_folder().of_module(_HERE / "kernel.py") / "interpreted"
+    try:
+        before = int(note.read_text())
+    except (OSError, ValueError):
+        before = 0
+    if kernel_folder().kept and before > _OFTEN:
+        return False
+    with suppress(OSError):
+        note.parent.mkdir(parents=True, exist_ok=True)
+        note.write_text(str(before + size))
+    os.environ[VARIABLE] = "python"
+    return True

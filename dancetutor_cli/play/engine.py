@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import store
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
+from dancetutor_cli.play.jit import INTERPRETED
 from dancetutor_cli.play.kernel import PRICE, run
 from dancetutor_cli.play.model import Limb, Rows
 from dancetutor_cli.play.preset import Preset
@@ -86,7 +88,8 @@ class Engine:
     def _call(
         self, arrays: RowArrays, row: int, nodes: Nodes, cost: NDArray[np.int32], found: Found
     ) -> tuple[int, int]:
-        return run(arrays, row, self.tables, nodes, self._model, self.geometry, self._rules, cost, found)
+        with _wrapping():
+            return run(arrays, row, self.tables, nodes, self._model, self.geometry, self._rules, cost, found)
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, Nodes]:
         n, c = arrays.steps.shape
@@ -119,12 +122,18 @@ class Engine:
         """Meet every state from a row on, so that the programme can go on there."""
         wanted = store.UNEXPLORED
         while wanted != store.DONE:
-            wanted = self._explore(
-                row, arrays.pattern, self.tables, nodes, self.geometry, self._rules.weights, self._rules.switches,
-                self._moves,
-            )  # fmt: skip
+            with _wrapping():
+                wanted = self._explore(
+                    row, arrays.pattern, self.tables, nodes, self.geometry, self._rules.weights, self._rules.switches,
+                    self._moves,
+                )  # fmt: skip
             if wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, len(arrays.tick))
+
+
+def _wrapping() -> AbstractContextManager[object]:
+    """Whole numbers of hash functions wrap round, as compiled ones do; numpy would warn of it."""
+    return np.errstate(over="ignore") if INTERPRETED else nullcontext()
 
 
 def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:

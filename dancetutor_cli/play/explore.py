@@ -5,18 +5,16 @@ One kernel for each model, so that a command compiles and loads only the rules i
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.kernels import njit
-from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play import tables as columns
+from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_moves import expand_itg
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.store import (
     ACTION,
     COST,
@@ -48,12 +46,6 @@ from dancetutor_cli.play.tables import MOST_MOVES
 from dancetutor_cli.play.thesis_moves import expand_thesis
 
 _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
-
-
-def source_stamp() -> str:
-    """A digest of the kernel code: numba's cache looks at one file; as a constant of a kernel, this tells of all."""
-    files = sorted(Path(__file__).parent.glob("*.py"))
-    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 
 @njit

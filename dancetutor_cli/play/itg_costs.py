@@ -7,7 +7,7 @@ function again with all that it calls.
 
 from __future__ import annotations
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.state import LAST, LEFT_HELD, LEFT_LIFTED, SIDE, turn
 from dancetutor_cli.play.tables import EPSILON, LEFT, RIGHT
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from dancetutor_cli.kernels import njit
 from dancetutor_cli.play.itg_costs import (
     EVENT_HAND,
     EVENT_HOLDSWITCH,
@@ -24,6 +23,7 @@ from dancetutor_cli.play.itg_costs import (
     held_by,
     mask_of,
 )  # fmt: skip
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.play.tables import (
     ACTION,

@@ -11,12 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.kernels import njit
-from dancetutor_cli.play import quick_numba  # noqa: F401
 from dancetutor_cli.play import tables as columns
-from dancetutor_cli.play.explore import source_stamp
+from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.store import (
     ACTION,
     BASE,

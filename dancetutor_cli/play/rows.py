@@ -37,7 +37,8 @@ def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     rolls = here[kind == StepKind.ROLL]
     if len(rolls):
         roll_tick, roll_column = _roll_taps(chart, rolls, roll_window)
-        known = np.unique(np.concatenate([known, roll_tick]))
+        known = np.sort(np.concatenate([known, roll_tick]))
+        known = known[_is_new(known)]
         row = known.searchsorted(tick)
     else:
         row = np.cumsum(_is_new(tick)) - 1

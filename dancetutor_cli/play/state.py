@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.tables import EPSILON
 
 LEFT_AT, RIGHT_AT = 0, 1  # places of the feet, see `tables.Geometry`

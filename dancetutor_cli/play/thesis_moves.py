@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, SIDE, pack, turn, unpack
 from dancetutor_cli.play.tables import (
     ACTION,

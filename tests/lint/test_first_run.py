@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,24 +30,22 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def fill(cache: Path, *names: str, seconds: float) -> None:
-    newest = max(path.stat().st_mtime for path in Path(compiled.__file__).parent.glob("*.py"))
+def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
     for name in names:
-        (cache / name).touch()
-        os.utime(cache / name, (newest + seconds, newest + seconds))
+        (cache / name).write_bytes(bytes(32) + bytes.fromhex(stamp or compiled.source_stamp()) + b"...")
 
 
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:
     itg, thesis = load_preset("itg"), load_preset("thesis")
     assert not compiled.is_compiled(itg)
-    fill(cache, "kernel._compile.locals.run-1.py311.nbi", seconds=1)
+    fill(cache, "kernel._compile.locals.run-1.py311.nbi")
     assert not compiled.is_compiled(itg)
-    fill(cache, "explore.explore_itg-1.py311.nbi", seconds=1)
+    fill(cache, "explore.explore_itg-1.py311.nbi")
     assert compiled.is_compiled(itg) and not compiled.is_compiled(thesis)
 
 
-def test_kernels_older_than_the_program_count_for_nothing(cache: Path) -> None:
-    fill(cache, "kernel.run-1.py311.nbi", "explore.explore_itg-1.py311.nbi", seconds=-1e7)
+def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
+    fill(cache, "kernel.run-1.py311.nbi", "explore.explore_itg-1.py311.nbi", stamp="ab" * 32)
     assert not compiled.is_compiled(load_preset("itg"))
 
 
@@ -58,6 +58,53 @@ def test_only_a_terminal_is_told(
     tell_of_compiling(PresetChoice())
     assert capsys.readouterr().err.startswith("compiling the solver's kernels (once;")
     shutil.rmtree(cache)
+
+
+def test_little_is_solved_without_compiling_and_much_is_not(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    presets = [load_preset("itg")]
+    monkeypatch.setattr(os, "environ", {**os.environ})
+    del os.environ[compiled.VARIABLE]
+    assert not compiled.interpret(presets, 10_000_000) and not compiled.is_interpreted()
+    assert compiled.interpret(presets, 100_000) and compiled.is_interpreted()
+    del os.environ[compiled.VARIABLE]
+    for _ in range(9):
+        assert compiled.interpret(presets, 100_000)
+        del os.environ[compiled.VARIABLE]
+    (cache / "interpreted").write_text("1000001")  # by now it would have paid
+    assert not compiled.interpret(presets, 100_000)
+    assert compiled.interpret(presets, 1_000)  # which takes less than to load what is compiled
+
+
+def test_what_is_compiled_is_used_for_all_but_the_smallest(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "environ", {**os.environ})
+    del os.environ[compiled.VARIABLE]
+    fill(cache, "kernel.run-1.py311.nbi", "explore.explore_itg-1.py311.nbi")
+    assert not compiled.interpret([load_preset("itg")], 100_000)
+
+
+@pytest.mark.parametrize("preset", ["itg", "thesis"])
+def test_kernels_and_their_python_find_the_same(preset: str, tmp_path: Path) -> None:
+    song = Path(__file__).parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.ssc"
+    found = []
+    for how in ("python", "compiled"):
+        environment = {**os.environ, compiled.VARIABLE: how}
+        command = [sys.executable, "-m", "dancetutor_cli", "analyze", song, "--format", "json", "--preset", preset]
+        found.append(subprocess.run([*command, "--no-cache"], env=environment, capture_output=True))
+        assert found[-1].stderr == b""
+    assert found[0].stdout == found[1].stdout and found[0].stdout.count(b'"beat"') > 400
+
+
+def test_little_work_imports_no_numba(tmp_path: Path) -> None:
+    song = tmp_path / "x.sm"
+    song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n0100\n0010\n;\n")
+    code = (
+        "import sys; from dancetutor_cli.__main__ import main\n"
+        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
+        "except SystemExit: print('numba' in sys.modules, 'numpy.ma' in sys.modules, file=sys.stderr)"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != compiled.VARIABLE}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert run.stderr.split()[-2:] == ["False", "False"] and "1 chart" in run.stdout
 
 
 def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:

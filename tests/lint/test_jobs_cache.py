@@ -187,6 +187,7 @@ def test_a_kept_result_needs_neither_numpy_nor_numba(song: Path, tmp_path: Path)
         "sys.stderr.write(' '.join({'numpy', 'numba', 'scipy'} & set(sys.modules)))\n"
     )
     environment = {"DANCETUTOR_CACHE": str(tmp_path / "cache"), "PATH": "", "SYSTEMROOT": "C:\\Windows"}
+    environment["DANCETUTOR_KERNELS"] = "compiled"
     said = [
         subprocess.run([sys.executable, "-c", code, str(song)], env=environment, capture_output=True, text=True)
         for _ in range(2)
@@ -212,5 +213,5 @@ def test_a_file_that_cannot_be_read_as_a_chart_is_kept_too(tmp_path: Path, monke
 def test_work_is_announced_once(song: Path, tmp_path: Path) -> None:
     worked: list[Path] = []
     task = LintRun(Request()).task(song)
-    list(analyze_all([task, task], 1, None, lambda one: worked.append(one.path)))
-    assert worked == [song]
+    list(analyze_all([task, task], 1, None, lambda tasks: worked.extend(one.path for one in tasks)))
+    assert worked == [song, song]
