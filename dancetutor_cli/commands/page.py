@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,7 +17,11 @@ from dancetutor_cli.commands.selection import (
     preset_option,
     selection_options,
 )
-from dancetutor_cli.targets import check_file
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.targets import check_file, check_folder, make_folder
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.page import PageTask
 
 _FILE = click.Path(path_type=Path)
 SUFFIXES = (".html", ".htm")
@@ -23,7 +29,12 @@ SUFFIXES = (".html", ".htm")
 
 @click.command()
 @click.argument("path", type=_FILE)
-@click.option("-o", "--output", type=_FILE, help="An .html file; default: SONG-difficulty.html.")
+@click.option(
+    "-o",
+    "--output",
+    type=_FILE,
+    help="An .html file [default: SONG-difficulty.html]; of a folder of charts a folder [default: pages].",
+)
 @click.option("--music", is_flag=True, help="Put the song's music into the page; otherwise it asks for the file.")
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
@@ -34,7 +45,11 @@ SUFFIXES = (".html", ".htm")
 )
 @gait_option
 @click.option(
-    "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
+    "--jobs",
+    type=click.IntRange(1, 256),
+    default=1,
+    show_default=True,
+    help="Processes: for a folder, and for songs over two minutes.",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
 @character_option
@@ -47,29 +62,76 @@ def command(
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
     The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever
-    learns it. Its hardest passages are listed.
+    learns it. Its hardest passages are listed. If PATH is a folder, every chart below it that matches gets a page, and
+    an index leads to them.
     """
-    from dancetutor_cli.files import write_atomic
     from dancetutor_cli.jobs.bake import BakeTask
-    from dancetutor_cli.jobs.page import PageTask, make_page
+    from dancetutor_cli.jobs.page import PageTask
     from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.library import one_song
-    from dancetutor_cli.reports.safe import safe
 
-    if output is not None:
-        check_file(output, SUFFIXES)
-    file = one_song(path)
+    file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     bake = BakeTask(file, Selection(**selection), preset, play_file=play_file, bar=bar, gait=gait, jobs=jobs)
+    task = PageTask(bake, character, music, beside)
     if not quiet:
         tell_of_compiling(choice_for(file, preset))
-    page = make_page(PageTask(bake, character, music, beside))
+    if file.is_dir():
+        _pages(task, output or Path("pages"), jobs, quiet)
+        return
+    if output is not None:
+        check_file(output, SUFFIXES)
+    _page(task, output, quiet)
+
+
+def _page(task: PageTask, output: Path | None, quiet: bool) -> None:
+    from dancetutor_cli.files import write_atomic
+    from dancetutor_cli.jobs.page import make_page
+
+    page = make_page(task)
     target = output or Path(_default_name(page.title, page.label))
     check_file(target, SUFFIXES)
     write_atomic(target, page.html)
-    for warning in page.warnings:
-        click.echo(f"warning: {safe(warning)}", err=True)
+    _warn(page.warnings)
     if not quiet:
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
+
+
+def _pages(task: PageTask, folder: Path, jobs: int, quiet: bool) -> None:
+    """A page for each chart and the index; exit status 2 if one could not be made."""
+    from dancetutor_cli.jobs.page_batch import INDEX, make_all, page_jobs, write_index
+    from dancetutor_cli.reports.failures import failures_table
+    from dancetutor_cli.reports.safe import safe, safe_path
+
+    if task.bake.play_file is not None:
+        raise UsageError(f"--play is for one chart, and {task.bake.path} is a folder")
+    check_folder(folder)
+    wanted, bad = page_jobs(task, folder)
+    if not wanted and not bad:
+        raise UsageError(f"{task.bake.path}: no chart here matches")
+    make_folder(folder)
+    outcomes = {}
+    for number, one in enumerate(make_all(wanted, jobs), 1):
+        outcomes[one.job.target] = one
+        _warn(one.warnings)
+        if not quiet:
+            said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
+            click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
+    ordered = [outcomes[job.target] for job in wanted]
+    write_index(folder, ordered, task.bake.path.resolve().name)
+    failed = [(str(one.job.task.bake.path), one.job.entry.label, one.error) for one in ordered if one.error]
+    if not quiet:
+        made = len(ordered) - len(failed)
+        click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")
+    if failed or bad:
+        failures_table([*((str(path), "", error) for path, error in bad), *failed])
+        sys.exit(2)
+
+
+def _warn(warnings: Iterable[str]) -> None:
+    from dancetutor_cli.reports.safe import safe
+
+    for warning in warnings:
+        click.echo(f"warning: {safe(warning)}", err=True)
 
 
 def _default_name(title: str, label: str) -> str:

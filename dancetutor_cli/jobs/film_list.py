@@ -94,7 +94,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     bad: list[Unreadable] = []
     without: list[Path] = []
     taken: set[str] = set()
-    for path in _files(batch.paths):
+    for path in chart_files(batch.paths):
         try:
             from dancetutor_cli import chart as charts
 
@@ -109,7 +109,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     return FilmList(jobs[number - 1 :: count], *((bad, without) if number == 1 else ([], [])))
 
 
-def _files(paths: Sequence[Path]) -> Iterator[Path]:
+def chart_files(paths: Sequence[Path]) -> Iterator[Path]:
     """Chart files; of a song with both kinds the .ssc, as the games do."""
     from dancetutor_cli.library import find_files, twin
 

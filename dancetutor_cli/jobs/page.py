@@ -67,7 +67,7 @@ def make_page(task: PageTask) -> Page:
     motions = [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
     warnings = (*asked.notes, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [_retargeted(motion, character) for motion in motions]
-    doc, blob = pack_content(_content(task, asked, preset, character, fitted, music))
+    doc, blob = pack_content(_content(task, (asked, beside), preset, character, fitted, music))
     html = document(doc, blob, music[1] if music else None)
     title = asked.song.title or asked.song.path.stem
     return Page(html, title, asked.chart.label, warnings, _sizes(blob.sizes, music))
@@ -99,7 +99,7 @@ def _beside(task: PageTask, asked: Asked, preset: Preset) -> Asked | None:
 
 def _content(
     task: PageTask,
-    asked: Asked,
+    both: tuple[Asked, Asked | None],
     preset: Preset,
     character: Character,
     motions: list[Motion],
@@ -115,6 +115,7 @@ def _content(
     from dancetutor_cli.page.sentences import told
     from dancetutor_cli.video.scroll import parse_segments
 
+    asked, other = both
     song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
     overrides, ignores, _ = overrides_for(song, chart)
     solved = task.bake.play_file is None  # only of the solver's own play can it say what else would cost
@@ -129,7 +130,8 @@ def _content(
         character=character,
         motions=motions,
         directions=directions_of(pad),
-        beside=task.beside or "",
+        beside=Path(task.beside or "").stem,
+        beside_rows=[] if other is None else np.flatnonzero((other.play.limb != play.limb).any(axis=1)).tolist(),
         passages=[told(passage) for passage in hardest(play, chart.timing)],
         flips=flips_of(play, pad, preset, overrides) if solved else (),
         music=music,

@@ -34,6 +34,7 @@ class Content:
     notes : as the films draw them; ticks : int64 (n,), 1/48 beats, of the notes
     beats : seconds of beats 0, 1, 2, ...
     motions : the dancer's, and that of who dances beside her if there is one, both of `character`'s joints
+    beside : what she plays; beside_rows : the rows that she steps with other limbs
     passages : the hardest parts, ready for the page; flips : what other feet in a row would change, by row
     """
 
@@ -48,6 +49,7 @@ class Content:
     motions: Sequence[Motion]
     directions: Sequence[float | None]
     beside: str = ""
+    beside_rows: Sequence[int] = ()
     passages: Sequence[Mapping[str, Any]] = ()
     flips: Sequence[Mapping[str, Any]] = ()
     music: tuple[str, bytes] | None = field(default=None, repr=False)  # its type ("audio/ogg"), and its file
@@ -87,7 +89,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
         },
         "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height),
         "motions": [pack_motion(blob, motion, f"motion{k}") for k, motion in enumerate(content.motions)],
-        "beside": content.beside,
+        "beside": {"name": content.beside, "rows": list(content.beside_rows)},
         "beats": [round(second, 6) for second in content.beats],
         "findings": [_finding(one) for one in content.findings],
         "passages": [dict(one) for one in content.passages],

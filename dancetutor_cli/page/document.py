@@ -51,12 +51,13 @@ def fill(template: str, values: Mapping[str, str]) -> str:
 def policy(script: str, style: str) -> str:
     """Content-Security-Policy: this script and this style, pictures and sound made in the page, and no network."""
     return (
-        f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; "
+        f"default-src 'none'; script-src '{hash_of(script)}'; style-src '{hash_of(style)}'; "
         "img-src blob: data:; media-src blob:; base-uri 'none'; form-action 'none'"
     )
 
 
-def _hash(text: str) -> str:
+def hash_of(text: str) -> str:
+    """How a policy names a script or a style that stands in the page."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
 
 

@@ -139,9 +139,11 @@ class Browser:
     def key(self, key: str, code: str = "", modifiers: int = 0) -> None:
         """Press and let go a key."""
         text = key if len(key) == 1 else ""
+        number = {"Escape": 27}.get(key, 0)  # what the browser itself answers to it knows by number
         for kind in ("keyDown", "keyUp"):
             self.call(
                 "Input.dispatchKeyEvent", type=kind, key=key, code=code or key, modifiers=modifiers,
+                windowsVirtualKeyCode=number,
                 **({"text": text} if text and kind == "keyDown" else {}),
             )  # fmt: skip
 

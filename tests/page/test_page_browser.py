@@ -94,3 +94,183 @@ def test_the_strip_seeks_and_makes_loops(browser: Browser) -> None:
     browser.mouse("mouseReleased", x + 0.7 * w, y + h / 2)
     browser.wait("document.querySelector('.said').textContent.startsWith('loop m')")
     assert browser.run("location.hash").startswith("#m")
+
+
+def pad_script() -> str:
+    """A gamepad as the page sees it: an object whose buttons the test presses."""
+    return (
+        "window.pad = {id: 'test mat', index: 0, connected: true, mapping: '', axes: [], timestamp: 0,"
+        " buttons: Array.from({length: 10}, () => ({pressed: false, value: 0}))};"
+        "navigator.getGamepads = () => [window.pad];"
+    )
+
+
+def press_pad(browser: Browser, *buttons: int) -> None:
+    """Press buttons together, long enough to be seen by a picture, and let go."""
+    browser.run(f"for (const b of {list(buttons)}) window.pad.buttons[b].pressed = true")
+    browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    browser.run(f"for (const b of {list(buttons)}) window.pad.buttons[b].pressed = false")
+    browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+
+
+def test_she_waits_until_each_row_is_pressed(browser: Browser) -> None:
+    browser.run(pad_script())
+    browser.key("Home")
+    browser.key("w", "KeyW")
+    browser.key(" ", "Space")
+    browser.wait("document.querySelector('.said').textContent.startsWith('waiting')")
+    assert second(browser) == pytest.approx(2.0, abs=0.02)
+    press_pad(browser, 1)  # down: the row is left
+    assert second(browser) == pytest.approx(2.0, abs=0.02)
+    press_pad(browser, 0)
+    browser.wait(f"{NOW} > 2.24 && document.querySelector('.said').textContent.startsWith('waiting')")
+    assert second(browser) == pytest.approx(2.25, abs=0.02)
+    browser.key("f", "KeyF")  # a key is as good: down
+    browser.wait(f"{NOW} > 2.49")
+    assert "2 hit" in text(browser, ".score")
+
+
+def test_presses_are_timed_and_misses_counted(browser: Browser) -> None:
+    browser.run(pad_script())
+    browser.run("location.hash = '#m0.5-1.5@0.25'")
+    browser.wait("document.querySelector('.said').textContent.includes('m0.5')")
+    browser.key("i", "KeyI")
+    browser.key("p", "KeyP")
+    browser.key(" ", "Space")
+    browser.run(  # the mat says when it was pressed, however slowly pictures come
+        "new Promise(done => { const press = () => { window.pad.buttons[0].pressed = true;"
+        " window.pad.timestamp = performance.now(); done(1); };"
+        "const look = () => " + NOW + " < 1.8 ? requestAnimationFrame(look)"
+        " : setTimeout(press, (2 - " + NOW + ") / 0.25 * 1000); requestAnimationFrame(look); })"
+    )
+    browser.wait("/ [1-9]\\d* missed/.test(document.querySelector('.score').textContent)")
+    counts = [int(word) for word in text(browser, ".score").split() if word.isdigit()]
+    assert sum(counts[:3]) == 1 and counts[3] >= 1, text(browser, ".score")
+
+
+def test_panels_can_be_given_other_keys(browser: Browser) -> None:
+    browser.click("#tab-along")
+    browser.click("#assign")
+    for key in "qwer":
+        browser.key(key, f"Key{key.upper()}")
+    browser.wait("[...document.querySelectorAll('.keys kbd')].map(k => k.textContent).join('') === 'QWER'")
+    assert browser.run("JSON.parse(localStorage.getItem('dancetutor')).keys['4'].join()") == "KeyQ,KeyW,KeyE,KeyR"
+    assert browser.run("Object.keys(localStorage).every(key => key.startsWith('dancetutor'))")
+
+
+def test_music_can_be_dropped_and_plays(browser: Browser) -> None:
+    """A second of sound as a WAV file: decoded, and what is no music is said."""
+    browser.run(
+        "window.wav = (() => { const n = 8000, d = new DataView(new ArrayBuffer(44 + 2 * n));"
+        "const s = (at, t) => [...t].forEach((c, k) => d.setUint8(at + k, c.charCodeAt(0)));"
+        "s(0, 'RIFF'); d.setUint32(4, 36 + 2 * n, true); s(8, 'WAVEfmt '); d.setUint32(16, 16, true);"
+        "d.setUint16(20, 1, true); d.setUint16(22, 1, true); d.setUint32(24, 8000, true);"
+        "d.setUint32(28, 16000, true); d.setUint16(32, 2, true); d.setUint16(34, 16, true); s(36, 'data');"
+        "d.setUint32(40, 2 * n, true);"
+        "for (let k = 0; k < n; ++k) d.setInt16(44 + 2 * k, 9000 * Math.sin(k / 3), true);"
+        "return d.buffer; })();"
+        "window.drop = (data, name) => { const t = new DataTransfer(); t.items.add(new File([data], name));"
+        "document.dispatchEvent(new DragEvent('drop', {dataTransfer: t, bubbles: true, cancelable: true})); }"
+    )
+    assert "No music yet" in text(browser, "#music-state")
+    browser.run("window.drop(new Uint8Array(100), 'a.ogg')")
+    browser.wait("document.querySelector('.said').textContent.includes('cannot play')")
+    browser.run("window.drop(window.wav, 'a.wav')")
+    browser.wait("document.querySelector('#music-state').textContent === 'The music is loaded.'")
+    browser.key(" ", "Space")
+    start = second(browser)
+    browser.wait(f"{NOW} > {start} + 0.3")
+    assert browser.problems == []
+
+
+def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser) -> None:
+    browser.run(
+        "window.saved = {}; URL.createObjectURL = blob => { window.last = blob; return 'blob:none'; };"
+        "HTMLAnchorElement.prototype.click = function () { const name = this.download;"
+        " window.last.text().then(text => { window.saved[name] = text; }); }"
+    )
+    browser.key("Home")
+    browser.key("ArrowRight")
+    browser.key("o", "KeyO")
+    assert "other foot costs" in text(browser, "#panel-author .about")
+    assert "measure 1, beat 1: R" in text(browser, ".changes")
+    browser.run("for (const b of document.querySelectorAll('#panel-author .column button')) b.click()")
+    browser.wait("Object.keys(window.saved).length === 3")
+    assert '      4: "R"' in browser.run("window.saved['dancetutor.yaml']")
+    assert browser.run("window.saved['measure-comments.txt']").startswith("// measure 1 {dt1! R")
+    assert browser.problems == []
+
+
+def test_help_lists_every_key_and_closes(browser: Browser) -> None:
+    browser.key("?", "Slash", 8)
+    browser.wait("document.querySelector('dialog.sheet').open")
+    assert browser.run("document.querySelectorAll('dialog.sheet tr').length") >= 28
+    browser.key("Escape")
+    browser.wait("!document.querySelector('dialog.sheet').open")
+
+
+def test_it_speaks_german(browser: Browser, page_file: Path) -> None:
+    browser.run("localStorage.setItem('dancetutor', JSON.stringify({language: 'de'}))")
+    browser.open(page_file)
+    assert text(browser, "#tab-findings") == "Befunde"
+    assert browser.run("document.documentElement.lang") == "de"
+    words = browser.run("document.body.innerText")
+    assert "undefined" not in words and "{" not in words.replace("{{data}}", "")
+
+
+def test_a_phone_shows_all_of_it_without_scrolling_sideways(browser: Browser, page_file: Path) -> None:
+    browser.size(380, 800, touch=True)
+    browser.open(page_file)
+    assert browser.run("document.documentElement.scrollWidth") <= 380
+    small = browser.run(
+        "[...document.querySelectorAll('button, select')].filter(b => b.offsetParent)"
+        ".filter(b => b.getBoundingClientRect().height < 24).map(b => b.textContent)"
+    )
+    assert small == []
+
+
+def test_nothing_moves_while_it_plays(browser: Browser) -> None:
+    browser.run(
+        "window.shift = 0;"
+        "new PerformanceObserver(list => { for (const e of list.getEntries()) window.shift += e.value; })"
+        ".observe({type: 'layout-shift', buffered: true})"
+    )
+    browser.key("]", "BracketRight")
+    browser.key(" ", "Space")
+    start = second(browser)
+    browser.wait(f"Math.abs({NOW} - {start}) > 0.3")
+    for key in ("ArrowUp", "m", "v", "v", "g"):
+        browser.key(key)
+    assert browser.run("window.shift") < 0.02
+    assert browser.problems == []
+
+
+def test_axe_finds_nothing_serious(browser: Browser) -> None:
+    source = Path(__file__).parent / "node_modules" / "axe-core" / "axe.min.js"
+    if not source.exists():
+        pytest.skip("no axe here; `make page-tools` puts it into tests/page/node_modules")
+    browser.run(source.read_text("utf-8") + "; 1")
+    for tab in ("passages", "along", "findings", "author", "settings"):
+        browser.click(f"#tab-{tab}")
+        found = browser.run(
+            "axe.run(document, {resultTypes: ['violations']}).then(r => r.violations"
+            ".filter(v => ['serious', 'critical'].includes(v.impact)).map(v => v.id + ' ' + v.nodes[0].html))"
+        )
+        assert found == [], tab
+
+
+def test_without_webgl_feet_from_above_are_shown(page_file: Path, tmp_path: Path) -> None:
+    browser = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
+    try:
+        browser.size(1280, 720)
+        browser.open(page_file)
+        for _ in range(2):
+            browser.key("ArrowRight")
+        browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+        x, y, w, h = (int(v) for v in browser.box(".view"))
+        pixels = np.asarray(Image.open(browser.picture(tmp_path / "a.png")).convert("RGB")).astype(int)
+        view = pixels[y : y + h, x : x + w]
+        for colour in ((255, 138, 31), (22, 194, 207)):
+            assert (np.abs(view - np.array(colour)).max(axis=2) <= 30).mean() > 0.002
+    finally:
+        browser.close()

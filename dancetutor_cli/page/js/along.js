@@ -17,7 +17,7 @@ export function alongPanel(app) {
   const score = el("p", { class: "score", role: "status" });
   const keys = el("p", { class: "keys" });
   const pads = el("p", { class: "hint", role: "status" });
-  const assign = el("button", { type: "button", onclick: () => assignDialog(app, show) }, t("assign"));
+  const assign = el("button", { type: "button", id: "assign", onclick: () => assignDialog(app, show) }, t("assign"));
   const calibrate = el("button", { type: "button", onclick: () => calibrateDialog(app) }, t("calibrate"));
   const show = () => {
     keys.replaceChildren(...app.doc.pad.names.map((/** @type {string} */ name, /** @type {number} */ k) =>

@@ -43,7 +43,7 @@ export class App {
     }));
     this.judge = new Judge(this.chart);
     this.input = new Input(doc.pad.names, this.settings);
-    this.input.onPress = (press) => this.press(press.column);
+    this.input.onPress = (press) => this.press(press.column, press.ago);
     this.redance = new Redance(doc, this.chart, this.notes.feet);
     this.along = false; // somebody plays along
     this.wait = false; // the clock stops at each row until it is pressed
@@ -219,8 +219,8 @@ export class App {
     this.transport.holdAt(row ? row.second : Infinity);
   }
 
-  /** A panel is pressed. @param {number} column */
-  press(column) {
+  /** A panel is pressed, some seconds ago. @param {number} column @param {number} ago */
+  press(column, ago) {
     this.fresh = true;
     if (!this.along) return;
     const { rate } = this.transport;
@@ -230,7 +230,7 @@ export class App {
       this.judge.press(column, row.second, rate, true);
       this.updateHold();
     } else if (this.transport.playing) {
-      this.judge.press(column, this.transport.second() - (this.sound.latency + this.settings.latency) * rate, rate);
+      this.judge.press(column, this.transport.second() - (ago + this.sound.latency + this.settings.latency) * rate, rate);
     }
     this.tell("hits");
   }
@@ -292,7 +292,16 @@ export class App {
     const measure = (/** @type {number} */ s) => String(Math.round((100 * this.chart.beatAt(s)) / 4) / 100);
     const { loop } = transport;
     const looped = loop ? t("loopFrom", { from: measure(loop.a), to: measure(loop.b), passes: this.passes }) : "";
-    return [this.both ? t("bothLong", { name: this.doc.beside }) : "", looped].filter(Boolean).join(" · ");
+    return [this.both ? this.besideText() : "", looped].filter(Boolean).join(" · ");
+  }
+
+  /** Who dances beside her, and where her feet differ. */
+  besideText() {
+    const { name, rows } = this.doc.beside;
+    const beats = rows.slice(0, 3).map((/** @type {number} */ row) => this.redance.rows.get(row)?.beat).filter((/** @type {number | undefined} */ beat) => beat !== undefined);
+    const where = beats.map((/** @type {number} */ beat) => `m${Math.floor(beat / 4)}:${Math.round(100 * ((beat % 4) + 1)) / 100}`).join(", ");
+    const what = name === "next" ? this.t("nextBest") : name;
+    return this.t("bothLong", { name: what, rows: rows.length, where: rows.length > 3 ? `${where} …` : where });
   }
 
   /** Everything that is drawn for one picture. @param {import("./timeline.js").Timeline} timeline */

@@ -59,6 +59,7 @@ function turn(app, yaw, pitch) {
 
 /** The note of the row that stands gets the other foot. @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui */
 function otherFoot(app, ui) {
+  app.transport.pause();
   const row = app.chart.rows[app.chart.rowAt(app.transport.second())];
   if (app.chosen < 0 && row) app.chosen = row.steps[0].note;
   if (app.chosen >= 0) app.giveOther(app.chosen);
@@ -82,6 +83,11 @@ export function listenToKeys(app, actions) {
     if (!action) return;
     event.preventDefault();
     action.run();
+  });
+  // A button that the mouse has pressed gives the keys back: the space bar plays, and does not press it again.
+  document.addEventListener("click", (event) => {
+    const button = /** @type {HTMLElement} */ (event.target).closest("button");
+    if (event.detail > 0 && button && !button.closest("dialog")) button.blur();
   });
   document.addEventListener("keyup", (event) => app.input.keyUp(event));
 }

@@ -11,7 +11,9 @@ const KEYS = {
 };
 const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the standard mapping
 
-/** @typedef {{column: number, device: "keys" | "pad"}} Press */
+const LONGEST = 0.5; // seconds that a press may be old; a browser that counts otherwise is not believed
+
+/** @typedef {{column: number, device: "keys" | "pad", ago: number}} Press ago: seconds since it happened */
 
 export class Input {
   /**
@@ -68,7 +70,7 @@ export class Input {
     }
     const column = this.keys.indexOf(event.code);
     if (column < 0) return false;
-    if (!event.repeat) this.press(column, "keys");
+    if (!event.repeat) this.press(column, "keys", event.timeStamp);
     return true;
   }
 
@@ -89,17 +91,18 @@ export class Input {
         if (is === Boolean(before[number])) return;
         if (is && this.learning) return this.learning(`${name}#${number}`);
         const column = buttons.indexOf(number);
-        if (column >= 0 && is) this.press(column, "pad");
+        if (column >= 0 && is) this.press(column, "pad", pad.timestamp);
         else if (column >= 0) this.held[column] = false;
       });
       this.down.set(name, now);
     }
   }
 
-  /** @param {number} column @param {Press["device"]} device */
-  press(column, device) {
+  /** @param {number} column @param {Press["device"]} device @param {number} at milliseconds of the page's clock */
+  press(column, device, at) {
+    const ago = (performance.now() - at) / 1000;
     this.held[column] = true;
-    this.onPress({ column, device });
+    this.onPress({ column, device, ago: ago > 0 && ago < LONGEST ? ago : 0 });
   }
 
   /**

@@ -8,7 +8,7 @@ import { actionsOf, listenToKeys, makeBar } from "./controls.js";
 import { el } from "./dom.js";
 import { Highway } from "./highway.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
-import { CAMERAS, Picture } from "./picture.js";
+import { CAMERAS, Picture, decodeSkins } from "./picture.js";
 import { Timeline } from "./timeline.js";
 
 /** @param {string} id */
@@ -64,7 +64,7 @@ function cameraButtons(app) {
   const { t, settings } = app;
   const buttons = CAMERAS.map((name) => el("button", { type: "button", class: "toggle", title: t(`camera-${name}-long`), onclick: () => app.setCamera(name) }, t(`camera-${name}`)));
   const both = app.motions.length > 1
-    ? el("button", { type: "button", class: "toggle", title: t("bothLong", { name: app.doc.beside }), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
+    ? el("button", { type: "button", class: "toggle", title: app.besideText(), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
   const show = () => {
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(CAMERAS[k] === settings.camera)));
     both?.setAttribute("aria-pressed", String(app.both));
@@ -76,6 +76,8 @@ function cameraButtons(app) {
 
 async function main() {
   const { doc, arrays } = await unpack(text("data"));
+  performance.mark("unpacked");
+  const skins = decodeSkins(doc, arrays); // goes on while the page is laid out
   const app = new App(doc, arrays);
   const { t } = app;
   document.documentElement.lang = app.language;
@@ -107,7 +109,9 @@ async function main() {
   app.picture = new Picture(stage, doc, app.chart, app.motions, app.settings);
   app.picture.amend = (second, pose) => app.redance.amend(second, pose);
   app.picture.onTurn = () => app.save();
-  await app.picture.start(arrays);
+  performance.mark("laid out");
+  app.picture.start(arrays, await skins);
+  performance.mark("picture");
   const timeline = new Timeline(strip, doc, app.chart, {
     start: app.start, end: app.end, seek: (second) => app.seek(second), loop: (a, b) => app.setLoop(a, b),
   });

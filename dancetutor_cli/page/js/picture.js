@@ -18,6 +18,14 @@ const LEAST = 0.4; // of the pixels across that it keeps
  * @property {boolean} playing
  */
 
+/** The dancer's textures. @param {any} doc @param {import("./blob.js").Arrays} arrays */
+export function decodeSkins(doc, arrays) {
+  return Promise.all(Array.from({ length: doc.body.skins }, (_, k) => {
+    const data = /** @type {Uint8Array<ArrayBuffer>} */ (arrays.get(`skin.${k}`));
+    return createImageBitmap(new Blob([data], { type: "image/webp" }), { colorSpaceConversion: "none" });
+  }));
+}
+
 export class Picture {
   /**
    * @param {HTMLElement} place @param {any} doc @param {import("./chart.js").Chart} chart
@@ -51,13 +59,9 @@ export class Picture {
 
   /**
    * Start WebGL; without it the canvas shows feet from above.
-   * @param {import("./blob.js").Arrays} arrays
+   * @param {import("./blob.js").Arrays} arrays @param {ImageBitmap[]} skins
    */
-  async start(arrays) {
-    const skins = await Promise.all(Array.from({ length: this.doc.body.skins }, (_, k) => {
-      const data = /** @type {Uint8Array<ArrayBuffer>} */ (arrays.get(`skin.${k}`));
-      return createImageBitmap(new Blob([data], { type: "image/webp" }), { colorSpaceConversion: "none" });
-    }));
+  start(arrays, skins) {
     try {
       this.viewer = new Viewer(this.canvas, this.doc, arrays, skins);
     } catch {
@@ -170,11 +174,11 @@ export class Picture {
     const now = performance.now();
     const apart = now - this.last;
     this.last = now;
-    if (!playing || apart > 400) return;
-    this.slow = 0.92 * this.slow + 0.08 * apart;
-    if (this.slow > SLOW && this.scale > LEAST) {
-      this.scale = Math.max(LEAST, this.scale * 0.85);
-      this.slow = 0;
-    }
+    if (!playing || apart > 1000) return;
+    this.slow = 0.9 * this.slow + 0.1 * Math.min(apart, 4 * SLOW);
+    if (this.slow <= SLOW) return;
+    if (this.scale > LEAST) this.scale = Math.max(LEAST, this.scale * 0.85);
+    else if (this.viewer) this.viewer.simple = true;
+    this.slow = 0;
   }
 }

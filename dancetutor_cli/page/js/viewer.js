@@ -30,8 +30,10 @@ export class Viewer {
    * @param {ImageBitmap[]} skins
    */
   constructor(canvas, doc, arrays, skins) {
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
+    const soft = isSoftware();
+    const gl = canvas.getContext("webgl2", { antialias: !soft, alpha: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("no WebGL 2");
+    this.simple = false; // without cast shadows: for machines that draw slowly
     this.gl = gl;
     this.doc = doc;
     const shaders = doc.shaders;
@@ -50,7 +52,7 @@ export class Viewer {
     this.skins = skins.map((image) => skinTexture(gl, image));
     this.tiles = tileTexture(gl, doc.stage);
     this.lights = numbers(gl, new Float32Array(4 * doc.pad.panels.length), doc.pad.panels.length, 1);
-    this.texels = 1024;
+    this.texels = soft ? 512 : 1024;
     this.map = shadowMap(gl, this.texels);
     this.palette = new Float32Array(COLOURS.flatMap((name) => doc.look.stage[name].map((/** @type {number} */ c) => c / 255)));
     gl.enable(gl.CULL_FACE);
@@ -63,7 +65,7 @@ export class Viewer {
     for (const view of views) {
       const cast = this.cast(view);
       this.setJoints(view.skin);
-      this.drawShadow(cast);
+      if (!this.simple) this.drawShadow(cast);
       const [x, y, width, height] = view.box;
       gl.viewport(x, y, width, height);
       gl.enable(gl.SCISSOR_TEST);
@@ -153,7 +155,7 @@ export class Viewer {
       (stage.high[0] - stage.low[0]) / 2, (stage.high[2] - stage.low[2]) / 2);
     gl.uniform2f(at.corner_of_tiles, stage.corner[0], stage.corner[1]);
     gl.uniform2i(at.tiles, stage.panel.length, stage.panel[0].length);
-    gl.uniform1f(at.dark, look.light.shadow);
+    gl.uniform1f(at.dark, this.simple ? 0 : look.light.shadow);
     const texel = Math.max(1, Math.round((look.light.shadow_soft * this.texels) / SHADOW_REACH / 2));
     gl.uniform1f(at.spread, (texel * 1.35) / this.texels);
     gl.uniform3f(at.contact, look.light.contact, look.light.contact_soft, look.stage.glow);
@@ -196,7 +198,7 @@ export class Viewer {
     gl.uniform2f(at.rim, toon.rim, toon.rim_from);
     gl.uniform3fv(at.shade, toon.shade.map((/** @type {number} */ c) => c / 255));
     gl.uniform3fv(at.outline_colour, toon.outline.map((/** @type {number} */ c) => c / 255));
-    gl.uniform1f(at.has_shadow, ghost ? 0 : 1);
+    gl.uniform1f(at.has_shadow, ghost || this.simple ? 0 : 1);
     bind(gl, 2, this.map.texture, at.shadow);
     gl.bindVertexArray(this.mesh);
     const depth = Math.max(dot(minus(view.root, camera.position), axes(camera).forward), 0.05);
@@ -214,6 +216,15 @@ export class Viewer {
     }
     gl.cullFace(gl.BACK);
   }
+}
+
+/** Whether WebGL is drawn by the processor: then smooth edges cost more than they give. */
+function isSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const about = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
 }
 
 /** @param {WebGL2RenderingContext} gl @param {{first: number, count: number}} part */

@@ -1,0 +1,55 @@
+"""A folder: a page for each chart, and an index."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from conftest import TITLE, write_song
+
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.jobs.bake import BakeTask
+from dancetutor_cli.jobs.page import PageTask
+from dancetutor_cli.jobs.page_batch import page_jobs
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.page.index import Entry, index_page
+from dancetutor_cli.resources import charts_path
+
+
+def test_every_chart_of_a_folder_gets_a_file_of_its_own(tmp_path: Path) -> None:
+    task = PageTask(BakeTask(charts_path(), Selection()))
+    jobs, bad = page_jobs(task, tmp_path)
+    assert bad == [] and len(jobs) == 6
+    assert len({job.target for job in jobs}) == 6
+    assert [job.task.bake.selection.index for job in jobs] == list(range(6))
+
+
+def test_a_folder_becomes_pages_and_an_index(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    songs = tmp_path / "songs"
+    songs.mkdir()
+    write_song(songs)
+    (songs / "broken.sm").write_bytes(b"\x00\xff" * 40)
+    with pytest.raises(SystemExit) as stop:
+        main(["page", str(songs), "-o", str(tmp_path / "out"), "--difficulty", "hard"])
+    assert stop.value.code == 2  # one file could not be read
+    said = capsys.readouterr()
+    assert ": 1 page\n" in said.out and "broken.sm" in said.out + said.err
+    index = (tmp_path / "out" / "index.html").read_text("utf-8")
+    links = re.findall(r'href="([^"]+\.html)"', index)
+    assert len(links) == 1 and (tmp_path / "out" / links[0]).stat().st_size > 100_000
+
+
+def test_the_index_never_holds_people_s_markup() -> None:
+    text = index_page([Entry("a b&c.html", TITLE, "<i>me</i>", 'x "Hard" 9')], "<pack>").decode()
+    assert "<script" not in text and "<img" not in text and "<i>" not in text
+    assert 'href="a%20b%26c.html"' in text
+    assert "default-src 'none'" in text
+
+
+def test_what_is_about_one_chart_is_refused_for_folders(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["page", str(charts_path()), "-o", str(tmp_path / "out"), "--play", "x.json"])
+    assert stop.value.code == 2
+    assert "is a folder" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
