@@ -88,5 +88,6 @@ def test_every_label_that_the_modules_use_exists() -> None:
     for path in folder.glob("*.js"):
         for key in re.findall(r'\bt\(\s*"([\w-]+)"', path.read_text("utf-8")):
             assert key in known, f"{path.name}: {key}"
-        for key in re.findall(r'\bname: "(\w+)", keys:', path.read_text("utf-8")):
+        for key in re.findall(r'\bname: "(\w+)", keys:|slider\("(\w+)"', path.read_text("utf-8")):
+            key = key[0] or f"setting-{key[1]}"
             assert key in known, f"{path.name}: {key}"

@@ -42,7 +42,7 @@ export function alongPanel(app) {
   refresh();
   return el("div", {},
     el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait), score,
-    el("p", { class: "field" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
+    el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
     keys, pads, el("p", { class: "group" }, assign, calibrate), el("p", { class: "hint" }, t("padHint")));
 }
 

@@ -3,7 +3,7 @@
 import { Chart } from "./chart.js";
 import { Transport } from "./clock.js";
 import { Highway, scrollSpeed } from "./highway.js";
-import { Input } from "./input.js";
+import { Input, keyName } from "./input.js";
 import { Judge, ramp } from "./judge.js";
 import { makeLink, parseLink } from "./link.js";
 import { Motion } from "./motion.js";
@@ -39,7 +39,7 @@ export class App {
     this.transport.onChange = () => this.changed();
     this.transport.onPass = () => this.pass();
     this.sound.clicks = clicksOf(this.chart, () => ({
-      claps: this.settings.claps || !this.sound.music, metronome: this.settings.metronome,
+      claps: this.claps, metronome: this.settings.metronome,
     }));
     this.judge = new Judge(this.chart);
     this.input = new Input(doc.pad.names, this.settings);
@@ -53,6 +53,7 @@ export class App {
     this.chosen = -1; // note that the author looks at
     this.passage = -1; // of the list, that is looped
     this.fresh = true; // something is to be drawn
+    this.played = false; // whether anybody has pressed play yet
     this.message = ""; // what went wrong with the music
     /** @type {Picture | null} */
     this.picture = null;
@@ -65,6 +66,16 @@ export class App {
   /** Beats of getting ready before a loop; at a higher speed as many. */
   get leadBeats() {
     return this.settings.countIn ? this.settings.leadBeats : 0;
+  }
+
+  /** Whether steps are clapped: as asked for, else where there is no music. */
+  get claps() {
+    return this.settings.claps === "auto" ? !this.sound.music : this.settings.claps === "on";
+  }
+
+  /** @param {boolean} on */
+  setClaps(on) {
+    this.set("claps", on ? "on" : "off");
   }
 
   /** Tell the panels. @param {string} what */
@@ -102,6 +113,7 @@ export class App {
 
   async play() {
     if (this.transport.playing) return this.transport.pause();
+    this.played = true;
     await this.sound.start();
     if (this.along) this.restartJudge(this.transport.at);
     this.transport.play();
@@ -289,6 +301,7 @@ export class App {
     const { t, transport } = this;
     if (this.message) return this.message;
     if (transport.waiting) return t("waiting");
+    if (!this.played && !this.sound.music) return t("musicMissing", { name: this.doc.words.music || "…" });
     const measure = (/** @type {number} */ s) => String(Math.round((100 * this.chart.beatAt(s)) / 4) / 100);
     const { loop } = transport;
     const looped = loop ? t("loopFrom", { from: measure(loop.a), to: measure(loop.b), passes: this.passes }) : "";
@@ -314,7 +327,8 @@ export class App {
     if (transport.playing && this.along && !this.wait) {
       if (this.judge.advance(second - this.settings.latency * transport.rate, transport.rate)) this.tell("hits");
     }
-    if (!this.fresh && !transport.playing && !timeline.grip) return;
+    if (!this.fresh && !transport.playing && !timeline.grip && !this.input.changed) return;
+    this.input.changed = false;
     this.fresh = false;
     const next = this.nextRow();
     this.picture?.draw({ second, camera: this.settings.camera, both: this.both, next, playing: transport.playing && !transport.waiting });
@@ -329,6 +343,7 @@ export class App {
       second, speed: scrollSpeed(this.settings.speed), mirror: this.mirrored,
       marked: (_, row) => this.tells(row), verdicts: this.along ? this.judge.verdicts : new Map(),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
+      keys: this.along ? this.input.keys.map(keyName) : [], held: this.along ? this.input.held : [],
     };
   }
 

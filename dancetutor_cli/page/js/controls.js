@@ -33,7 +33,7 @@ export function actionsOf(app, ui) {
     { name: "ramp", keys: ["r"], run: () => app.set("ramp", !settings.ramp) },
     { name: "countIn", keys: ["i"], run: () => app.set("countIn", !settings.countIn) },
     { name: "metronome", keys: ["m"], run: () => app.set("metronome", !settings.metronome) },
-    { name: "claps", keys: ["h"], run: () => app.set("claps", !settings.claps) },
+    { name: "claps", keys: ["h"], run: () => app.setClaps(!app.claps) },
     { name: "along", keys: ["p"], run: () => app.setAlong(!app.along) },
     { name: "wait", keys: ["w"], run: () => app.setWait(!app.wait) },
     { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
@@ -110,7 +110,7 @@ export function makeBar(app, ui) {
     ["ramp", "r", () => settings.ramp, (on) => app.set("ramp", on)],
     ["countIn", "i", () => settings.countIn, (on) => app.set("countIn", on)],
     ["metronome", "m", () => settings.metronome, (on) => app.set("metronome", on)],
-    ["claps", "h", () => settings.claps || !app.sound.music, (on) => app.set("claps", on)],
+    ["claps", "h", () => app.claps, (on) => app.setClaps(on)],
   ]).map(([name, key, is, change]) => ({ is, button: toggle(t(name), is(), change, key) }));
   const clear = button("noLoop", "✕", () => app.setLoop(null, null), "x");
   const bar = el("div", { class: "bar", role: "toolbar", "aria-label": t("controls") },

@@ -20,6 +20,8 @@ const INK = "#0a0b14";
  * @property {{a: number, b: number} | null} loop
  * @property {Map<number, number>} feet limbs the author gave to notes
  * @property {number} chosen note that is chosen, or -1
+ * @property {string[]} keys of the panels, to be shown while somebody plays along; else none
+ * @property {boolean[]} held panels that are pressed by who plays along
  */
 
 export class Highway {
@@ -134,9 +136,15 @@ export class Highway {
     this.shape(column, x, m.receptor, 0.98 * m.size, scene.mirror);
     c.fillStyle = INK;
     c.fill();
-    c.lineWidth = Math.max(1.5, 0.05 * m.size);
-    c.strokeStyle = this.style.receptor;
+    c.lineWidth = Math.max(1.5, (scene.held[column] ? 0.14 : 0.05) * m.size);
+    c.strokeStyle = scene.held[column] ? "#fff" : this.style.receptor;
     c.stroke();
+    if (!scene.keys[column]) return;
+    c.fillStyle = "#c9cfe8";
+    c.font = `700 ${Math.round(Math.max(11 * m.ratio, 0.22 * m.size))}px ui-monospace, monospace`;
+    c.textAlign = "center";
+    c.textBaseline = "middle";
+    c.fillText(scene.keys[column], x, m.receptor - 0.68 * m.size);
   }
 
   /**

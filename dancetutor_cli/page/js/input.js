@@ -26,6 +26,7 @@ export class Input {
     this.down = new Map();
     /** @type {boolean[]} panels that are down */
     this.held = panels.map(() => false);
+    this.changed = false; // a panel went down or up since the last picture
     /** @type {(press: Press) => void} */
     this.onPress = () => {};
     /** @type {((name: string) => void) | null} gets the next key or button instead: a panel is being assigned */
@@ -77,7 +78,9 @@ export class Input {
   /** @param {KeyboardEvent} event */
   keyUp(event) {
     const column = this.keys.indexOf(event.code);
-    if (column >= 0) this.held[column] = false;
+    if (column < 0) return;
+    this.held[column] = false;
+    this.changed = true;
   }
 
   /** Look at the pads; to be called for every picture. */
@@ -92,7 +95,10 @@ export class Input {
         if (is && this.learning) return this.learning(`${name}#${number}`);
         const column = buttons.indexOf(number);
         if (column >= 0 && is) this.press(column, "pad", pad.timestamp);
-        else if (column >= 0) this.held[column] = false;
+        else if (column >= 0) {
+          this.held[column] = false;
+          this.changed = true;
+        }
       });
       this.down.set(name, now);
     }
@@ -102,6 +108,7 @@ export class Input {
   press(column, device, at) {
     const ago = (performance.now() - at) / 1000;
     this.held[column] = true;
+    this.changed = true;
     this.onPress({ column, device, ago: ago > 0 && ago < LONGEST ? ago : 0 });
   }
 

@@ -20,8 +20,8 @@ function helpSheet(app, actions) {
   const rows = actions.map((action) => el("tr", {}, el("th", { scope: "row" }, ...action.keys.flatMap((key) => [el("kbd", {}, keyText(app, key)), " "])),
     el("td", {}, t(action.name))));
   const dialog = el("dialog", { class: "sheet", "aria-label": t("helpSheet") },
-    el("h2", {}, t("helpSheet")), el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows)),
-    el("p", {}, t("helpMouse")), el("button", { type: "button", onclick: () => dialog.close() }, t("close")));
+    el("button", { type: "button", onclick: () => dialog.close() }, t("close")), el("h2", {}, t("helpSheet")),
+    el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows)), el("p", {}, t("helpMouse")));
   dialog.addEventListener("keydown", (event) => { if (event.key === "?") dialog.close(); });
   document.body.append(dialog);
   return dialog;

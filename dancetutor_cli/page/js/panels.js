@@ -72,15 +72,15 @@ export function settingsPanel(app, load) {
     input.addEventListener("input", () => { app.set(name, Number(input.value)); show(); });
     app.listeners.add((what) => { if (what === "settings") show(); });
     show();
-    return el("p", { class: "field" }, el("label", { for: name }, t(name)), input, shown);
+    return el("p", { class: "field" }, el("label", { for: name }, t(`setting-${name}`)), input, shown);
   };
   const music = el("p", { class: "hint", id: "music-state", role: "status" });
   const tell = () => { music.textContent = app.sound.music ? t("musicIs") : t("musicMissing", { name: doc.words.music || "…" }); };
   app.listeners.add((what) => { if (what === "music") tell(); });
   tell();
   return el("div", {},
-    el("p", { class: "field" }, el("label", { for: "music-file" }, t("musicFile")), file), music,
+    el("p", { class: "field whole" }, el("label", { for: "music-file" }, t("musicFile")), file), music,
     slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005),
-    el("p", { class: "field" }, el("label", { for: "language" }, t("languageLabel")), language),
+    el("p", { class: "field whole" }, el("label", { for: "language" }, t("languageLabel")), language),
     el("p", { class: "hint" }, t("storedHint")));
 }

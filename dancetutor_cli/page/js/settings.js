@@ -3,7 +3,7 @@
 const KEY = "dancetutor";
 
 const DEFAULTS = {
-  language: "", camera: "back", speed: 1, claps: false, metronome: false, countIn: true, leadBeats: 4, ramp: false,
+  language: "", camera: "back", speed: 1, /** "auto": where there is no music */ claps: "auto", metronome: false, countIn: true, leadBeats: 4, ramp: false,
   help: "all", latency: 0, volume: 0.9, yaw: 30, pitch: 20, zoom: 1,
   /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
   /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
