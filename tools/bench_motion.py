@@ -6,10 +6,9 @@ import time
 
 import numpy as np
 
-from dancetutor_cli.bake import bake, bake_plan, plan_of
+from dancetutor_cli.bake import bake, bake_plan, planned
 from dancetutor_cli.chart import load
 from dancetutor_cli.motion.ik import solver as ik
-from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.resources import charts_path
@@ -55,15 +54,14 @@ def _seconds(work, rounds: int = 3) -> float:  # type: ignore[no-untyped-def]
 
 def measure() -> list[Row]:
     """Rows (name, value, unit, goal, peer) for `tools/bench.py`."""
-    settings = default_settings()
     out: list[Row] = []
     took = {}
     for copies in (3, 12):
         chart, play, pad = _repeated(40.0, copies)
-        plan = plan_of(chart, play, pad)
+        plan, context = planned(chart, play, pad)
         length = 40.0 * copies
-        bake_plan(plan, FPS, 0.0, 5.0, settings)
-        took[copies] = _seconds(lambda plan=plan, length=length: bake_plan(plan, FPS, 0.0, length, settings), 2)
+        bake_plan(plan, context, FPS, (0.0, 5.0))
+        took[copies] = _seconds(lambda p=plan, c=context, end=length: bake_plan(p, c, FPS, (0.0, end)), 2)
     out.append(("bake of two minutes at 60 fps", took[3], "s", "at most 4", ""))
     out.append(("animate frames", LENGTH * FPS / took[3], "frames/s", "", ""))
     out.append(("eight minutes against two, per second", took[12] / took[3] / 4, "x", "about 1", ""))

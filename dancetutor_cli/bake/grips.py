@@ -8,21 +8,21 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.bar import on_rail
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
-from dancetutor_cli.motion.ik.rail import on_rail
-from dancetutor_cli.motion.ik.solver import arm_rotations, solve
+from dancetutor_cli.motion.ik.solver import ArmGoal, arm_rotations, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
-from dancetutor_cli.motion.model import Bar, Grip
+from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import BarSettings, MotionSettings
-from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.trajectory.body import body_path
+from dancetutor_cli.motion.swing.foot_path import both_feet
+from dancetutor_cli.motion.trajectory.body import Known, body_trajectory
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.quaternion import UP
-from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES
 
 Array = NDArray[np.float64]
@@ -51,10 +51,8 @@ class _Trunk:
     yaw: Array
 
 
-def grips_of(
-    plan: Plan, bar: Bar, span: tuple[float, float], skeleton: Skeleton, settings: MotionSettings
-) -> tuple[Grip, ...]:
-    """When each hand rests on the bar between the seconds of `span`, in order of start.
+def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
+    """The plan with when each hand rests on the bar between the seconds of `span`, in order of start.
 
     A hand lets go before the body goes or turns so far that its arm would not reach, would bend beyond its joints'
     limits or go through the trunk, and whenever a hand goes to a panel; it takes the rail anew, farther on, when
@@ -62,15 +60,15 @@ def grips_of(
     """
     times = np.arange(span[0], span[1], 1.0 / RATE)
     if len(times) < 2:
-        return ()
-    busy = _busy(plan, times, settings)
+        return plan
+    busy = _busy(plan, times, context.settings)
     leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in _runs(~busy))
-    trunk = _trunk(replace(plan, bar=bar, grips=leaning_back), times, skeleton, settings)
+    trunk = _trunk(replace(plan, grips=leaning_back), times, context)
     found: list[Grip] = []
     for side in (0, 1):
-        arm = _Arm(side, bar, trunk, busy, skeleton, settings)
-        found += list(_pieces(times, arm, settings.bar))
-    return tuple(sorted(found, key=lambda g: (g.start, g.side)))
+        arm = _Arm(side, trunk, busy, context)
+        found += list(_pieces(times, arm, context.settings.bar))
+    return replace(plan, grips=tuple(sorted(found, key=lambda g: (g.start, g.side))))
 
 
 def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
@@ -85,41 +83,40 @@ def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
     return out
 
 
-def _trunk(plan: Plan, times: Array, skeleton: Skeleton, settings: MotionSettings) -> _Trunk:
+def _trunk(plan: Plan, times: Array, context: Context) -> _Trunk:
     """Where the upper body will be, found in parts so that an hour needs little memory."""
     parts = []
     for first in np.arange(times[0], times[-1] + 1e-9, PART):
-        parts.append(_part(plan, times[(times >= first) & (times < first + PART)], skeleton, settings))
+        parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
     return _Trunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(_Trunk)))
 
 
-def _part(plan: Plan, at: Array, skeleton: Skeleton, settings: MotionSettings) -> _Trunk:
+def _part(plan: Plan, at: Array, context: Context) -> _Trunk:
     """The upper body at the times `at`, by a rough bake without the hands on the bar."""
+    skeleton = context.skeleton
     grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
-    drop = settings.step.heel_drop
-    feet = (foot_path(plan.feet[0], grid, drop), foot_path(plan.feet[1], grid, drop))
-    body = body_path(plan, grid, feet, skeleton, settings)
-    targets = ik_targets(replace(plan, bar=None, grips=()), body, feet, grid, skeleton, settings)
-    rotations, root = solve(skeleton, targets, settings.body.reach)
-    places, world = world_transforms(skeleton, rotations, root)
-    above = centre_of_mass(skeleton, places, world) - root
+    feet = both_feet(plan.feet, grid, context.settings.step.heel_drop)
+    body = body_trajectory(plan, grid, feet, context)
+    targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
+    poses = solve(skeleton, targets, context.settings.body.reach)
+    places, world = world_transforms(skeleton, *poses)
+    above = centre_of_mass(skeleton, places, world) - poses.root
     above[:, 2] -= ARMS_BACK
-    body = body_path(plan, grid, feet, skeleton, settings, body, above)
+    body = body_trajectory(plan, grid, feet, context, Known(body, above))
     now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
     pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
-    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - root[now] + pelvis for s in SIDES]
+    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
     return _Trunk(pelvis, world[now, skeleton.index("vt4")], np.stack(shoulders, axis=1), body.chest_yaw[now])
 
 
 class _Arm:
     """One arm, and where on the rail its hand can be at which of the n times."""
 
-    def __init__(
-        self, side: int, bar: Bar, trunk: _Trunk, busy: Flags, skeleton: Skeleton, settings: MotionSettings
-    ) -> None:
-        self.side, self.bar, self.trunk, self.busy = side, bar, trunk, busy
-        self.skeleton, self.settings = skeleton, settings
-        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * settings.bar.apart, bar)
+    def __init__(self, side: int, trunk: _Trunk, busy: Flags, context: Context) -> None:
+        assert context.bar is not None
+        self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
+        self.skeleton, self.settings = context.skeleton, context.settings
+        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * self.settings.bar.apart, self.bar)
 
     def fits(self, x: Array, when: slice) -> Flags:
         """Whether the hand may rest on the rail at x (k,) at the times `when`, k of them."""
@@ -131,7 +128,7 @@ class _Arm:
         near &= (aside if side == 0 else -aside) > -INWARD
         elbow = elbows_on_bar(chest)[:, side]
         hands = np.tile(hand, (len(wrist), 1))
-        turns = arm_rotations(skeleton, side, shoulder, chest, wrist, hands, elbow)
+        turns = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
         names = [f"{SIDES[side]}_{n}" for n in ("shoulder", "elbow", "radiocarpal")]
         for name, turn in zip(names, turns, strict=True):
             near &= beyond(skeleton, name, turn) < -ROOM if name[2:] != "elbow" else True

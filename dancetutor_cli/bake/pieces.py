@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.plan import FootTrack, Plan
-from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.rig import quaternion as quat
 
 Array = NDArray[np.float64]
@@ -29,11 +29,11 @@ class Piece:
     """
 
     plan: Plan
+    context: Context
     fps: float
     baked: tuple[float, float]
     kept: tuple[float, float]
     span: tuple[float, float]
-    settings: MotionSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,8 +123,8 @@ def _bake_and_write(
     if target.suffix.lower() == ".json":
         from dancetutor_cli.formats.moves_json import write_moves
 
-        plan = plan_asked(asked, task)
-        write_moves(target, plan, asked.song.title, label, *(asked.section or (-1e9, 1e9)))
+        plan, bar = plan_asked(asked, task)
+        write_moves(target, plan, asked.song.title, label, asked.section or (-1e9, 1e9), bar)
         click.echo(f"{target}: the moves of {label}")
     if target.suffix.lower() == ".json" and report_to is None and plot is None:
         return

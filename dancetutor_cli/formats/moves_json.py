@@ -34,17 +34,22 @@ SCHEMA = 1
 _FEET = ("left_foot", "right_foot")
 
 
-def write_moves(path: Path, plan: Plan, title: str, chart: str, start: float, end: float) -> None:
-    """Write the moves of a plan that begin between `start` and `end`, seconds. Raises FileError."""
-    data = moves_data(plan, title, chart, start, end)
+def write_moves(
+    path: Path, plan: Plan, title: str, chart: str, section: tuple[float, float], bar: Bar | None = None
+) -> None:
+    """Write the moves of a plan that begin in a section, seconds; bar : behind her, if any. Raises FileError."""
+    data = moves_data(plan, title, chart, section, bar)
     write_atomic(path, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
 
 
-def moves_data(plan: Plan, title: str, chart: str, start: float, end: float) -> dict[str, Any]:
+def moves_data(
+    plan: Plan, title: str, chart: str, section: tuple[float, float], bar: Bar | None = None
+) -> dict[str, Any]:
     """The object described above, as plain data."""
+    start, end = section
     moves = [m for side, track in enumerate(plan.feet) for m in _foot_moves(track, _FEET[side])]
     moves += _hand_moves(plan.presses)
-    moves += [_grip(plan.bar, grip) for grip in plan.grips if plan.bar is not None]
+    moves += [_grip(bar, grip) for grip in plan.grips if bar is not None]
     moves.sort(key=lambda m: (m["start"], m["limb"]))
     return {
         "schema": SCHEMA,

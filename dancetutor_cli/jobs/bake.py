@@ -15,7 +15,7 @@ from dancetutor_cli.jobs.selection import Selection
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.model import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play
@@ -148,13 +148,14 @@ def _piece(_: object, function: Callable[[Piece], Done], piece: Piece) -> Done:
     return function(piece)
 
 
-def plan_asked(asked: Asked, task: BakeTask) -> Plan:
-    """Only the moves."""
-    from dancetutor_cli.bake import plan_of
+def plan_asked(asked: Asked, task: BakeTask) -> tuple[Plan, Bar | None]:
+    """Only the moves, and the bar that she holds."""
+    from dancetutor_cli.bake import planned
     from dancetutor_cli.motion.settings import load_settings
 
-    settings = load_settings(task.motion)
-    return plan_of(asked.chart, asked.play, asked.pad, settings, rate=task.rate, bar=task.bar, gait=task.gait)
+    how = {"settings": load_settings(task.motion), "rate": task.rate, "bar": task.bar, "gait": task.gait}
+    plan, context = planned(asked.chart, asked.play, asked.pad, **how)  # type: ignore[arg-type]
+    return plan, context.bar
 
 
 def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Play, Pad]:

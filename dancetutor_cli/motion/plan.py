@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Bar, Contact, Grip, Ground
+from dancetutor_cli.motion.model import Contact, Grip
 
 Array = NDArray[np.float64]
 
@@ -97,9 +97,7 @@ class Walk:
 class Plan:
     """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact.
 
-    bar, grips : the bar behind her and when her hands rest on it, as in `Motion`
-    walks : in order of time; ground : pad and floor, where she walks on both
-    beats : seconds of the song's beats, in order
+    grips : when her hands rest on the bar behind her, as in `Motion`; walks : in order of time
     lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
         play is danced as the mirror image
     """
@@ -108,14 +106,10 @@ class Plan:
     turns: tuple[Turn, ...]
     presses: tuple[Press, ...]
     contacts: tuple[Contact, ...]
-    centre: tuple[float, float]
     first: float
     last: float
-    bar: Bar | None = None
     grips: tuple[Grip, ...] = ()
     walks: tuple[Walk, ...] = ()
-    ground: Ground | None = None
-    beats: tuple[float, ...] = ()
     lead: int = 0
 
     @property

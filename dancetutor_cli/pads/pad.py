@@ -15,6 +15,7 @@ from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.resources import config_path
 
 MAX_PANELS = 10  # a row of the solver packs into 64 bits
+SQUARE = 3  # panels
 HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (cost-model.md)
 _KEYS = ("panels", "centre", "home", "reach")
 
@@ -54,6 +55,14 @@ class Pad:
         """Whether one foot can press two panels, (c, c); no panel is its own neighbour."""
         near: NDArray[np.bool_] = (self.distances <= self.reach + 1e-6) & ~np.eye(len(self), dtype=bool)
         return near
+
+    @cached_property
+    def squares(self) -> NDArray[np.float64]:
+        """Middle of each square of three by three panels, (s, 2): one of single, two of double."""
+        low, high = self.panels.min(axis=0), self.panels.max(axis=0)
+        count = int(np.floor((high[0] - low[0] + 1e-6) / SQUARE)) + 1
+        along = (low[0] + high[0]) / 2 + SQUARE * (np.arange(count) - (count - 1) / 2)
+        return np.column_stack((along, np.full(count, (low[1] + high[1]) / 2)))
 
     def mirrored(self, *, left_right: bool) -> NDArray[np.int64] | None:
         """For each column the column of the mirrored panel, left-right or up-down; None if the pad is not symmetric."""

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 GRAVITY = 9.81  # metres per second squared
 
 # joint that carries the part, fraction of the body's mass, rest position of the part's centre (x of the left side)
-_PARTS = (
+PARTS = (
     ("HumanoidRoot", 0.147, (0.0, 0.930, -0.005)),
     ("vl5", 0.130, (0.0, 1.070, 0.000)),
     ("vt10", 0.100, (0.0, 1.210, -0.005)),
@@ -41,7 +41,7 @@ def mass_points(skeleton: Skeleton) -> tuple[NDArray[np.int64], Array, Array]:
     """
     rest = skeleton.rest
     joints, masses, offsets = [], [], []
-    for name, mass, (x, y, z) in _PARTS:
+    for name, mass, (x, y, z) in PARTS:
         for mirrored in (name, name.replace("l_", "r_", 1)) if name.startswith("l_") else (name,):
             joint = skeleton.index(mirrored)
             centre = np.array([x if mirrored == name else -x, y, z])

@@ -19,7 +19,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 
 # name, joint, rest position of the left foot's point relative to (x of the ankle, 0, 0), metres
-_SOLE = (
+SOLE = (
     ("heel_in", "talocrural", (-0.028, 0.0, -0.070)),
     ("heel_out", "talocrural", (0.028, 0.0, -0.070)),
     ("ball_in", "metatarsal", (-0.040, 0.0, 0.092)),
@@ -27,7 +27,7 @@ _SOLE = (
     ("toe_in", "metatarsal", (-0.030, 0.0, 0.172)),
     ("toe_out", "metatarsal", (0.026, 0.0, 0.160)),
 )
-SOLE_NAMES = tuple(name for name, _, _ in _SOLE)
+SOLE_NAMES = tuple(name for name, _, _ in SOLE)
 SOLE_LENGTH = 0.242  # metres, heel to toe
 SIDES = ("l", "r")
 _PALM_REACH, _PALM_DEPTH = 0.085, 0.022  # from the wrist along the hand, and from the middle of the hand to its palm
@@ -48,7 +48,7 @@ def sole_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], tuple[BodyPo
     for side, mirror in zip(SIDES, (1.0, -1.0), strict=True):
         middle = rest[skeleton.index(f"{side}_talocrural")][0]
         points = []
-        for _, joint_name, (x, y, z) in _SOLE:
+        for _, joint_name, (x, y, z) in SOLE:
             joint = skeleton.index(f"{side}_{joint_name}")
             points.append(BodyPoint(joint, np.array([middle + mirror * x, y, z]) - rest[joint]))
         feet.append(tuple(points))

@@ -7,19 +7,27 @@ from typing import Any
 
 import numpy as np
 
+from dancetutor_cli.motion.context import Context, context_of
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play.model import Limb, Part, Play, Rows, StepKind
 
 L, R, LH, RH = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
-PANELS = np.array([(-1, 0), (0, -1), (0, 1), (1, 0)], dtype=np.float64)
 TICKS_PER_SECOND = 96  # 120 beats per minute
 
 Event = tuple[float, dict[int, Limb]]
 
 
-def pad(double: bool = False) -> Any:
+def pad(double: bool = False) -> Pad:
     """Panels of dance-single or dance-double, as the spec gives them."""
-    panels = np.vstack((PANELS, PANELS + np.array([3, 0]))) if double else PANELS
-    return SimpleNamespace(panels=panels, centre=(1.5, 0.0) if double else (0.0, 0.0))
+    found = load_pad("dance-double" if double else "dance-single")
+    assert found is not None
+    return found
+
+
+def context(double: bool = False) -> Context:
+    """The dancer on such a pad, with the usual settings."""
+    return context_of(pad(double), default_settings())
 
 
 def chart() -> Any:

@@ -65,14 +65,14 @@ def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pyte
         return report(bake(chart(), danced, pad(True)))["balance below 10 Hz"].value
 
     with_it = balance()
-    monkeypatch.setattr(importlib.import_module("dancetutor_cli.bake.bake"), "TIGHTENED", 0)
+    monkeypatch.setattr(importlib.import_module("dancetutor_cli.bake.settle"), "TIGHTENED", 0)
     assert with_it > balance() + 0.3
 
 
 def travelled(danced: list[tuple[float, dict[int, int]]], on_the_way: float) -> float:
     """How far both feet go in a plan, metres."""
     settings = replace(SETTINGS, step=replace(SETTINGS.step, on_the_way=on_the_way))
-    plan = plan_of(chart(), play(danced), pad(), settings)
+    plan = plan_of(chart(), play(danced), pad(), settings=settings)
     first, last = danced[0][0] + 0.01, danced[-1][0] + 0.01
     total = 0.0
     for track in plan.feet:

@@ -50,7 +50,7 @@ def test_other_files_are_no_motion(tmp_path: Path) -> None:
 
 def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     plan = plan_of(*demo)
-    write_moves(tmp_path / "m.json", plan, "Two Left Feet", "x", -1e9, 1e9)
+    write_moves(tmp_path / "m.json", plan, "Two Left Feet", "x", (-1e9, 1e9))
     data = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
     assert len(data["contacts"]) == int((demo[1].limb >= 0).sum())
     for limb in ("left_foot", "right_foot"):
@@ -58,18 +58,18 @@ def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # typ
         for move in (m for m in data["moves"] if m["limb"] == limb):
             assert move["from"] == place and move["start"] >= end - 1e-6 and move["end"] > move["start"]
             place, end = move["to"], move["end"]
-    late = moves_data(plan, "", "", 10.0, 20.0)
+    late = moves_data(plan, "", "", (10.0, 20.0))
     assert all(10.0 <= m["start"] <= 20.0 for m in late["moves"])
 
 
 def test_moves_of_a_section_begin_where_she_stands(demo) -> None:  # type: ignore[no-untyped-def]
     plan = plan_of(*demo)
     for begin in (10.0, 17.3, 24.9):
-        data = moves_data(plan, "", "", begin, begin + 8.0)
+        data = moves_data(plan, "", "", (begin, begin + 8.0))
         for limb in ("left_foot", "right_foot"):
             first = next(m for m in data["moves"] if m["limb"] == limb)
             assert data["start"][limb]["at"] == first["from"]
-        turns = moves_data(plan, "", "", -1e9, 1e9)["turns"]
+        turns = moves_data(plan, "", "", (-1e9, 1e9))["turns"]
         assert data["start"]["body"]["yaw"] == [t["yaw"] for t in turns if t["start"] < begin][-1]
 
 
@@ -79,7 +79,7 @@ def test_hands_reach_from_panel_to_panel(demo) -> None:  # type: ignore[no-untyp
         Press(10.5, 11.5, 1, (0.0, 0.28), lead=0.4),
         Press(14.0, 14.1, 0, (-0.28, 0.0), lead=0.7),
     )
-    data = moves_data(replace(plan_of(*demo), presses=presses), "", "", -1e9, 1e9)
+    data = moves_data(replace(plan_of(*demo), presses=presses), "", "", (-1e9, 1e9))
     moves = [m for m in data["moves"] if m["limb"].endswith("hand")]
     right = [m for m in moves if m["limb"] == "right_hand"]
     assert [m["kind"] for m in right] == ["reach", "press", "reach", "press"]

@@ -87,3 +87,21 @@ def test_a_wrong_file_is_named_with_its_line(tmp_path: Path, old: str, new: str,
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="cannot be read"):
         load_pads(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    ("steps_type", "middles"),
+    [
+        ("dance-single", [0.0]),
+        ("dance-solo", [0.0]),
+        ("dance-threepanel", [0.0]),
+        ("pump-single", [0.0]),
+        ("dance-double", [0.0, 3.0]),
+        ("pump-double", [0.0, 3.0]),
+        ("pump-halfdouble", [0.0, 3.0]),
+    ],
+)
+def test_squares_of_nine_panels(steps_type: str, middles: list[float]) -> None:
+    pad = load_pad(steps_type)
+    assert pad is not None
+    assert pad.squares[:, 0].tolist() == middles and not pad.squares[:, 1].any()

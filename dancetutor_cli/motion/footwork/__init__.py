@@ -1,1 +1,26 @@
 """From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.motion.footwork.planner import Planner
+from dancetutor_cli.motion.footwork.walks import with_walks
+
+if TYPE_CHECKING:
+    from dancetutor_cli.motion.context import Context
+    from dancetutor_cli.motion.plan import Plan
+    from dancetutor_cli.play.model import Play
+
+__all__ = ["plan_footwork"]
+
+
+def plan_footwork(play: Play, second: Callable[[int], float], gait: str, context: Context) -> Plan:
+    """What both feet and hands do in a song.
+
+    second : seconds of the music at a tick; gait : how she walks, a name or file as for `gait.load_gait`
+    Raises DancetutorError if the play has no steps.
+    """
+    plan = Planner(play, second, context).run()
+    return with_walks(plan, play.rows.second[play.rows.mines.any(axis=1)], gait, context)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.footing import SHORTEST, Stance, pair
+from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing, pair
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.plan import Press
 from dancetutor_cli.play.model import Limb, Play, StepKind
@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 class Touches:
     """Contacts and presses, collected row by row. `second(tick)` : seconds of the music."""
 
-    def __init__(self, play: Play, panels: Array, second: Callable[[int], float], stance: Stance) -> None:
-        self.play, self.panels, self.second, self.stance = play, panels, second, stance
+    def __init__(self, play: Play, second: Callable[[int], float], footing: Footing) -> None:
+        self.play, self.panels, self.second, self.footing = play, footing.context.panels, second, footing
         self.presses: list[Press] = []
         self.contacts: list[Contact] = []
 
@@ -30,7 +30,7 @@ class Touches:
         if kind == StepKind.HOLD:
             end = self.second(int(self.play.rows.hold_end[i, column]))
             if limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
-                foot = self.stance.feet[limb]
+                foot = self.footing.feet[limb]
                 foot.free = max(foot.free, end)
                 foot.holds = {c: e for c, e in foot.holds.items() if e > time - 1.0} | {column: end}
         panel = pair(self.panels[column])
@@ -40,7 +40,7 @@ class Touches:
 
     def _press(self, time: float, end: float, side: int, panel: tuple[float, float]) -> float:
         """A palm's press; returns its end."""
-        hands = self.stance.settings.hands
+        hands = self.footing.settings.hands
         end = max(time + hands.press, end if end < np.inf else 0.0)
         before = [p.end for p in self.presses if p.side == side]
         lead = min(hands.reach_down, max(time - before[-1], SHORTEST) if before else np.inf)
@@ -49,21 +49,21 @@ class Touches:
 
     def _turn_to_panel(self, side: int, panel: tuple[float, float]) -> float:
         """How far the body turns to the hand's side, radians, for a panel that is not before it."""
-        hands, feet = self.stance.settings.hands, self.stance.feet
+        hands, feet = self.footing.settings.hands, self.footing.feet
         away = np.array(panel) - (feet[0].ball + feet[1].ball) / 2
-        off = (np.arctan2(away[0], away[1]) - self.stance.turned_to() + np.pi) % (2 * np.pi) - np.pi
+        off = (np.arctan2(away[0], away[1]) - self.footing.turned_to() + np.pi) % (2 * np.pi) - np.pi
         beyond = np.clip(abs(np.degrees(off)) - hands.turn_from, 0.0, hands.turn_most)
         return float(np.radians(beyond) * (1.0 if side == 0 else -1.0))
 
     def ended(self) -> tuple[Contact, ...]:
         """All contacts, in order; one ends when its foot leaves the panel, also if that is before a hold's end."""
         self.contacts.sort(key=lambda c: (c.start, c.limb, c.column))
-        lifts = [[s.lift for s in f.swings if s.kind != "pivot"] for f in self.stance.feet]
+        lifts = [[s.lift for s in f.swings if s.kind != "pivot"] for f in self.footing.feet]
         return tuple(c if c.limb >= Limb.LEFT_HAND else self._ended(c, lifts[c.limb]) for c in self.contacts)
 
     def _ended(self, contact: Contact, lifts: list[float]) -> Contact:
         k = int(np.searchsorted(lifts, contact.start))
-        last = contact.end if contact.end < np.inf else contact.start + self.stance.settings.step.longest
+        last = contact.end if contact.end < np.inf else contact.start + self.footing.settings.step.longest
         end = lifts[k] if k < len(lifts) else last
         if contact.end < np.inf:
             end = min(end, contact.end)

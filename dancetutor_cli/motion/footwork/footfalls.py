@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.plan import FootTrack, Swing, Turn, Walk
 from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.swing.clearance import bend, detour, gaps_at
+from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
 from dancetutor_cli.numerics.ease import smooth
 
@@ -63,7 +64,7 @@ def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
 
 
 @dataclass(frozen=True, slots=True)
-class Steps:
+class WalkSteps:
     """A walk, ready to be put into a plan. room : least distance between the middle lines of her shoes, metres."""
 
     walk: Walk
@@ -72,42 +73,52 @@ class Steps:
     room: float
 
 
-def footsteps(
-    begin: Stand, goal: Stand, heading: float, ground: Ground, gait: str, start: float, ready: float,
-    settings: MotionSettings, lead: int,
-) -> Steps | None:  # fmt: skip
-    """Footsteps from one stand to another, at the slowest pace that arrives until `ready`; None if none does.
+@dataclass(frozen=True, slots=True)
+class Trip:
+    """From where to where she walks, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
+
+    begin: Stand
+    goal: Stand
+    heading: float
+    start: float
+    ready: float
+
+
+def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps | None:
+    """Footsteps from one stand to another, at the slowest pace that arrives in time; None if none does.
 
     lead : the foot that goes first where both have the same room
     """
     slow, quick = load_gait(gait)
+    begin, goal, most = trip.begin, trip.goal, context.settings.walk.turn
     distance = float(np.linalg.norm(goal.middle - begin.middle))
-    turning = _turns(begin.heading, heading, settings) + _turns(heading, goal.heading, settings)
+    turning = _turns(begin.heading, trip.heading, most) + _turns(trip.heading, goal.heading, most)
     for share in SPEEDS:
         pace = blended(slow, quick, float(share))
         count = max(int(np.ceil(2 * distance / pace.stride - 1e-6)), turning + 1, 2) + 1
-        last = start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
-        if last <= ready:
-            how = Pace(gait, float(share), start)
+        last = trip.start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
+        if last <= trip.ready:
+            how = Pace(gait, float(share), pace)
             both = []
             for side in (lead, 1 - lead):
-                falls = _footfalls(begin, goal, heading, count, side, ground, settings)
-                both.append(_as_swings(begin, falls, side, pace, how, ground, settings))
+                falls = _footfalls(trip, count, side, context)
+                both.append(_as_swings(trip, falls, side, how, context))
             return max(both, key=lambda s: round(s.room, 6))
     return None
 
 
-def _turns(a: float, b: float, settings: MotionSettings) -> int:
-    return int(np.ceil(abs(b - a) / np.radians(settings.walk.turn) - 1e-6))
+def _turns(a: float, b: float, most: float) -> int:
+    """Steps that it takes to turn from one heading to another, at most `most` degrees in each."""
+    return int(np.ceil(abs(b - a) / np.radians(most) - 1e-6))
 
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How quickly she walks: a gait's name, the share of its quick form, and when she begins."""
+    """How quickly she walks: a gait's name, the share of its quick form, and the gait that this makes."""
 
-    gait: str
+    name: str
     share: float
-    start: float
+    gait: Gait
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +130,11 @@ class Footfall:
     heading: float
 
 
-def _footfalls(
-    begin: Stand, goal: Stand, heading: float, count: int, first: int, ground: Ground, settings: MotionSettings
-) -> list[Footfall]:
+def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Footfall]:
     """`count` footfalls, the first of foot `first`; the last two are the goal's."""
+    begin, goal, ground, settings = trip.begin, trip.goal, context.ground, context.settings
     out = np.radians(settings.step.toe_out)
-    ways = _ways(begin, goal, heading, count, np.radians(settings.walk.turn))
+    ways = _ways(trip, count, np.radians(settings.walk.turn))
     travel = goal.middle - begin.middle
     along = float(np.arctan2(travel[0], travel[1]))
     # steps across the way she faces are short, or ankles would bend aside
@@ -144,11 +154,11 @@ def _footfalls(
     return steps
 
 
-def _ways(begin: Stand, goal: Stand, heading: float, count: int, most: float) -> list[float]:
+def _ways(trip: Trip, count: int, most: float) -> list[float]:
     """Which way the body points at each footfall but the last two: to `heading` as soon and as long as turns allow."""
-    out = []
+    begin, goal, out = trip.begin, trip.goal, []
     for k in range(1, count - 1):
-        way = np.clip(heading, begin.heading - k * most, begin.heading + k * most)
+        way = np.clip(trip.heading, begin.heading - k * most, begin.heading + k * most)
         left = (count - 1 - k) * most
         out.append(float(np.clip(way, goal.heading - left, goal.heading + left)))
     return out
@@ -176,22 +186,22 @@ def room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float],
     return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
 
 
-def _as_swings(
-    begin: Stand, steps: list[Footfall], first: int, pace: Gait, how: Pace, ground: Ground, settings: MotionSettings
-) -> Steps:
+def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
+    begin, pace, ground = trip.begin, how.gait, context.ground
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
     swings: tuple[list[Swing], list[Swing]] = ([], [])
     turns, landings, before, least = [], [], begin.heading, np.inf
     for k, step in enumerate(steps):
         side = (first + k) % 2
-        land = how.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
+        land = trip.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
         lift = land - (1.0 - STANCE) * pace.period
         far = float(np.linalg.norm(step.ball - places[side][0]))
         share = min(far / (0.6 * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
         pitches = (0.8 * share * push, max(share, 0.3) * push, -share * heel, 0.0)
         (ball, yaw), (other, standing) = places[side], places[1 - side]
-        bulge = detour(ball, yaw, step.ball, step.yaw, other, standing, settings.step.apart, 1.0 - 2.0 * side)
+        way = Way(ball, yaw, step.ball, step.yaw)
+        bulge = detour(way, other, standing, context.settings.step.apart, 1.0 - 2.0 * side)
         least = min(least, room(places[side], step, bulge, places[1 - side]))
         level = ground.level(*middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
@@ -205,8 +215,8 @@ def _as_swings(
         turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
         before = step.heading
         landings.append(land)
-    walk = Walk(how.start, landings[-1], tuple(landings), first, how.share, how.gait)
-    return Steps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
+    walk = Walk(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
+    return WalkSteps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 
 def _joined(turns: list[Turn]) -> list[Turn]:

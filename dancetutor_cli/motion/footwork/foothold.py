@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.footing import Foot, Stance
+from dancetutor_cli.motion.footwork.footing import Foot, Footing
 from dancetutor_cli.motion.settings import StepSettings
-from dancetutor_cli.motion.swing.clearance import SHARES, detour, gaps_at, over
+from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, gaps_at, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.swing.panels import ball_of, landing_ball, middle_of, room_on
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
 from dancetutor_cli.play.model import Part
 
 Array = NDArray[np.float64]
@@ -37,59 +37,91 @@ class Pose:
         return middle_of(self.ball, self.toes)
 
 
-def pose(stance: Stance, foot: Foot) -> Pose:
+def pose(footing: Footing, foot: Foot) -> Pose:
     """How a foot stands now."""
-    return Pose(foot.ball, stance.toes(foot))
+    return Pose(foot.ball, footing.toes(foot))
 
 
-def landing(
-    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float, other: Pose, cut: float,
-    following: Array | None,
-) -> tuple[Array, float]:  # fmt: skip
-    """Where the ball lands and how the foot is turned (without toe-out).
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What a foot is asked for at a row.
 
-    panels : (c, 2); parts : (c,) which part of the foot presses a column; columns : those that it presses
-    yaw : wanted; other : the other foot then; cut : 0 for the panel's centre to 1 for its inner edge
+    columns : those that it presses; parts : (c,) which part of a foot presses each column
+    yaw : wanted, without toe-out; cut : 0 for the panel's centre to 1 for its inner edge
     following : (2,) the panel that this foot steps on next, None if that is far off
     """
-    step = stance.settings.step
-    if len(columns) > 1:
-        return _bracket(stance, panels, parts, columns, foot, yaw)
-    toes = stance.toes(foot, yaw)
-    panel, room = panels[columns[0]], room_on(panels, columns[0])
-    ball = landing_ball(panel, toes, other.middle, cut, step.edge_margin, room)
+
+    columns: list[int]
+    parts: Array
+    yaw: float
+    cut: float
+    following: Array | None
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a ball may be: a centre (2,), and how far (2,) from it along x and z."""
+
+    centre: Array
+    room: Array
+
+
+def landing(footing: Footing, foot: Foot, goal: Goal, other: Pose) -> tuple[Array, float]:
+    """Where the ball lands and how the foot is turned (without toe-out). other : the other foot then"""
+    step = footing.settings.step
+    if len(goal.columns) > 1:
+        return _bracket(footing, foot, goal)
+    panels, following = footing.context.panels, goal.following
+    panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0])
+    ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, goal.cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
-    ball = ball + step.on_the_way * cut * (np.clip(way, panel - room, panel + room) - ball)
+    ball = ball + step.on_the_way * goal.cut * (np.clip(way, panel - room, panel + room) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
         ball = ball + STAYING * (foot.ball - ball)
-    return beside(stance, panel, room, foot, ball, yaw, other)
+    return beside(footing, foot, Spot(panel, room), ball, goal.yaw, other)
 
 
-def beside(
-    stance: Stance, panel: Array, room: Array, foot: Foot, ball: Array, yaw: float, other: Pose
-) -> tuple[Array, float]:
+def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
+    """Where the ball of a foot would like to land on a panel.
+
+    Parameters
+    ----------
+    spot : the panel; yaw : of the toes; other : (2,) middle of the other foot
+    cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
+    """
+    panel, room = spot.centre, spot.room
+    middle = panel.copy()
+    away = other - panel
+    distance = float(np.linalg.norm(away))
+    if distance > 1e-6:
+        direction = away / distance
+        to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
+        middle = panel + direction * min(cut * to_edge, distance)
+    return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))
+
+
+def beside(footing: Footing, foot: Foot, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
     """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
-    apart = stance.settings.step.apart
-    toes = np.array([stance.toes(foot, yaw)])
+    apart = footing.settings.step.apart
+    toes = np.array([footing.toes(foot, yaw)])
     free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
-    if free and not over(stance.mined, ball[None], toes)[0]:
+    if free and not over(footing.mined, ball[None], toes)[0]:
         return ball, yaw
-    balls = panel + room * PLACES * [foot.outward, 1.0]
-    turned = np.array([stance.limited(yaw + foot.outward * turn, stance.body_yaw()) for turn in TURNS])
+    balls = spot.centre + spot.room * PLACES * [foot.outward, 1.0]
+    turned = np.array([footing.limited(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
     grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
-    gaps = gaps_at(grid, yaws + foot.outward * stance.toe_out, other.ball, other.toes)
+    gaps = gaps_at(grid, yaws + foot.outward * footing.toe_out, other.ball, other.toes)
     price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
     price += np.maximum(apart - gaps, 0.0) * 1e6
-    price += over(stance.mined, grid, yaws + foot.outward * stance.toe_out) * 1e4
+    price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
 
 
-def _bracket(
-    stance: Stance, panels: Array, parts: Array, columns: list[int], foot: Foot, yaw: float
-) -> tuple[Array, float]:
+def _bracket(footing: Footing, foot: Foot, goal: Goal) -> tuple[Array, float]:
     """Heel on one panel, toes on the other."""
+    panels, parts, columns = footing.context.panels, goal.parts, goal.columns
     toe = next((c for c in columns if parts[c] == Part.TOE), None)
     heel = next((c for c in columns if parts[c] == Part.HEEL and c != toe), None)
     if heel is None:
@@ -97,9 +129,9 @@ def _bracket(
     toe = next(c for c in columns if c != heel)
     along = panels[toe] - panels[heel]
     toes = float(np.arctan2(along[0], along[1]))
-    toes += 2 * np.pi * round((yaw - toes) / (2 * np.pi))
+    toes += 2 * np.pi * round((goal.yaw - toes) / (2 * np.pi))
     middle = (panels[toe] + panels[heel]) / 2
-    return ball_of(middle, toes), toes - foot.outward * stance.toe_out
+    return ball_of(middle, toes), toes - foot.outward * footing.toe_out
 
 
 def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: float, columns: list[int]) -> Pitches:
@@ -117,12 +149,12 @@ def shoes_apart(a: Pose, b: Pose) -> float:
 
 
 def around(
-    stance: Stance, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
+    footing: Footing, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
 ) -> tuple[float, float]:
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
-    a, b, apart = stance.toes(foot), stance.toes(foot, yaw), stance.settings.step.apart
+    a, b, apart = footing.toes(foot), footing.toes(foot, yaw), footing.settings.step.apart
     if max(other.landed, other.turned) <= span[0]:
-        return detour(foot.ball, a, target, b, other.ball, stance.toes(other), apart, foot.outward)
+        return detour(Way(foot.ball, a, target, b), other.ball, footing.toes(other), apart, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
-    there = foot_path(stance.track(other, LATEST), times, stance.settings.step.heel_drop)
-    return detour(foot.ball, a, target, b, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)
+    there = foot_path(footing.track(other, LATEST), times, footing.settings.step.heel_drop)
+    return detour(Way(foot.ball, a, target, b), there.ball[:, [0, 2]], there.yaw, apart, foot.outward)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.plan import FootTrack, Swing
-from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import gaps_at, over
 from dancetutor_cli.motion.swing.foot_path import NO_TIME
 from dancetutor_cli.motion.swing.panels import ball_of
@@ -79,14 +79,15 @@ class Foot:
         return max(self.landed + min(STAND, (time - self.landed) / 3), self.turned + FREE_WINDOW)
 
 
-class Stance:
+class Footing:
     """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
 
     lead : the foot that leads, as in `Plan`
     """
 
-    def __init__(self, settings: MotionSettings, lead: int) -> None:
-        self.settings, self.lead = settings, lead
+    def __init__(self, context: Context, lead: int) -> None:
+        self.context, self.settings, self.lead = context, context.settings, lead
+        settings = context.settings
         self.normal = 0.0
         self.mined: Array = np.empty((0, 2))  # panels beside which feet land that mines pass soon
         self.toe_out = float(np.radians(settings.step.toe_out))

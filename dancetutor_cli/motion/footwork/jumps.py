@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.foothold import Pitches
-from dancetutor_cli.motion.footwork.footing import Stance, pair
+from dancetutor_cli.motion.footwork.footing import Footing, pair
 from dancetutor_cli.motion.plan import Swing
 from dancetutor_cli.motion.swing.jump_ways import jump_ways
 from dancetutor_cli.rig.mass import GRAVITY
@@ -16,33 +18,41 @@ HEEL_UP = 0.12  # seconds on the ground that a heel needs to come down and rise 
 Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
 
 
-def fly(
-    stance: Stance, take_off: float, land: float, goals: Goals, pitches: list[Pitches], turned: float = 0.0,
-    eased: float = 1.0, first: tuple[float, float] = (np.inf, np.inf),
-) -> None:  # fmt: skip
-    """Move both feet to their goals, on ways that keep the shoes apart.
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """Both feet in the air from `take_off` to `land`, seconds.
 
     turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
     first : when each foot leaves the ground, if before the take-off of both
     """
-    jump, feet = stance.settings.jump, stance.feet
+
+    take_off: float
+    land: float
+    turned: float = 0.0
+    eased: float = 1.0
+    first: tuple[float, float] = (np.inf, np.inf)
+
+
+def fly(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) -> None:
+    """Move both feet to their goals, on ways that keep the shoes apart."""
+    jump, feet = footing.settings.jump, footing.feet
     starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
-    before = np.array([stance.toes(f) for f in feet])
-    after = np.array([stance.toes(f, yaw) for f, (_, yaw) in zip(feet, goals, strict=True)])
-    turn = float(np.radians(turned))
-    share, aside = jump_ways(starts, before, ends, after, turn, stance.settings.step.apart)
+    before = np.array([footing.toes(f) for f in feet])
+    after = np.array([footing.toes(f, yaw) for f, (_, yaw) in zip(feet, goals, strict=True)])
+    turn = float(np.radians(flight.turned))
+    share, aside = jump_ways(starts, before, ends, after, turn, footing.settings.step.apart)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = eased * tuck_for(far, jump.tuck, jump.far)
+    tuck = flight.eased * tuck_for(far, jump.tuck, jump.far)
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):
-        lift = min(first[side], take_off)
-        height = GRAVITY * (land - lift) ** 2 / 8
+        lift = min(flight.first[side], flight.take_off)
+        height = GRAVITY * (flight.land - lift) ** 2 / 8
         # heels that have just come down do not get up so far again
         up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)
         swing = Swing(
-            lift, land, pair(ends[side]), float(after[side]), height, rise, pair(aside[side]), "jump",
+            lift, flight.land, pair(ends[side]), float(after[side]), height, rise, pair(aside[side]), "jump",
             tuck, turn, *middles, turning=share,
         )  # fmt: skip
         foot.move(swing, ends[side], goals[side][1])

@@ -11,18 +11,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.foothold import around, beside, pose
-from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, HOME_OUT, SHORTEST, Evading, Foot, Stance, pair
-from dancetutor_cli.motion.footwork.jumps import fly
+from dancetutor_cli.motion.footwork.foothold import Spot, around, beside, landing_ball, pose
+from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, HOME_OUT, SHORTEST, Evading, Foot, Footing, pair
+from dancetutor_cli.motion.footwork.jumps import Flight, fly
 from dancetutor_cli.motion.plan import Swing
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import over
-from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, landing_ball, room_on
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, room_on
 from dancetutor_cli.play.model import Play
 
 Array = NDArray[np.float64]
 PITCHES = (0.1, 0.2, 0.05, 0.0)  # radians, heel up
-SQUARE = 4  # panels around the middle of a pad
 ROAM = 0.04  # metres that it gives way there for the other foot
 FAR_HOME = 0.30  # metres; the middle of the pad is too far from a foot that stands farther away
 STEEP = 0.02  # seconds in which a foot in a hurry gets up high enough, or down from there
@@ -30,56 +29,56 @@ HASTE = 0.06  # seconds; a step that may last so long waits until the other foot
 PUSH = 0.03  # seconds that a foot stands between a mine and a jump
 
 
-def evade_mines(play: Play, i: int, time: float, panels: Array, stance: Stance, busy: set[int]) -> None:
+def avoid_mines(play: Play, i: int, time: float, footing: Footing, busy: set[int]) -> None:
     """Lift the feet that stand where mines of row i pass; `busy` feet step at that row anyway.
 
     Where a foot stands is asked of the plan, not of the play: it may reach over a neighbour panel, and who has gone
     to the middle of the pad already may stay there.
     """
-    mined = panels[play.rows.mines[i]]
+    mined = footing.context.panels[play.rows.mines[i]]
     if not len(mined):
         return
     threatened = [
         f
-        for f in stance.feet
-        if f.side not in busy and not f.holding(time) and over(mined, f.ball[None], np.array([stance.toes(f)]))[0]
+        for f in footing.feet
+        if f.side not in busy and not f.holding(time) and over(mined, f.ball[None], np.array([footing.toes(f)]))[0]
     ]
     if len(threatened) == 2:
-        _hop(stance, time, panels)
+        _hop(footing, time)
     elif threatened:
-        _lift(stance, threatened[0], time, panels, int(play.feet[i - 1, threatened[0].side]))
+        _lift(footing, threatened[0], time, int(play.feet[i - 1, threatened[0].side]))
 
 
-def _hop(stance: Stance, time: float, panels: Array) -> None:
+def _hop(footing: Footing, time: float) -> None:
     """A hop of both feet to the middle of the pad, if there is still time to leave the ground."""
-    half = stance.settings.mines.hop / 2
-    take_off = max(time - half, *(f.earliest(time) for f in stance.feet))
+    half = footing.settings.mines.hop / 2
+    take_off = max(time - half, *(f.earliest(time) for f in footing.feet))
     if take_off > time - SHORTEST:
         return
-    goals = [_home(stance, foot, panels) for foot in stance.feet]
-    for foot in stance.feet:
+    goals = [_home(footing, foot) for foot in footing.feet]
+    for foot in footing.feet:
         foot.evading = None
-    fly(stance, take_off, time + half, goals, [PITCHES, PITCHES])
+    fly(footing, Flight(take_off, time + half), goals, [PITCHES, PITCHES])
 
 
-def _home(stance: Stance, foot: Foot, panels: Array) -> tuple[Array, float]:
+def _home(footing: Footing, foot: Foot) -> tuple[Array, float]:
     """Ball and yaw of a foot that waits in the middle of the pad, or of the nearest pad of two: on no panel."""
-    squares = panels.reshape(-1, SQUARE, 2).mean(axis=1) if len(panels) % SQUARE == 0 else panels.mean(axis=0)[None]
-    middle = np.mean([f.ball for f in stance.feet], axis=0)
-    squares = squares[np.argsort(-squares[:, 0] if stance.lead else squares[:, 0], kind="stable")]
+    squares = footing.context.squares
+    middle = np.mean([f.ball for f in footing.feet], axis=0)
+    squares = squares[np.argsort(-squares[:, 0] if footing.lead else squares[:, 0], kind="stable")]
     nearest = squares[np.argmin(np.round(np.linalg.norm(squares - middle, axis=1), 6))]
-    square = round(stance.body_yaw() / (np.pi / 2)) * np.pi / 2
+    square = round(footing.body_yaw() / (np.pi / 2)) * np.pi / 2
     aside = foot.outward * HOME_OUT * np.array([np.cos(square), -np.sin(square)])
-    yaw = stance.limited(square, stance.body_yaw())
-    return ball_of(nearest + aside, stance.toes(foot, yaw)), yaw
+    yaw = footing.limited(square, footing.body_yaw())
+    return ball_of(nearest + aside, footing.toes(foot, yaw)), yaw
 
 
-def _lift(stance: Stance, foot: Foot, time: float, panels: Array, column: int) -> None:
+def _lift(footing: Footing, foot: Foot, time: float, column: int) -> None:
     """One foot goes up while the other stands, and comes down on the inner edge of its panel.
 
     If more mines come there, or `column` is -1 and it has none, it goes to the middle of the pad.
     """
-    mines, step = stance.settings.mines, stance.settings.step
+    mines, step, panels = footing.settings.mines, footing.settings.step, footing.context.panels
     half, first = mines.before + mines.rise, time
     lift = min(max(time - half, foot.free), max(time - SHORTEST, foot.landed + FREE_WINDOW))
     if foot.evading is not None and foot.landed > time - half and foot.swings[-1].kind == "evade":
@@ -88,24 +87,24 @@ def _lift(stance: Stance, foot: Foot, time: float, panels: Array, column: int) -
         foot.ball, foot.yaw = foot.evading.ball, foot.evading.yaw
     elif lift > time:
         return
-    other = stance.feet[1 - foot.side]
+    other = footing.feet[1 - foot.side]
     there = panels[column] if column >= 0 else None
-    if there is None or (len(stance.mined) and (np.abs(stance.mined - there).max(axis=1) < HALF_PANEL).any()):
-        target, yaw = _home(stance, foot, panels)
+    if there is None or (len(footing.mined) and (np.abs(footing.mined - there).max(axis=1) < HALF_PANEL).any()):
+        target, yaw = _home(footing, foot)
         panel, room = target, np.full(2, ROAM)
         if np.linalg.norm(target - foot.ball) > FAR_HOME:  # off the mines is enough
             target, yaw, panel, room = foot.ball, foot.yaw, foot.ball, np.full(2, FAR_HOME)
     else:
         panel, room, yaw = there, room_on(panels, column), foot.yaw
-        middle = pose(stance, other).middle
-        target = landing_ball(panel, stance.toes(foot), middle, 1.0, step.edge_margin, room)
-    target, yaw = beside(stance, panel, room, foot, target, yaw, pose(stance, other))
-    bulge = around(stance, foot, (lift, time + half), target, yaw, other)
+        middle = pose(footing, other).middle
+        target = landing_ball(Spot(panel, room), footing.toes(foot), middle, 1.0, step.edge_margin)
+    target, yaw = beside(footing, foot, Spot(panel, room), target, yaw, pose(footing, other))
+    bulge = around(footing, foot, (lift, time + half), target, yaw, other)
     evading = Evading(first, time, foot.ball, foot.yaw)
-    toes = stance.toes(foot, yaw)
+    toes = footing.toes(foot, yaw)
     foot.move(Swing(lift, time + half, pair(target), toes, mines.height, PITCHES, bulge, "evade"), target, yaw)
     foot.evading = evading
-    _one_after_the_other(foot, other, stance.settings)
+    _one_after_the_other(foot, other, footing.settings)
 
 
 def _one_after_the_other(foot: Foot, other: Foot, settings: MotionSettings) -> None:

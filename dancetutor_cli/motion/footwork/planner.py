@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.footwork.contacts import Touches
-from dancetutor_cli.motion.footwork.footing import SHORTEST, Stance
-from dancetutor_cli.motion.footwork.mines import evade_mines
+from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing
+from dancetutor_cli.motion.footwork.mines import avoid_mines
 from dancetutor_cli.motion.footwork.sidesteps import SideSteps
 from dancetutor_cli.motion.footwork.steps import Steps
 from dancetutor_cli.motion.plan import Plan, Turn
-from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.play.model import Limb, Play
 
 Array = NDArray[np.float64]
@@ -29,12 +29,12 @@ MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mine
 class Planner:
     """Walks through the rows of a play once. `second(tick)` gives the time of a tick in seconds of the music."""
 
-    def __init__(self, play: Play, panels: Array, second: Callable[[int], float], settings: MotionSettings) -> None:
-        self.play, self.panels, self.settings = play, panels, settings
-        self.stance = Stance(settings, leading_foot(play, panels))
-        self.steps = Steps(play, panels, self.stance)
-        self.touches = Touches(play, panels, second, self.stance)
-        self.asides = SideSteps(play, panels, self.stance)
+    def __init__(self, play: Play, second: Callable[[int], float], context: Context) -> None:
+        self.play, self.panels, self.settings = play, context.panels, context.settings
+        self.footing = Footing(context, leading_foot(play, context.panels))
+        self.steps = Steps(play, self.footing)
+        self.touches = Touches(play, second, self.footing)
+        self.asides = SideSteps(play, self.footing)
         self.previous: float | None = None
         self.turns: list[Turn] = []
 
@@ -46,8 +46,8 @@ class Planner:
         if not contacts:
             raise DancetutorError("the chart has no steps: there is nothing to dance")
         return Plan(
-            self.stance.tracks(), tuple(self.turns), tuple(self.touches.presses), contacts, (0.0, 0.0),
-            contacts[0].start, max(c.end for c in contacts), lead=self.stance.lead,
+            self.footing.tracks(), tuple(self.turns), tuple(self.touches.presses), contacts,
+            contacts[0].start, max(c.end for c in contacts), lead=self.footing.lead,
         )  # fmt: skip
 
     def _row(self, i: int) -> None:
@@ -56,9 +56,9 @@ class Planner:
         for column in np.flatnonzero(self.play.limb[i] >= 0):
             pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
         soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
-        self.stance.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
-        evade_mines(self.play, i, time, self.panels, self.stance, set(pressed))
-        self.stance.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
+        self.footing.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
+        avoid_mines(self.play, i, time, self.footing, set(pressed))
+        self.footing.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
         feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
         if feet:
             self._feet(i, time, feet, pressed)
@@ -77,18 +77,18 @@ class Planner:
         aside = None if self.previous is None else self.asides.before(i, time, list(pressed), self.touches.presses)
         if aside is not None:
             self.turns.append(aside)
-            self.previous = max(foot.landed for foot in self.stance.feet)
-        turn = (self.play.facing[i] - self.stance.normal + 180.0) % 360.0 - 180.0
+            self.previous = max(foot.landed for foot in self.footing.feet)
+        turn = (self.play.facing[i] - self.footing.normal + 180.0) % 360.0 - 180.0
         if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: the foot decides
-            turn = -180.0 if (feet[0] if len(feet) == 1 else self.stance.lead) == 0 else 180.0
-        before = self.stance.normal
-        self.stance.normal += turn
+            turn = -180.0 if (feet[0] if len(feet) == 1 else self.footing.lead) == 0 else 180.0
+        before = self.footing.normal
+        self.footing.normal += turn
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
         if len(feet) == 2:
-            leaves = self.steps.jump(i, time, duration, pressed, self.stance.normal - before)
+            leaves = self.steps.jump(i, time, duration, pressed, self.footing.normal - before)
         else:
             leaves = self.steps.step(i, time, duration, feet[0], pressed[feet[0]])
-        yaw = self.stance.turned_to()
+        yaw = self.footing.turned_to()
         far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
         self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
         self.previous = time

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
 from dancetutor_cli.motion.footwork.foothold import around, heel_up
-from dancetutor_cli.motion.footwork.footing import Foot, Stance, pair
-from dancetutor_cli.motion.footwork.walks import places_along, rectangle, walk_there
+from dancetutor_cli.motion.footwork.footing import Foot, Footing, pair
+from dancetutor_cli.motion.footwork.walks import places_along, walk_there
 from dancetutor_cli.motion.plan import Press, Swing, Turn
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.motion.swing.timing import reduction
@@ -40,12 +40,11 @@ class _Next:
 
 
 class SideSteps:
-    """Puts side-steps into a stance before a row whose notes are far. panels : (c, 2) on the ground."""
+    """Puts side-steps before a row whose notes are far from where she stands."""
 
-    def __init__(self, play: Play, panels: Array, stance: Stance) -> None:
-        self.play, self.panels, self.stance = play, panels, stance
-        self.ground = rectangle(panels, stance.settings)
-        self.places = places_along(self.ground, stance.lead)
+    def __init__(self, play: Play, footing: Footing) -> None:
+        self.play, self.panels, self.footing = play, footing.context.panels, footing
+        self.places = places_along(footing.context.squares, footing.lead)
         self.mines = play.rows.second[play.rows.mines.any(axis=1)]
         self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
 
@@ -54,16 +53,16 @@ class SideSteps:
 
         limbs : those that row i needs; presses : of palms, so far
         """
-        settings, stance = self.stance.settings, self.stance
-        whole = 360.0 * round(stance.normal / 360.0)
+        settings, footing = self.footing.settings, self.footing
+        whole = 360.0 * round(footing.normal / 360.0)
         hands = max(limbs) >= Limb.LEFT_HAND
-        if len(self.places) == 1 or hands or abs(stance.normal - whole) > FACING:
+        if len(self.places) == 1 or hands or abs(footing.normal - whole) > FACING:
             return None
         begin = self._begin()
         following = self._next(i, time, limbs)
         if self._far(begin.balls, following) <= settings.aside.far:
             return None
-        free = max([*(foot.free for foot in stance.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
+        free = max([*(foot.free for foot in footing.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
         start, ready = free + settings.aside.pause, time - settings.walk.settle
         busy = (self.mines > start - MINE) & (self.mines < np.nanmax(following.times) + MINE)
         if ready - start < 2 * settings.aside.quick or busy.any() or self._walks(begin, following, free, time):
@@ -73,14 +72,14 @@ class SideSteps:
             return None
         falls, duration = found
         for k, (side, fall) in enumerate(falls):
-            self._move(stance.feet[side], fall, start + k * duration, duration)
-        stance.normal = whole
+            self._move(footing.feet[side], fall, start + k * duration, duration)
+        footing.normal = whole
         return Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
 
     def _begin(self) -> Stand:
-        feet = self.stance.feet
-        yaws = np.array([self.stance.toes(foot) for foot in feet])
-        return Stand(np.array([foot.ball for foot in feet]), yaws, self.stance.turned_to())
+        feet = self.footing.feet
+        yaws = np.array([self.footing.toes(foot) for foot in feet])
+        return Stand(np.array([foot.ball for foot in feet]), yaws, self.footing.turned_to())
 
     def _next(self, i: int, time: float, limbs: list[int]) -> _Next:
         rows = self.play.rows
@@ -107,17 +106,17 @@ class SideSteps:
         """Whether there is time to walk, and reason to."""
         if np.isnan(following.places).any():
             return False
-        step = self.stance.settings.step
+        step = self.footing.settings.step
         ready = time - step.longest * (1.0 - step.double_support)
         wait = free, ready
-        found = walk_there(begin, following.places, self.ground, "flat", wait, self.stance.settings, self.stance.lead)
+        found = walk_there(begin, following.places, wait, "flat", self.footing.lead, self.footing.context)
         return found is not None
 
     def _goal(
         self, begin: Stand, following: _Next, heading: float, time: float
     ) -> tuple[list[tuple[int, Footfall]], float] | None:
         """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
-        aside, settings = self.stance.settings.aside, self.stance.settings
+        aside, settings = self.footing.settings.aside, self.footing.settings
         best, least = None, self._far(begin.balls, following) - aside.gain
         for x in _between(self.places):
             goal = stand_at(np.array([x, 0.0]), heading, settings)
@@ -131,7 +130,7 @@ class SideSteps:
 
     def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
         """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
-        aside = self.stance.settings.aside
+        aside = self.footing.settings.aside
         few = len(footfalls(begin, goal, COMFORTABLE)) or MOST
         for spread in SPREADS:
             falls = footfalls(begin, goal, float(spread))
@@ -143,19 +142,19 @@ class SideSteps:
         """Whether no shoe comes too near the other."""
         places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
         for side, fall in falls:
-            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.stance.settings.step.apart:
+            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.footing.settings.step.apart:
                 return False
             places[side] = (fall.ball, fall.yaw)
         return True
 
     def _move(self, foot: Foot, fall: Footfall, start: float, duration: float) -> None:
-        step, stance = self.stance.settings.step, self.stance
+        step, footing = self.footing.settings.step, self.footing
         cut = float(reduction(duration, step.fast, step.longest))
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
-        other = stance.feet[1 - foot.side]
+        other = footing.feet[1 - foot.side]
         lift = max(start + step.double_support * duration, foot.free)
-        bulge = around(stance, foot, (lift, start + duration), fall.ball, fall.heading, other)
+        bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, other)
         swing = Swing(lift, start + duration, pair(fall.ball), fall.yaw, height, pitches, bulge, "aside")
         foot.move(swing, fall.ball, fall.heading)
         foot.evading = None

@@ -5,9 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.foothold import Pose, around, beside, heel_up, landing, pose, shoes_apart
-from dancetutor_cli.motion.footwork.footing import Foot, Stance, pair
-from dancetutor_cli.motion.footwork.jumps import Goals, fly, tuck_for
+from dancetutor_cli.motion.footwork.foothold import (
+    Goal,
+    Pose,
+    Spot,
+    around,
+    beside,
+    heel_up,
+    landing,
+    pose,
+    shoes_apart,
+)
+from dancetutor_cli.motion.footwork.footing import Foot, Footing, pair
+from dancetutor_cli.motion.footwork.jumps import Flight, Goals, fly, tuck_for
 from dancetutor_cli.motion.footwork.mines import land_early, left_standing, resumed
 from dancetutor_cli.motion.plan import Swing
 from dancetutor_cli.motion.swing.timing import reduction
@@ -29,24 +39,25 @@ SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
 
 
 class Steps:
-    """Moves of the feet, note by note. panels : (c, 2) on the ground."""
+    """Moves of the feet, note by note."""
 
-    def __init__(self, play: Play, panels: Array, stance: Stance) -> None:
-        self.play, self.panels, self.stance, self.settings = play, panels, stance, stance.settings
+    def __init__(self, play: Play, footing: Footing) -> None:
+        self.play, self.footing, self.settings = play, footing, footing.settings
+        self.panels = footing.context.panels
         self.take_off: dict[int, tuple[int, float]] = {}  # in a gallop: foot -> its row, and when it leaves the ground
 
     def step(self, i: int, time: float, duration: float, side: int, columns: list[int]) -> float:
         """One foot steps at row i, at `time`; `duration` seconds after the last move. Returns when it leaves."""
-        step, jump, stance = self.settings.step, self.settings.jump, self.stance
-        foot, other = stance.feet[side], stance.feet[1 - side]
+        step, jump, footing = self.settings.step, self.settings.jump, self.footing
+        foot, other = footing.feet[side], footing.feet[1 - side]
         self._gallop(i, time, duration, side)
         cut = float(reduction(duration, step.fast, step.longest))
         up = resumed(foot, other, time, step.longest)
-        body = stance.body_yaw()
-        yaw = stance.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
+        body = footing.body_yaw()
+        yaw = footing.limited(other.yaw + step.yaw_to_normal * (body - other.yaw), body)
         columns = self._with_held(i, foot, columns, time)
-        goal = columns, foot, yaw, pose(stance, other), cut, self._following(i, side)
-        target, yaw = landing(stance, self.panels, self.play.part[i], *goal)
+        goal = Goal(columns, self.play.part[i], yaw, cut, self._following(i, side))
+        target, yaw = landing(footing, foot, goal, pose(footing, other))
         galloping = self.take_off.get(side, (-1, 0.0))[0] == i
         both = step.double_support + cut * (step.double_support_fast - step.double_support)
         lift = time - max(duration * (1.0 - both), min(LEAST_SWING, duration + OVERLAP))
@@ -67,11 +78,11 @@ class Steps:
         if kind == "step" and self._leap(time, duration, foot, (target, yaw), columns):
             return foot.swings[-1].lift
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
-        toes = stance.toes(foot, yaw)
+        toes = footing.toes(foot, yaw)
         if kind == "step":
-            after = stance.turned_to((yaw, other.yaw) if side == 0 else (other.yaw, yaw))
-            stance.pivot(other, stance.pivot_yaw(other, after, target, toes), lift, time)
-        bulge = around(stance, foot, (lift, time), target, yaw, other)
+            after = footing.turned_to((yaw, other.yaw) if side == 0 else (other.yaw, yaw))
+            footing.pivot(other, footing.pivot_yaw(other, after, target, toes), lift, time)
+        bulge = around(footing, foot, (lift, time), target, yaw, other)
         swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
         foot.move(swing, target, yaw)
         return lift
@@ -117,36 +128,36 @@ class Steps:
         if not (0.0 < gap <= jump.gallop and len(steps) == 1 and following[steps[0]] == 1 - side):
             return
         flight = min(float(np.sqrt(8 * jump.apex_near / GRAVITY)), jump.flight_share * duration)
-        take_off = max(time - flight, *(f.earliest(time) for f in self.stance.feet))
+        take_off = max(time - flight, *(f.earliest(time) for f in self.footing.feet))
         if take_off > time - SHORTEST_FLIGHT:
             return
         self.take_off = {side: (i, take_off), 1 - side: (i + 1, take_off)}
 
     def jump(self, i: int, time: float, duration: float, pressed: dict[int, list[int]], turned: float) -> float:
         """Both feet land at row i; `turned` : degrees that the feet normal turns. Returns when they leave."""
-        jump, step, stance = self.settings.jump, self.settings.step, self.stance
-        latest = min(land_early(foot, self.settings, time) for foot in stance.feet)
-        columns = [self._with_held(i, f, pressed[f.side], time) for f in stance.feet]
+        jump, step, footing = self.settings.jump, self.settings.step, self.footing
+        latest = min(land_early(foot, self.settings, time) for foot in footing.feet)
+        columns = [self._with_held(i, f, pressed[f.side], time) for f in footing.feet]
         goals = self._jump_goals(i, columns, float(reduction(duration, step.fast, step.longest)))
-        far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, stance.feet, strict=True))
+        far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
         apex = jump.apex_near + min(far / jump.far, 1.0) * (jump.apex_far - jump.apex_near)
         if len(pressed) > 2:  # bending down to a panel: feet only just leave the ground
             apex = jump.apex_hands
         take_off = self._take_off(time, min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * duration))
         if latest < take_off:  # over a mine
-            take_off = max(latest, *(f.rested(time) for f in stance.feet))
+            take_off = max(latest, *(f.rested(time) for f in footing.feet))
         self._fly(take_off, time, duration, goals, columns, turned)
         return take_off
 
     def _leap(self, time: float, duration: float, foot: Foot, goal: tuple[Array, float], columns: list[int]) -> bool:
         """A step too far for a straddle, or to where the other foot is in the way: both feet leave the ground, and the
         other one lands beside. False if it is neither."""
-        step, jump, stance = self.settings.step, self.settings.jump, self.stance
-        other = stance.feet[1 - foot.side]
-        landed = Pose(goal[0], stance.toes(foot, goal[1]))
+        step, jump, footing = self.settings.step, self.settings.jump, self.footing
+        other = footing.feet[1 - foot.side]
+        landed = Pose(goal[0], footing.toes(foot, goal[1]))
         away = goal[0] - other.ball
         far = float(np.linalg.norm(away))
-        in_the_way = shoes_apart(landed, pose(stance, other)) < TOUCHING
+        in_the_way = shoes_apart(landed, pose(footing, other)) < TOUCHING
         if far <= step.leap and not in_the_way:
             return False
         apex = jump.apex_near if in_the_way else jump.apex_far
@@ -155,10 +166,12 @@ class Steps:
         bound = other.free if in_the_way else max(foot.free, other.free)
         if time - take_off < SHORTEST_FLIGHT or bound > take_off:
             return False
-        yaw = stance.limited(other.yaw + step.yaw_to_normal * (stance.body_yaw() - other.yaw), stance.body_yaw())
+        yaw = footing.limited(other.yaw + step.yaw_to_normal * (footing.body_yaw() - other.yaw), footing.body_yaw())
         goals = [goal, goal]
         if in_the_way:
-            goals[other.side] = beside(stance, other.ball, np.full(2, ASIDE), other, other.ball, other.yaw, landed)
+            goals[other.side] = beside(
+                footing, other, Spot(other.ball, np.full(2, ASIDE)), other.ball, other.yaw, landed
+            )
         else:
             goals[other.side] = (goal[0] - step.leap_stance * away / far, yaw)
         self._fly(take_off, time, duration, goals, [columns, columns], 0.0)
@@ -173,38 +186,39 @@ class Steps:
         eased = 1.0 - FLAT * cut
         lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
         pitches = [heel_up(step, cut, lift, lift, land, c) for c in columns]
-        fly(self.stance, take_off, time, goals, pitches, turned, eased, self._first(take_off, time, duration, goals))
+        first = self._first(take_off, time, duration, goals)
+        fly(self.footing, Flight(take_off, time, turned, eased, first), goals, pitches)
 
     def _first(self, take_off: float, time: float, duration: float, goals: Goals) -> tuple[float, float]:
         """When each foot leaves the ground in a quick jump: the one with the longer way before both take off."""
-        step, feet = self.settings.step, self.stance.feet
+        step, feet = self.settings.step, self.footing.feet
         ways = [float(np.linalg.norm(ball - f.ball)) for (ball, _), f in zip(goals, feet, strict=True)]
         side = int(ways[1] > ways[0])
         foot, (target, yaw) = feet[side], goals[side]
         out = [take_off, take_off]
         early = max(foot.earliest(time), time - duration * (1.0 - step.double_support_fast))
-        straight = around(self.stance, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
+        straight = around(self.footing, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
         if straight and ways[side] > ways[1 - side] + LONGER:
             out[side] -= float(reduction(duration, step.fast, step.longest)) * max(take_off - early, 0.0)
         return out[0], out[1]
 
     def _jump_goals(self, i: int, columns: list[list[int]], cut: float) -> Goals:
         """Where both balls land, and the feet's yaws."""
-        stance = self.stance
-        body = stance.body_yaw()
-        yaws = [stance.limited(f.yaw + self.settings.jump.yaw_to_normal * (body - f.yaw), body) for f in stance.feet]
+        footing = self.footing
+        body = footing.body_yaw()
+        yaws = [footing.limited(f.yaw + self.settings.jump.yaw_to_normal * (body - f.yaw), body) for f in footing.feet]
         goals: dict[int, tuple[Array, float]] = {}
         # brackets have no choice: they are first
-        for foot in sorted(stance.feet, key=lambda f: (-len(columns[f.side]), f.side != stance.lead)):
+        for foot in sorted(footing.feet, key=lambda f: (-len(columns[f.side]), f.side != footing.lead)):
             side = 1 - foot.side
             ball, yaw = goals.get(side, (self.panels[columns[side]].mean(axis=0), yaws[side]))
-            other = Pose(ball, stance.toes(stance.feet[side], yaw))
-            mine = columns[foot.side], foot, yaws[foot.side], other, cut, self._following(i, foot.side)
-            goals[foot.side] = landing(stance, self.panels, self.play.part[i], *mine)
+            other = Pose(ball, footing.toes(footing.feet[side], yaw))
+            wish = columns[foot.side], self.play.part[i], yaws[foot.side], cut, self._following(i, foot.side)
+            goals[foot.side] = landing(footing, foot, Goal(*wish), other)
         return [goals[0], goals[1]]
 
     def _take_off(self, time: float, flight: float) -> float:
-        feet: tuple[Foot, ...] = self.stance.feet
+        feet: tuple[Foot, ...] = self.footing.feet
         latest = (f.latest(time, self.settings.step.let_go) for f in feet)
         take_off = min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
         return max(take_off, *(f.rested(time) for f in feet))

@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.footfalls import Stand, Steps, footsteps, stand_at, standing
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.footwork.footfalls import Stand, Trip, WalkSteps, footsteps, stand_at, standing
 from dancetutor_cli.motion.model import Contact, Ground
 from dancetutor_cli.motion.plan import FootTrack, Plan, Swing, Turn
-from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.swing.clearance import SHARES, detour
+from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.swing.panels import HALF_PANEL, PANEL, panels_on_ground
 from dancetutor_cli.play.model import StepKind
 
 if TYPE_CHECKING:
-    from dancetutor_cli.pads import Pad
+    pass
 
 Array = NDArray[np.float64]
 BEGIN = -0.4  # seconds at which the first step begins: as the song does, she is on her way
@@ -31,25 +30,11 @@ ARRIVED = 0.04  # seconds at least that a foot stands after a walk before it lea
 REST = 0.15  # seconds that she stands between a walk and a step at least
 
 
-def ground_of(pad: Pad, settings: MotionSettings) -> Ground:
-    """The pad as a rectangle, and the floor around it."""
-    return rectangle(panels_on_ground(pad), settings)
-
-
-def rectangle(panels: Array, settings: MotionSettings) -> Ground:
-    """The ground of a pad whose panels have their centres (c, 2) there."""
-    low, high = panels.min(axis=0) - HALF_PANEL, panels.max(axis=0) + HALF_PANEL
-    return Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
-
-
-def with_walks(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
-    """The plan with walks wherever there is time for one.
-
-    mines : (m,) seconds at which mines pass; gait : "flat" or "heels"
-    """
-    out = walk_over(plan, ground, mines, gait, settings)
-    out = _walk_off(_walk_on(out, ground, mines, gait, settings), ground, mines, gait, settings)
-    return replace(out, ground=ground, contacts=_released(out)) if out.walks else plan
+def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
+    """The plan with walks wherever there is time for one. mines : (m,) seconds at which mines pass; gait : its name"""
+    out = walk_over(plan, mines, gait, context)
+    out = _walk_off(_walk_on(out, mines, gait, context), mines, gait, context)
+    return replace(out, contacts=_released(out)) if out.walks else plan
 
 
 def _released(plan: Plan) -> tuple[Contact, ...]:
@@ -64,14 +49,14 @@ def _released(plan: Plan) -> tuple[Contact, ...]:
     return tuple(out)
 
 
-def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
+def _walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """She comes from the side of the foot that leads as the song begins, if there is time before the first note."""
-    walk = settings.walk
+    ground, settings, walk = context.ground, context.settings, context.settings.walk
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.swings[:1]))
     if busy < walk.least or (mines < busy).any():
         return plan
     goal = standing(plan.feet, -np.inf)
-    places, following = places_along(ground, plan.lead), [_next_step(track, -np.inf) for track in plan.feet]
+    places, following = places_along(context.squares, plan.lead), [_next_step(track, -np.inf) for track in plan.feet]
     targets = np.array([s.target for s in following if s is not None])
     if len(places) > 1 and len(targets) == len(following):
         goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
@@ -79,7 +64,7 @@ def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Moti
     away = np.array([_beside(ground, plan.lead, walk.beside), goal.middle[1]])
     begin = stand_at(away, heading, settings)
     ready = min(plan.first - walk.settle, busy - walk.settle - ARRIVED)
-    steps = footsteps(begin, goal, heading, ground, gait, BEGIN, ready, settings, plan.lead)
+    steps = footsteps(Trip(begin, goal, heading, BEGIN, ready), gait, plan.lead, context)
     if steps is None:
         return plan
     level = ground.level(*begin.middle)
@@ -95,9 +80,9 @@ def _walk_on(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Moti
     return replace(plan, feet=around, turns=turns, walks=(steps.walk, *plan.walks))
 
 
-def _walk_off(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
+def _walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """After the last note she goes on to the other side, or back if her feet would be in each other's way."""
-    walk = settings.walk
+    ground, settings, walk = context.ground, context.settings, context.settings.walk
     start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.swings[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
@@ -107,7 +92,7 @@ def _walk_off(plan: Plan, ground: Ground, mines: Array, gait: str, settings: Mot
         goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
             ready = plan.last + walk.leave + late
-            steps = footsteps(begin, goal, whole + heading, ground, gait, start, ready, settings, plan.lead)
+            steps = footsteps(Trip(begin, goal, whole + heading, start, ready), gait, plan.lead, context)
             if steps is not None:
                 found.append(steps)
                 break
@@ -124,38 +109,37 @@ def _beside(ground: Ground, side: int, far: float) -> float:
     return ground.high[0] + far if side == 0 else ground.low[0] - far
 
 
-def walk_over(plan: Plan, ground: Ground, mines: Array, gait: str, settings: MotionSettings) -> Plan:
+def walk_over(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """Where a long wait ends with steps of both feet on the other pad she walks there, rather than stretch.
 
     mines : (m,) seconds; while they pass she stays, for who walks might tread on one
     """
-    if len(places_along(ground, plan.lead)) == 1:
+    if len(places_along(context.squares, plan.lead)) == 1:
         return plan
-    for start, ready in _waits(plan, mines, settings.walk.wait):
+    for start, ready in _waits(plan, mines, context.settings.walk.wait):
         begin = standing(plan.feet, start, plan.turns)
         following = [_next_step(track, ready) for track in plan.feet]
         targets = np.array([s.target for s in following if s is not None and s.kind != "evade"])
         if len(targets) < len(following):
             continue
-        found = walk_there(begin, targets, ground, gait, (start, ready), settings, plan.lead)
+        found = walk_there(begin, targets, (start, ready), gait, plan.lead, context)
         if found is not None:
             steps, goal = found
-            plan = _inserted(plan, steps, goal, settings.step.apart)
+            plan = _inserted(plan, steps, goal, context.settings.step.apart)
     return plan
 
 
 def walk_there(
-    begin: Stand, targets: Array, ground: Ground, gait: str, wait: tuple[float, float], settings: MotionSettings,
-    lead: int,
-) -> tuple[Steps, Stand] | None:  # fmt: skip
+    begin: Stand, targets: Array, wait: tuple[float, float], gait: str, lead: int, context: Context
+) -> tuple[WalkSteps, Stand] | None:
     """A walk in a wait to where both feet will step next, targets (2, 2), if they are far and there is time for it."""
-    walk = settings.walk
+    settings, walk = context.settings, context.settings.walk
     if wait[1] - wait[0] < walk.wait or np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
         return None
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
-    goal = stand_at(np.array([_nearest(places_along(ground, lead), targets), 0.0]), whole, settings)
+    goal = stand_at(np.array([_nearest(places_along(context.squares, lead), targets), 0.0]), whole, settings)
     way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
-    steps = footsteps(begin, goal, way, ground, gait, wait[0] + walk.pause, wait[1] - REST, settings, lead)
+    steps = footsteps(Trip(begin, goal, way, wait[0] + walk.pause, wait[1] - REST), gait, lead, context)
     return (steps, goal) if steps is not None and steps.room >= settings.step.apart - 0.01 else None
 
 
@@ -168,15 +152,14 @@ def _nearest(places: Array, targets: Array) -> float:
     return float(places[np.argmin(np.round(np.abs(places - targets[:, 0].mean()), 6))])
 
 
-def places_along(ground: Ground, lead: int) -> Array:
-    """Places (k,) along x where she may wait: the middle of each square of panels, and between two of them.
+def places_along(squares: Array, lead: int) -> Array:
+    """Places (k,) along x where she may wait: the middle of each square of panels (s, 2), and between two of them.
 
     lead : as in `Plan`; that foot's side is last, and so second choice
     """
-    width = ground.high[0] - ground.low[0]
-    squares = max(1, round(width / (3 * PANEL)))
-    middle = (ground.low[0] + ground.high[0]) / 2
-    return np.asarray(middle + (1.0 - 2.0 * lead) * width / squares / 2 * (np.arange(2 * squares - 1) - (squares - 1)))
+    middles = np.sort(squares[:, 0])
+    places = np.sort(np.concatenate((middles, (middles[1:] + middles[:-1]) / 2)))
+    return places if lead == 0 else places[::-1]
 
 
 def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
@@ -195,7 +178,7 @@ def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     return out
 
 
-def _inserted(plan: Plan, steps: Steps, goal: Stand, apart: float) -> Plan:
+def _inserted(plan: Plan, steps: WalkSteps, goal: Stand, apart: float) -> Plan:
     """The plan with a walk in a wait; what follows starts from where she has walked to."""
     tracks = []
     for side, track in enumerate(plan.feet):
@@ -241,5 +224,5 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float)
 def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, apart: float) -> tuple[float, float]:
     start = standing(feet, step.lift)
     there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), HEEL_DROP)
-    way = start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw
-    return detour(*way, there.ball[:, [0, 2]], there.yaw, apart, 1.0 - 2.0 * side)
+    way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw)
+    return detour(way, there.ball[:, [0, 2]], there.yaw, apart, 1.0 - 2.0 * side)

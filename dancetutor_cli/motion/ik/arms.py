@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold
-from dancetutor_cli.motion.ik.solver import arm_rotations
-from dancetutor_cli.motion.ik.spine import shoulders_over, torso_turns
+from dancetutor_cli.motion.ik.solver import ArmGoal, arm_rotations
+from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.trajectory.body import BodyPath
-from dancetutor_cli.motion.trajectory.crouch import haste
+from dancetutor_cli.motion.trajectory.body import Trajectory
+from dancetutor_cli.motion.trajectory.crouch import tempo_factor
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path, smooth_path
@@ -40,51 +40,38 @@ ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a littl
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
-@dataclass(frozen=True, slots=True)
-class HandTargets:
-    """Targets of both hands at f times, as in `ik.solver.Targets`; the second axis is left, right."""
-
-    wrists: Array
-    turn: Array
-    pinned: Array
-    pull: Array
-    elbows: Array
-
-
-def arm_targets(
-    plan: Plan, body: BodyPath, at: Array, shoulders: Array, chest: Array, skeleton: Skeleton, settings: MotionSettings
-) -> HandTargets:
-    """Targets at times `at` (f,); shoulders (f, 2, 3) and chest (f, 4) as the IK will be asked for them."""
-    lean, upright = quat.swing_twist(chest, UP)
-    hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, skeleton, settings))
+def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: Context) -> HandTargets:
+    """Targets at times `at` (f,); torso : at the same times, as the IK will be asked for it."""
+    lean, upright = quat.swing_twist(torso.chest, UP)
+    hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
     bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
     along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, HANG * bent), upright)
     hang = hang + bent[:, None, None] * AWAY
-    wrists = shoulders + quat.rotate(along[:, None], hang) + lag
+    wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
     wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
     out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
     elbows = quat.rotate(upright[:, None], out)
-    turn = np.tile(quat.IDENTITY, (len(at), 2, 1))
-    pinned, pull = np.zeros((len(at), 2)), np.zeros((len(at), 2))
-    hold(plan, at, wrists, turn, pinned, elbows, shoulders, chest, skeleton, settings)
+    free = np.tile(quat.IDENTITY, (len(at), 2, 1))
+    hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
+    hold(plan.grips, at, hands, torso, context)
     for press in plan.presses:
-        _press(press, at, wrists, turn, pinned, pull, elbows, body, skeleton, settings)
-    return HandTargets(wrists, turn, pinned, pull, elbows)
+        _press(press, at, hands, body, context)
+    return hands
 
 
-def _free_hands(plan: Plan, body: BodyPath, skeleton: Skeleton, settings: MotionSettings) -> tuple[Array, Array]:
+def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array]:
     """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
     Both (n, 2, 3) at the body's times, the second in the world.
     """
-    arms = settings.arms
+    settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     swing = _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))
-    quick = haste(plan, body.times, settings)[:, None]
+    tempo = tempo_factor(plan, body.times, settings)[:, None]
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
-    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * quick
-    hang[..., 2] = arms.forward + swing + arms.stream_forward * quick
+    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * tempo
+    hang[..., 2] = arms.forward + swing + arms.stream_forward * tempo
     hang += arms.wander * _wandering(body.times, plan.lead)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
@@ -111,7 +98,7 @@ def _wandering(times: Array, lead: int) -> Array:
     return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
 
-def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
+def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
     """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot."""
     front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
     ahead = []
@@ -125,17 +112,17 @@ def _swing(plan: Plan, body: BodyPath, settings: MotionSettings) -> Array:
     return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)
 
 
-def _press(
-    press: Press, at: Array, wrists: Array, turn: Array, pinned: Array, pull: Array, elbows: Array, body: BodyPath,
-    skeleton: Skeleton, settings: MotionSettings,
-) -> None:  # fmt: skip
-    down, side = settings.hands.reach_down, press.side
+def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, context: Context) -> None:
+    """Lead a hand down to its panel and up again, at times `at` (f,)."""
+    down, side, wrists = context.settings.hands.reach_down, press.side, hands.wrists
     near = np.flatnonzero((at > press.start - press.lead) & (at < press.end + down))
     if not len(near):
         return
     t = at[near]
-    hand, pole = _lay_down(press, body, skeleton)
-    wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(hand, palm_points(skeleton)[side].offset)
+    hand, pole = _lay_down(press, body, context.skeleton)
+    wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(
+        hand, palm_points(context.skeleton)[side].offset
+    )
     going = np.clip((t - press.start + press.lead) / press.lead, 0.0, 1.0)
     leaving = np.clip((t - press.end) / down, 0.0, 1.0)
     across = smooth(going) * (1.0 - smooth(leaving))
@@ -147,14 +134,14 @@ def _press(
     slap = SLAP * ahead * np.exp(-((ahead / 0.1) ** 2))
     goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
     wrists[near, side] = goal
-    turn[near, side] = hand
+    hands.rotation[near, side] = hand
     pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
-    pinned[near, side] = np.maximum(pinned[near, side], pin)
-    pull[near, side] = np.maximum(pull[near, side], pin)
-    elbows[near, side] += across[:, None] * (pole - elbows[near, side])
+    for pins in (hands.pinned, hands.pull):
+        pins[near, side] = np.maximum(pins[near, side], pin)
+    hands.elbows[near, side] += across[:, None] * (pole - hands.elbows[near, side])
 
 
-def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, Array]:
+def _lay_down(press: Press, body: Trajectory, skeleton: Skeleton) -> tuple[Array, Array]:
     """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
 
     Of many ways the one that is easiest for shoulder and wrist as the body is at the note, and then the one whose
@@ -163,9 +150,9 @@ def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, 
     when, side = np.array([press.start]), press.side
     ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
     yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
-    pelvis_turn, chest, bent = torso_turns(tilt, yaw, chest_yaw)
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw)
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest, bent)
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
     panel = np.array([press.target[0], 0.0, press.target[1]])
     away = panel - shoulders[0].mean(axis=0)
     liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
@@ -174,13 +161,13 @@ def _lay_down(press: Press, body: BodyPath, skeleton: Skeleton) -> tuple[Array, 
     aside = np.repeat(out * FINGERS, len(poles))
     poles = np.tile(poles, (len(FINGERS), 1))
     down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
-    hands = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
-    wrists = panel - quat.rotate(hands, palm_points(skeleton)[side].offset)
+    laid = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
+    wrists = panel - quat.rotate(laid, palm_points(skeleton)[side].offset)
     # the body is drawn on until the arm reaches
     shoulder = np.tile(shoulders[0, side], (len(wrists), 1))
-    turns = arm_rotations(skeleton, side, shoulder, np.tile(chest, (len(wrists), 1)), wrists, hands, poles)
+    turns = arm_rotations(skeleton, side, ArmGoal(shoulder, np.tile(chest, (len(wrists), 1)), wrists, laid, poles))
     effort = EASY * aside**2
     for name, joint in (("shoulder", turns[0]), ("radiocarpal", turns[2])):
         effort += np.maximum(beyond(skeleton, f"{SIDES[side]}_{name}", joint) + EASE, 0.0) ** 2
     best = int(np.argmin(effort))
-    return hands[best], poles[best]
+    return laid[best], poles[best]

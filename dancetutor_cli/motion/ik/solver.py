@@ -8,6 +8,7 @@ pulled after it; then rotations of the torso, and closed-form limbs with a pole 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +78,14 @@ _NAMES = (
 _VL5, _VT10, _VT4, _LEG, _ARM = 1, 2, 3, 4, 12
 
 
-def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> tuple[Array, Array]:
+class Poses(NamedTuple):
+    """f solved frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
+
+    rotations: Array
+    root: Array
+
+
+def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:
     """Solve all frames.
 
     Parameters
@@ -87,7 +95,7 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
 
     Returns
     -------
-    local rotations (f, j, 4) and root (f, 3). Feet are on their targets wherever the root could be pulled; a palm
+    The poses. Feet are on their targets wherever the root could be pulled; a palm
     pinned by 1 is on its target if torso and pelvis could follow it within `PULL_ROUNDS`.
     """
     joints = np.array([skeleton.index(name) for name in _NAMES])
@@ -101,19 +109,31 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
         targets.pinned if targets.pull is None else targets.pull, targets.elbows, targets.ankles,
         targets.feet_turn, targets.toes_turn, targets.knees, rotations,
     )  # fmt: skip
-    return rotations, root
+    return Poses(rotations, root)
 
 
-def arm_rotations(
-    skeleton: Skeleton, side: int, shoulders: Array, chest: Array, wrists: Array, hands: Array, elbows: Array
-) -> tuple[Array, Array, Array]:
-    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist.
+@dataclass(frozen=True, slots=True)
+class ArmGoal:
+    """Where one arm begins and its pinned hand shall be, in f cases.
 
     shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
     """
+
+    shoulders: Array
+    chest: Array
+    wrists: Array
+    hands: Array
+    elbows: Array
+
+
+def arm_rotations(skeleton: Skeleton, side: int, goal: ArmGoal) -> tuple[Array, Array, Array]:
+    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
     joints = np.array([skeleton.index(name) for name in _NAMES])
-    out = np.zeros((len(shoulders), len(skeleton.names), 4))
-    _one_arm(skeleton.offsets, joints, _hinges(skeleton, joints), side, shoulders, chest, wrists, hands, elbows, out)
+    out = np.zeros((len(goal.shoulders), len(skeleton.names), 4))
+    _one_arm(
+        skeleton.offsets, joints, _hinges(skeleton, joints), side, goal.shoulders, goal.chest, goal.wrists, goal.hands,
+        goal.elbows, out,
+    )  # fmt: skip
     first = _ARM + 4 * side
     return out[:, joints[first + 1]], out[:, joints[first + 2]], out[:, joints[first + 3]]
 

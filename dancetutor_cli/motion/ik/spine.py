@@ -17,7 +17,7 @@ DEEP = np.radians(75.0)  # that is one by so much
 SPINE = (0.0, 0.34, 0.67)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
-def torso_turns(tilt: Array, yaw: Array, chest_yaw: Array) -> tuple[Array, Array, Array]:
+def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array) -> tuple[Array, Array, Array]:
     """Rotations (f, 4) of pelvis and chest for a chest that leans by tilt (f, 2) as in `paths.leaning`; yaws (f,).
 
     And how deep (f,) that bend is, 0 to 1.
@@ -27,19 +27,19 @@ def torso_turns(tilt: Array, yaw: Array, chest_yaw: Array) -> tuple[Array, Array
     return leaning(share[:, None] * tilt, yaw), leaning(tilt, chest_yaw), bent
 
 
-def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_turn: Array, chest_turn: Array, bent: Array) -> Array:
+def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
     """Where shoulders shall be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
 
     As far as it is `bent` (f,) they are where a spine that bends evenly brings them; else its lowest joint took it all.
     """
     place, offset = pelvis, skeleton.offsets
     for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):
-        turn = quat.slerp(pelvis_turn, chest_turn, np.full(len(pelvis), share))
+        turn = quat.slerp(pelvis_rotation, chest, np.full(len(pelvis), share))
         place = place + quat.rotate(turn, offset[skeleton.index(name)])
     out = []
     for side in SIDES:
         shoulder = skeleton.index(f"{side}_shoulder")
-        even = place + quat.rotate(chest_turn, offset[skeleton.parents[shoulder]] + offset[shoulder])
-        stiff = pelvis + quat.rotate(chest_turn, skeleton.rest[shoulder] - skeleton.rest[0])
+        even = place + quat.rotate(chest, offset[skeleton.parents[shoulder]] + offset[shoulder])
+        stiff = pelvis + quat.rotate(chest, skeleton.rest[shoulder] - skeleton.rest[0])
         out.append(stiff + bent[:, None] * (even - stiff))
     return np.stack(out, axis=1)

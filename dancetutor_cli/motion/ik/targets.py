@@ -7,19 +7,20 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import turned, walking
 from dancetutor_cli.motion.ik.arms import arm_targets
+from dancetutor_cli.motion.ik.hands import Torso
 from dancetutor_cli.motion.ik.solver import Targets
-from dancetutor_cli.motion.ik.spine import shoulders_over, torso_turns
+from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan
-from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.swing.foot_path import FootPath
-from dancetutor_cli.motion.trajectory.body import BodyPath, ankle_of
+from dancetutor_cli.motion.swing.foot_path import Feet
+from dancetutor_cli.motion.trajectory.body import Trajectory
+from dancetutor_cli.motion.trajectory.legs import ankle_of
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.quaternion import UP
-from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
@@ -30,19 +31,18 @@ KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a k
 KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 
 
-def ik_targets(
-    plan: Plan, body: BodyPath, feet: tuple[FootPath, FootPath], at: Array, skeleton: Skeleton, settings: MotionSettings
-) -> Targets:
+def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
     """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+    skeleton = context.skeleton
     ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
     yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    pelvis_turn, chest_turn, bent = torso_turns(tilt, yaw, chest_yaw)
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw)
     gait = walking(plan.walks, at)
     if gait is not None:
-        pelvis_turn, chest_turn = turned(gait, pelvis_turn, chest_turn)
-    shoulders = shoulders_over(skeleton, pelvis, pelvis_turn, chest_turn, bent)
-    hands = arm_targets(plan, body, at, shoulders, chest_turn, skeleton, settings)
+        pelvis_rotation, chest = turned(gait, pelvis_rotation, chest)
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
+    hands = arm_targets(plan, body, at, Torso(shoulders, chest), context)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
     soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
@@ -52,7 +52,7 @@ def ik_targets(
         for t, f in zip(straight, feet, strict=True)
     ]
     return Targets(
-        pelvis, pelvis_turn, chest_turn, shoulders, hands.wrists, hands.turn, hands.pinned, hands.elbows, ankles,
+        pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet, pelvis, ankles), hands.pull,
     )  # fmt: skip
 
@@ -64,7 +64,7 @@ def moved(targets: Targets, by: Array) -> Targets:
     return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
 
 
-def _knee_poles(yaw: Array, feet: tuple[FootPath, FootPath], pelvis: Array, ankles: Array) -> Array:
+def _knee_poles(yaw: Array, feet: Feet, pelvis: Array, ankles: Array) -> Array:
     """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
 
     In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.

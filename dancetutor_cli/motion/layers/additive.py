@@ -6,10 +6,13 @@ between the root and a foot, so no contact moves; while a palm is on the floor t
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.settings import LayerSettings
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.solver import Poses
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, Skeleton
@@ -22,17 +25,23 @@ BLINK = 0.16  # seconds from open to open
 SEED = 20140513
 
 
-def add_layers(
-    skeleton: Skeleton, times: Array, rotations: Array, stepping: Array, free: Array, settings: LayerSettings,
-    lead: int,
-) -> None:  # fmt: skip
-    """Add all layers to `rotations` (f, j, 4) in place.
+@dataclass(frozen=True, slots=True)
+class Doing:
+    """What she does at f times, as far as layers go by it.
 
-    Parameters
-    ----------
-    times : (f,) seconds; stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
-    lead : as in `Plan`; free : (f,) 0 where a palm is on the floor, else 1
+    stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
+    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead : as in `Plan`
     """
+
+    stepping: Array
+    free: Array
+    lead: int
+
+
+def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
+    """Add all layers to the poses at `times` (f,), seconds, in place."""
+    skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
+    stepping, free, lead = doing.stepping, doing.free, doing.lead
     breath = np.sin(2 * np.pi * times / settings.breath_time)
     raised = np.radians(settings.breath_shoulders) * breath * free
     for side, sign in (("l", 1.0), ("r", -1.0)):

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.trajectory.body import BodyPath, screen_yaw
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.solver import Poses
+from dancetutor_cli.motion.trajectory.body import Trajectory
+from dancetutor_cli.motion.trajectory.facing import screen_yaw
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.quaternion import UP, leaning
-from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 NECK_SHARE = 0.4  # part of the head's turn that the neck takes
@@ -21,10 +22,9 @@ BENT_YAW = 0.35  # in a deep bend the head turns only this part of the way from 
 SHALLOW, DEEP = np.radians(25.0), np.radians(85.0)  # of bends: the first changes nothing, the second is deep
 
 
-def look(
-    skeleton: Skeleton, rotations: Array, root: Array, body: BodyPath, at: Array, settings: MotionSettings
-) -> None:
-    """Turn neck, head and eyes of `rotations` (f, j, 4), in place."""
+def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
+    """Turn neck, head and eyes at times `at` (f,), in place."""
+    skeleton, settings, rotations, root = context.skeleton, context.settings, poses.rotations, poses.root
     _, world = world_transforms(skeleton, rotations, root)
     chest = world[:, skeleton.index("vt4")]
     head_yaw, chest_yaw = (sample_path(yaw, body.times, at) for yaw in (body.head_yaw, body.chest_yaw))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,24 +25,31 @@ SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are lo
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
-def detour(
-    start: Array, start_yaw: float, end: Array, end_yaw: float, other: Array, other_yaw: Array | float, apart: float,
-    outward: float,
-) -> tuple[float, float]:  # fmt: skip
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians."""
+
+    start: Array
+    start_yaw: float
+    end: Array
+    end_yaw: float
+
+
+def detour(way: Way, other: Array, other_yaw: Array | float, apart: float, outward: float) -> tuple[float, float]:
     """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
 
     Parameters
     ----------
-    start, end : (2,) ball of the swinging foot; yaws in radians
+    way : of the swinging foot
     other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
     apart : metres; where no detour is enough, the best one is taken
     outward : 1 for the left foot, -1 for the right one: of equal detours each takes the other's mirror image
     """
-    path = end - start
+    start, start_yaw, path = way.start, way.start_yaw, way.end - way.start
     length = float(np.linalg.norm(path))
     axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
     axes = axes * [[outward], [1.0]]
-    e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (end_yaw - start_yaw))
+    e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (way.end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
     still = shoe_line(other - BALL_AHEAD * aim, aim)

@@ -37,6 +37,14 @@ class FootPath:
     progress: Array
 
 
+Feet = tuple[FootPath, FootPath]  # left and right
+
+
+def both_feet(tracks: tuple[FootTrack, FootTrack], times: Array, heel_drop: float) -> Feet:
+    """Sample both feet at `times` (f,), seconds."""
+    return foot_path(tracks[0], times, heel_drop), foot_path(tracks[1], times, heel_drop)
+
+
 def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     """Sample a foot at `times` (f,), seconds."""
     swings = track.swings

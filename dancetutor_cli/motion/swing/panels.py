@@ -25,6 +25,11 @@ def panels_on_ground(pad: Pad) -> Array:
     return np.asarray(panels * np.array([-PANEL, PANEL]))
 
 
+def squares_on_ground(pad: Pad) -> Array:
+    """World (x, z) of the middle of each square of three by three panels, (s, 2)."""
+    return np.asarray((pad.squares - np.asarray(pad.centre, dtype=np.float64)) * np.array([-PANEL, PANEL]))
+
+
 def heading(yaw: float) -> Array:
     """Unit vector (x, z) that somebody turned by `yaw` radians looks along."""
     return np.array([np.sin(yaw), np.cos(yaw)])
@@ -45,22 +50,3 @@ def room_on(panels: Array, column: int) -> Array:
     away = np.abs(panels - panels[column])
     beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
     return HALF_PANEL - np.where(beside, NEIGHBOUR_MARGIN, BALL_MARGIN)
-
-
-def landing_ball(panel: Array, yaw: float, other: Array, cut: float, edge_margin: float, room: Array) -> Array:
-    """Where the ball of a foot would like to land on a panel.
-
-    Parameters
-    ----------
-    panel : (2,) centre of the panel; yaw : of the foot; other : (2,) middle of the other foot
-    cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
-    room : (2,) from `room_on`
-    """
-    middle = panel.copy()
-    away = other - panel
-    distance = float(np.linalg.norm(away))
-    if distance > 1e-6:
-        direction = away / distance
-        to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
-        middle = panel + direction * min(cut * to_edge, distance)
-    return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))

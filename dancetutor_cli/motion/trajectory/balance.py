@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
-from dancetutor_cli.motion.swing.foot_path import FootPath
+from dancetutor_cli.motion.swing.foot_path import Feet, FootPath
 from dancetutor_cli.motion.trajectory.height import span
 from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
 from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
@@ -32,26 +32,38 @@ NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a roun
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
+@dataclass(frozen=True, slots=True)
+class Pendulum:
+    """The inverted pendulum on the zero-moment point at n even times.
+
+    times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
+    seen : the same without trembling above 10 Hz
+    offset : (n, 2) from the pelvis to the centre of mass, as far as known
+    """
+
+    times: Array
+    slowness: Array
+    seen: Array
+    offset: Array
+
+
 def balanced_path(
-    feet: tuple[FootPath, FootPath], lever: Array, seen: Array, offset: Array, times: Array,
-    settings: MotionSettings, tightened: int = 0, hand: float = 1.0,
-) -> tuple[Array, bool]:  # fmt: skip
+    feet: Feet, pendulum: Pendulum, settings: MotionSettings, tightened: int = 0, hand: float = 1.0
+) -> tuple[Array, bool]:
     """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
 
     Parameters
     ----------
-    feet : at the n even `times`, seconds
-    lever : (n,) y / (y'' + g), seconds squared; ignored in flight; seen : the same without trembling above 10 Hz
-    offset : (n, 2) from the pelvis to the centre of mass, as far as known
+    feet : at the pendulum's times
     settings : of the body, and how the weight sways while both feet stand
     hand : as in `Plan`; on its side she begins to sway
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
     """
-    body, rate = settings.body, NODE_RATE if tightened else ROUGH_RATE
+    times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
     nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
-    lever, seen = (np.interp(nodes, times, x) for x in (lever, seen))
-    offset = sample_path(offset, times, nodes)
+    slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
+    offset = sample_path(pendulum.offset, times, nodes)
     room = _room(feet)
     feet = _carrying(feet)
     low, high, middle = _support(feet)
@@ -61,12 +73,12 @@ def balanced_path(
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
     want = _Wanted(middle, low, high, weight, offset, *room)
     what = f"the path of her balance {span(times)}"
-    found = _solved(want, flight, lever, rate, body, what)
+    found = _solved(want, flight, slowness, rate, body, what)
     softened = found.softened
     for _ in range(tightened):
         path = found.x.reshape(-1, 2)
         want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), seen, rate), flight)
-        found = _solved(want, flight, lever, rate, body, what)
+        found = _solved(want, flight, slowness, rate, body, what)
         softened |= found.softened
     return cubic(nodes, found.x.reshape(-1, 2), times), softened
 
@@ -89,7 +101,7 @@ class _Wanted:
     farthest: Array
 
 
-def _room(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array]:
+def _room(feet: Feet) -> tuple[Array, Array]:
     """Lowest and highest place (n, 2) of the pelvis from which both legs reach."""
     ankles = [f.ball[:, [0, 2]] - ANKLE_BEHIND * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     return np.maximum(*ankles) - FARTHEST, np.minimum(*ankles) + FARTHEST
@@ -101,7 +113,7 @@ def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
     return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
 
 
-def _carrying(feet: tuple[FootPath, FootPath]) -> tuple[FootPath, FootPath]:
+def _carrying(feet: Feet) -> Feet:
     """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
     down = np.stack([f.down for f in feet])
     firm = down.copy()
@@ -111,7 +123,7 @@ def _carrying(feet: tuple[FootPath, FootPath]) -> tuple[FootPath, FootPath]:
     return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
 
 
-def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
+def _support(feet: Feet) -> tuple[Array, Array, Array]:
     """Where the zero-moment point may be, (n, 4) lowest and highest along `ACROSS`, and (n, 2) where best.
 
     The limits are a hull of the soles that stand; its eight sides have the same directions at all times.
@@ -132,7 +144,7 @@ def _support(feet: tuple[FootPath, FootPath]) -> tuple[Array, Array, Array]:
     return np.minimum(*lows), np.maximum(*highs), best
 
 
-def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) -> Array:
+def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
     """(n, 2): how far the weight wanders from foot to foot while both stand."""
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
@@ -141,10 +153,10 @@ def _sway(feet: tuple[FootPath, FootPath], times: Array, layers: LayerSettings) 
     return np.asarray(across * (layers.sway * phase * both)[:, None])
 
 
-def _zero_moment(path: Array, lever: Array, rate: float) -> Array:
+def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
     """The zero-moment point (n, 2) of a path (n, 2); at its ends the path."""
     out = path.copy()
-    out[1:-1] -= lever[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
+    out[1:-1] -= slowness[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
     return out
 
 
@@ -168,14 +180,14 @@ def _tightened(want: _Wanted, low: Array, high: Array, zmp: Array, flight: NDArr
 
 
 def _solved(
-    want: _Wanted, flight: NDArray[np.bool_], lever: Array, rate: float, body: BodySettings, what: str
+    want: _Wanted, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
 ) -> Solution:
     """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
     n = len(want.middle)
     problem = BandedLeastSquares(2 * n, 1, 8)
     inner = np.arange(1, n - 1)
     second = differences(2) * rate**2
-    zmp = (np.array([0.0, 1.0, 0.0]) - lever[inner, None] * second) / UNIT
+    zmp = (np.array([0.0, 1.0, 0.0]) - slowness[inner, None] * second) / UNIT
     stand = ~flight[inner]
     k, fly = inner[stand], inner[~stand]
     jerk = np.tile(differences(3) * (rate * body.smooth) ** 3 / UNIT, (n - 3, 1))

@@ -20,7 +20,7 @@ LEAST, MOST = 0.3, 2.0  # parts of the usual crouch for the smallest and the hig
 ONSET, OFFSET = 0.10, 0.12  # seconds that the lean of a jump begins before it and ends after it
 
 
-def haste(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     """How fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
     step = settings.step
     fast = np.zeros(len(times))

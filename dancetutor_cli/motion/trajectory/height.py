@@ -46,26 +46,30 @@ class HeightPath:
         return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
-def height_path(
-    times: Array, wanted: Array, highest: Array, above: Array, flights: Array, body: BodySettings
-) -> HeightPath:
-    """Solve the programme.
+@dataclass(frozen=True, slots=True)
+class HeightWish:
+    """What is asked of the height of the centre of mass at n even times, metres.
 
-    Parameters
-    ----------
-    times : (n,) even; wanted, highest : (n,) metres at those times, the latter ignored in flight
-    above : (n,) metres, how far the centre of mass is over the pelvis, whose jerk on the ground is least
-    flights : (k, 2) of take-off and landing, seconds, in order; body : settings
+    times : (n,) seconds; wanted : (n,) where it would like to be; highest : (n,) where it may be, ignored in flight
+    above : (n,) how far it is over the pelvis, whose jerk on the ground is least
     """
+
+    times: Array
+    wanted: Array
+    highest: Array
+    above: Array
+
+
+def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
+    """Solve the programme. flights : (k, 2) of take-off and landing, seconds, in order; body : settings"""
+    times = wish.times
     flights = flights[(flights[:, 1] - flights[:, 0] > LEAST_PHASE)]
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
     flights = _apart(flights)
     nodes, flying = _nodes(times[0], times[-1], flights)
     inner = np.arange(1, len(nodes) - 1)
     in_flight = flying[inner - 1] & flying[inner]
-    problem = _objective(
-        nodes, flying, in_flight, np.interp(nodes, times, wanted), np.interp(nodes, times, above), body
-    )
+    problem = _objective(nodes, flying, in_flight, wish, body)
     acceleration = _second(nodes) / GRAVITY
     standing = ~in_flight
     touching = (flying[inner - 1] | flying[inner])[standing]
@@ -75,7 +79,7 @@ def height_path(
         np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0), GIVE_FORCE,
     )  # fmt: skip
     ground = np.flatnonzero(~(np.concatenate(([True], flying)) & np.concatenate((flying, [True]))))
-    top = np.interp(nodes[ground], times, highest)
+    top = np.interp(nodes[ground], times, wish.highest)
     room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT, GIVE_ROOM)
     solution = solve_surely(problem, [force, room], f"the height of her body {span(times)}")
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
@@ -125,10 +129,10 @@ def _third(t: Array) -> Array:
 
 
 def _objective(
-    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wanted: Array, above: Array,
-    body: BodySettings,
-) -> BandedLeastSquares:  # fmt: skip
+    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wish: HeightWish, body: BodySettings
+) -> BandedLeastSquares:
     n = len(nodes)
+    wanted, above = (np.interp(nodes, wish.times, x) for x in (wish.wanted, wish.above))
     problem = BandedLeastSquares(n, 1)
     step = np.gradient(nodes) * NODE_RATE
     ground = ~(np.concatenate(([False], flying)) | np.concatenate((flying, [False])))

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bake_plays import context
 
-from dancetutor_cli.bake.bake import _may_rise
-from dancetutor_cli.motion.footwork.footing import FARTHEST_TURN, FREE_WINDOW, NO_TIME, Stance
-from dancetutor_cli.motion.footwork.jumps import fly
+from dancetutor_cli.bake.settle import _may_rise
+from dancetutor_cli.motion.footwork.footing import FARTHEST_TURN, FREE_WINDOW, NO_TIME, Footing
+from dancetutor_cli.motion.footwork.jumps import Flight, fly
 from dancetutor_cli.motion.footwork.planner import LEAD, _turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.targets import FROM_TOES, _knee_poles
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.plan import FootTrack, Plan, Swing
-from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
 from dancetutor_cli.motion.swing.timing import swung
 from dancetutor_cli.numerics.ease import smooth
@@ -42,35 +42,35 @@ def test_small_turns_begin_with_their_move() -> None:
 
 @pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
 def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[float, float]) -> None:
-    stance = Stance(default_settings(), 0)
-    stance.normal = 180.0  # the play would have her face backward
-    for foot, yaw in zip(stance.feet, np.radians(yaws), strict=True):
+    footing = Footing(context(), 0)
+    footing.normal = 180.0  # the play would have her face backward
+    for foot, yaw in zip(footing.feet, np.radians(yaws), strict=True):
         foot.yaw = float(yaw)
-    body = stance.turned_to()
+    body = footing.turned_to()
     apart = abs(np.radians(yaws[0] - yaws[1])) / 2  # from feet that point so far apart it is in the middle
-    assert max(abs(body - foot.yaw) for foot in stance.feet) <= max(FARTHEST_TURN, apart) + 1e-9
+    assert max(abs(body - foot.yaw) for foot in footing.feet) <= max(FARTHEST_TURN, apart) + 1e-9
 
 
 def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
-    stance = Stance(default_settings(), 0)
-    goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in stance.feet]
-    fly(stance, 1.0, 1.24, goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
-    swing = stance.feet[0].swings[-1]
+    footing = Footing(context(), 0)
+    goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in footing.feet]
+    fly(footing, Flight(1.0, 1.24), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    swing = footing.feet[0].swings[-1]
     for share, least in ((0.1, 0.25), (0.2, 0.5)):
-        height = foot_path(stance.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        height = foot_path(footing.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
         falling = swing.height * 4 * share * (1 - share)
         assert height - falling >= least * swing.tuck
 
 
 def test_a_heel_does_not_drop_in_no_time() -> None:
     """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
-    stance = Stance(default_settings(), 0)
-    foot = stance.feet[0]
+    footing = Footing(context(), 0)
+    foot = footing.feet[0]
     for lift, land, kind in ((1.0, 1.2, "step"), (1.2 + FREE_WINDOW, 1.4, "pivot"), (1.41, 1.6, "step")):
         foot.move(Swing(lift, land, (0.3, 0.1), 0.2, 0.05, (0.2, 0.4, 0.15, 0.0), kind=kind), foot.ball, foot.yaw)
     times = np.linspace(1.19, 1.43, 2401)
-    path = foot_path(stance.tracks()[0], times, 0.09)
+    path = foot_path(footing.tracks()[0], times, 0.09)
     assert NO_TIME > 0.01
     assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
 
@@ -109,7 +109,7 @@ def test_a_heel_that_presses_does_not_rise_for_its_ankle() -> None:
         Contact(3.0, 3.4, 1, 3, 1, Part.WHOLE, 1, (-0.28, 0.0)),
     )
     track = FootTrack((0.0, 0.0), 0.0, ())
-    plan = Plan((track, track), (), (), contacts, (0.0, 0.0), 2.0, 3.4)
+    plan = Plan((track, track), (), (), contacts, 2.0, 3.4)
     times = np.array([1.9, 2.0, 2.2, 2.4, 2.5, 3.1])
     np.testing.assert_allclose(_may_rise(plan, times)[:, 0], [1, 0, 0, 0, 1, 1])
     np.testing.assert_allclose(_may_rise(plan, times)[:, 1], 1.0)

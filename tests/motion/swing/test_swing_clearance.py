@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bake_plays import context
 
-from dancetutor_cli.motion.footwork.foothold import beside, pose
-from dancetutor_cli.motion.footwork.footing import Stance
+from dancetutor_cli.motion.footwork.foothold import Spot, beside, pose
+from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.motion.swing.clearance import HALF_SHOE, SHARES, detour, over
+from dancetutor_cli.motion.swing.clearance import HALF_SHOE, SHARES, Way, detour, over
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
 from dancetutor_cli.motion.swing.timing import swung, travelled
 
@@ -27,13 +28,13 @@ def gap(a: np.ndarray, b: np.ndarray) -> float:
 @pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
 def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
     """The right foot lands on the panel on whose middle the left one stands."""
-    stance = Stance(default_settings(), 0)
+    footing = Footing(context(), 0)
     panel = np.array([0.14, 0.0])
-    left, right = stance.feet
+    left, right = footing.feet
     left.ball, left.yaw = ball_of(panel, yaw), yaw
-    ball, turned = beside(stance, panel, np.full(2, 0.116), right, left.ball, yaw, pose(stance, left))
+    ball, turned = beside(footing, right, Spot(panel, np.full(2, 0.116)), left.ball, yaw, pose(footing, left))
     shoes = [
-        line_points(middle_of(b, stance.toes(f, y)), stance.toes(f, y))
+        line_points(middle_of(b, footing.toes(f, y)), footing.toes(f, y))
         for f, b, y in ((left, left.ball, left.yaw), (right, ball, turned))
     ]
     assert gap(*shoes) >= APART - 1e-3
@@ -46,7 +47,7 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     to, pivot = yaw if turned is None else turned, ball_of(other, yaw)
     now = yaw + swung(SHARES) * (to - yaw)
     balls = ball_of(start, 0.0), ball_of(end, 0.2)
-    bulge = detour(balls[0], 0.0, balls[1], 0.2, pivot, now, APART, 1.0)
+    bulge = detour(Way(balls[0], 0.0, balls[1], 0.2), pivot, now, APART, 1.0)
     least = np.inf
     for s in np.linspace(0.05, 0.95, 60):
         share, aim = float(travelled(s)), yaw + float(swung(s)) * (to - yaw)
@@ -59,13 +60,13 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
 
 
 def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
-    stance = Stance(default_settings(), 0)
+    footing = Footing(context(), 0)
     panel, neighbour = np.array([0.14, 0.0]), np.array([-0.14, 0.0])
-    stance.mined = neighbour[None]
-    left, right = stance.feet
+    footing.mined = neighbour[None]
+    left, right = footing.feet
     right.ball = np.array([0.5, 0.3])
-    ball, yaw = beside(stance, panel, np.full(2, 0.1), left, np.array([0.05, 0.09]), 0.6, pose(stance, right))
-    toes = stance.toes(left, yaw)
+    ball, yaw = beside(footing, left, Spot(panel, np.full(2, 0.1)), np.array([0.05, 0.09]), 0.6, pose(footing, right))
+    toes = footing.toes(left, yaw)
     heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
     assert min(heel[0], ball[0]) > 0.03  # half a sole from the edge at x = 0
     assert np.abs(ball - panel).max() <= 0.1 + 1e-9
@@ -81,7 +82,7 @@ def test_a_heel_that_only_just_reaches_over_a_mine_counts() -> None:
 def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
     """Its heel swings past the middle of the other shoe, which lies across behind it."""
     place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
-    bulge = detour(place, -turn, place, turn, other, aim, APART, 1.0)
+    bulge = detour(Way(place, -turn, place, turn), other, aim, APART, 1.0)
 
     def least(aside: tuple[float, float]) -> float:
         gaps = []
@@ -98,12 +99,12 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
 
 def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
     """Its toes on the left panel; turned to the front its heel would lie on the down panel, which has a mine."""
-    stance = Stance(default_settings(), 0)
-    left = stance.feet[0]
+    footing = Footing(context(), 0)
+    left = footing.feet[0]
     left.ball, left.yaw = np.array([0.187, -0.046]), float(np.radians(65.0))
     far = np.array([-0.2, 0.1])
-    free = stance.pivot_yaw(left, 0.0, far, 0.0)
-    stance.mined = np.array([[0.0, -0.28]])
-    kept = stance.pivot_yaw(left, 0.0, far, 0.0)
-    assert over(stance.mined, left.ball[None], np.array([stance.toes(left, free)]))[0]
-    assert not over(stance.mined, left.ball[None], np.array([stance.toes(left, kept)]))[0]
+    free = footing.pivot_yaw(left, 0.0, far, 0.0)
+    footing.mined = np.array([[0.0, -0.28]])
+    kept = footing.pivot_yaw(left, 0.0, far, 0.0)
+    assert over(footing.mined, left.ball[None], np.array([footing.toes(left, free)]))[0]
+    assert not over(footing.mined, left.ball[None], np.array([footing.toes(left, kept)]))[0]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bake_plays import context
 
-from dancetutor_cli.motion.footwork.footing import Stance
-from dancetutor_cli.motion.footwork.jumps import fly
+from dancetutor_cli.motion.footwork.footing import Footing
+from dancetutor_cli.motion.footwork.jumps import Flight, fly
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.clearance import HALF_SHOE
 from dancetutor_cli.motion.swing.foot_path import foot_path
@@ -15,11 +16,11 @@ from dancetutor_cli.motion.swing.panels import BALL_AHEAD
 APART = default_settings().step.apart
 
 
-def least_gap(stance: Stance, start: float, end: float) -> float:
+def least_gap(footing: Footing, start: float, end: float) -> float:
     """Least distance between the middle lines of both shoes in a span of time, by brute force over points of them."""
     times = np.linspace(start, end, 60)
     lines = []
-    for track in stance.tracks():
+    for track in footing.tracks():
         path = foot_path(track, times, 0.09)
         ahead = np.column_stack((np.sin(path.yaw), np.cos(path.yaw)))
         middle = path.ball[:, [0, 2]] - BALL_AHEAD * ahead
@@ -30,8 +31,8 @@ def least_gap(stance: Stance, start: float, end: float) -> float:
 @pytest.mark.parametrize("degrees", [-180.0, -135.0, -90.0, 0.0, 90.0, 135.0, 180.0])
 @pytest.mark.parametrize("width", [0.20, 0.28, 0.56])
 def test_shoes_keep_clear_of_each_other_in_a_jump_that_turns(degrees: float, width: float) -> None:
-    stance = Stance(default_settings(), 0)
-    left, right = stance.feet
+    footing = Footing(context(), 0)
+    left, right = footing.feet
     for foot, x in ((left, width / 2), (right, -width / 2)):
         foot.ball = np.array([x, 0.05])
         foot.yaw = 0.0
@@ -39,26 +40,26 @@ def test_shoes_keep_clear_of_each_other_in_a_jump_that_turns(degrees: float, wid
     across = width / 2 * np.array([np.cos(angle), -np.sin(angle)])
     place = np.array([0.1, -0.2])
     goals = [(place + across, angle), (place - across, angle)]
-    stance = _with_start(stance)
-    fly(stance, 1.0, 1.2, goals, [(0.0, 0.0, 0.0, 0.0)] * 2, degrees)
-    assert least_gap(stance, 1.0, 1.2) >= APART - 0.004
-    for track, (ball, _) in zip(stance.tracks(), goals, strict=True):
+    footing = _with_start(footing)
+    fly(footing, Flight(1.0, 1.2, degrees), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    assert least_gap(footing, 1.0, 1.2) >= APART - 0.004
+    for track, (ball, _) in zip(footing.tracks(), goals, strict=True):
         np.testing.assert_allclose(foot_path(track, np.array([1.2]), 0.09).ball[0, [0, 2]], ball, atol=1e-9)
 
 
 def test_feet_that_land_together_after_far_ways_do_not_cross() -> None:
     """Both from the far panels of the other pad to the two panels in the middle, with a half turn."""
-    stance = Stance(default_settings(), 0)
-    left, right = stance.feet
+    footing = Footing(context(), 0)
+    left, right = footing.feet
     left.ball, left.yaw = np.array([-0.458, -0.164]), np.radians(56.0)
     right.ball, right.yaw = np.array([-0.202, -0.044]), np.radians(73.0)
-    stance = _with_start(stance)
+    footing = _with_start(footing)
     goals = [(np.array([0.058, 0.026]), np.radians(14.0)), (np.array([-0.063, 0.046]), np.radians(18.0))]
-    fly(stance, 1.0, 1.1, goals, [(0.0, 0.0, 0.0, 0.0)] * 2, -135.0)
-    assert least_gap(stance, 1.0, 1.1) >= 0.076  # what the report asks for
+    fly(footing, Flight(1.0, 1.1, -135.0), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    assert least_gap(footing, 1.0, 1.1) >= 0.076  # what the report asks for
 
 
-def _with_start(stance: Stance) -> Stance:
-    """A stance whose feet have always been where they are now."""
-    stance._start = tuple(((float(f.ball[0]), float(f.ball[1])), stance.toes(f)) for f in stance.feet)
-    return stance
+def _with_start(footing: Footing) -> Footing:
+    """A footing whose feet have always been where they are now."""
+    footing._start = tuple(((float(f.ball[0]), float(f.ball[1])), footing.toes(f)) for f in footing.feet)
+    return footing

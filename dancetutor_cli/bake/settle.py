@@ -1,0 +1,121 @@
+"""The fixed point of a bake: the body's path needs to know how she is bent, and how she bends needs her path.
+
+Each round bakes roughly, sees where the centre of mass is over the root, how far pinned palms drew it down and which
+ankles bend too far, and plans the path again with that. Two rounds are enough without palms: what is left is
+corrected frame by frame (`bake.bake`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.solver import Poses, Targets, solve
+from dancetutor_cli.motion.ik.targets import ik_targets
+from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
+from dancetutor_cli.motion.trajectory.body import Known, Trajectory, body_trajectory
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path
+from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.mass import centre_of_mass
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
+TIGHTENED = 2  # rounds of tightening the limits of her balance in the last of those
+COARSE = 4  # every so many samples of the path are baked in a round
+LOWEST = 0.35  # metres of the pelvis over the pad, however far away a palm shall be
+OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
+HEEL_SMOOTH = 0.06  # seconds over which heels rise for their ankles' sake
+MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
+HEEL_DOWN = 0.06  # seconds in which a heel comes down to press a panel
+AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """The trajectory that is final, after `rounds` of rough baking.
+
+    residuals : metres, for each round how far the centre of mass was at most from where its path took it to be
+    """
+
+    trajectory: Trajectory
+    residuals: tuple[float, ...]
+
+    @property
+    def rounds(self) -> int:
+        """How often it was baked roughly."""
+        return len(self.residuals)
+
+
+def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
+    """Bake roughly, see what the path did not know, and plan it again; times (n,) even, feet sampled there."""
+    settings, rate = context.settings, context.settings.sampling.work_rate
+    body = body_trajectory(plan, times, feet, context)
+    coarse, ones = times[::COARSE], np.ones(len(times))
+    deeper, heels = np.zeros(len(plan.presses)), np.zeros((len(times), 2))
+    may_rise, residuals = _may_rise(plan, times), []
+    rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
+    for number in range(rounds):
+        targets = targets_at(plan, body, coarse, context)
+        poses = solve(context.skeleton, targets, settings.body.reach)
+        offset = mass_of(context.skeleton, poses) - poses.root
+        taken = sample_path(np.column_stack((body.mass, body.mass_height.at(times))), times, coarse)
+        planned = taken - sample_path(np.column_stack((body.ground, body.height)), times, coarse)
+        residuals.append(float(np.abs(offset[:, [0, 2, 1]] - planned).max()))
+        above = smooth_path(cubic(coarse, offset, times), ones, rate, OFFSET_SMOOTH)
+        deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
+        heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
+        heels = np.maximum(smooth_path(heels, ones, rate, HEEL_SMOOTH), 0.0) * may_rise
+        last = number == rounds - 1
+        known = Known(body, above, deeper, keep=number > 0 and not last, tightened=TIGHTENED if last else 0)
+        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels)
+    return Settled(body, tuple(residuals))
+
+
+def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:
+    """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
+    up = sample_path(body.heels, body.times, at)
+    feet = both_feet(plan.feet, at, context.settings.step.heel_drop)
+    left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
+    return ik_targets(plan, body, (left, right), at, context)
+
+
+def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """Centre of mass (f, 3) of solved frames."""
+    return centre_of_mass(skeleton, *world_transforms(skeleton, poses.rotations, poses.root))
+
+
+def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
+    """How much deeper (p,) she bends for each press, after palms have drawn the root by (f,) metres at times `at`."""
+    out, most = deeper.copy(), max(context.settings.hands.pelvis - LOWEST, 0.0)
+    for k, press in enumerate(plan.presses):
+        near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
+        more = deeper[k] - min(float(drawn[near].min(initial=0.0)), 0.0)
+        out[k] = min(more, most)  # where no palm reaches, nobody sinks
+    return out
+
+
+def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
+    """How far (f,) each heel must rise so that its ankle does not bend beyond what ankles can, radians."""
+    limit = np.radians(context.settings.step.ankle_limit)
+    out = []
+    for side in "lr":
+        q = rotations[:, context.skeleton.index(f"{side}_talocrural")]
+        q = np.where(q[:, :1] < 0, -q, q)
+        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, MOST_HEEL))
+    return out[0], out[1]
+
+
+def _may_rise(plan: Plan, times: Array) -> Array:
+    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel."""
+    out = np.ones((len(times), 2))
+    for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
+        away = np.maximum(contact.start - times, times - contact.end)
+        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / HEEL_DOWN))
+    return out

@@ -1,0 +1,61 @@
+"""The bar behind the dancer: where it stands, how she stands who holds it, and when a hand is on it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.model import Bar, Grip
+from dancetutor_cli.motion.settings import BarSettings, MotionSettings
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, panels_on_ground, squares_on_ground
+from dancetutor_cli.numerics.ease import smooth
+
+if TYPE_CHECKING:
+    from dancetutor_cli.pads import Pad
+
+Array = NDArray[np.float64]
+FROM_END = 0.06  # metres that a hand keeps from the ends of the rail
+
+
+def bar_of(pad: Pad, settings: BarSettings) -> Bar:
+    """The bar of a pad: a rail behind each of its squares of nine panels."""
+    spans = tuple((float(x - settings.posts), float(x + settings.posts)) for x in np.sort(squares_on_ground(pad)[:, 0]))
+    rear = float(panels_on_ground(pad)[:, 1].min()) - HALF_PANEL
+    return Bar(settings.height, rear - settings.behind, settings.radius, spans)
+
+
+def holding(settings: MotionSettings) -> MotionSettings:
+    """The settings for somebody who holds the bar: she stands a little lower, for her feet are far before her.
+
+    Her chest keeps more to the screen, for both hands hold it; and she goes down half as far in streams and for jumps,
+    for the bar bears a part of that.
+    """
+    body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
+    body = replace(body, stance=body.stance - bar.knees, soft_reach=body.soft_reach - bar.knees)
+    body = replace(body, stream_crouch=body.stream_crouch / 2)
+    jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
+    return replace(settings, body=body, jump=jump, look=replace(look, torso_weight=bar.square))
+
+
+def on_rail(x: Array, bar: Bar) -> Array:
+    """The nearest place on the rail, a hand's width from its ends."""
+    choices = np.stack([np.clip(x, low + FROM_END, high - FROM_END) for low, high in bar.spans])
+    nearest = np.argmin(np.abs(choices - x), axis=0)
+    return np.asarray(np.take_along_axis(choices, nearest[None], axis=0)[0])
+
+
+def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
+    """How much each hand is at the rail, (n, 2), 0 to 1: all of it from a grip's start to its end."""
+    out = np.zeros((len(times), 2))
+    for grip in grips:
+        near = slice(*np.searchsorted(times, (grip.start - reach, grip.end + reach)).tolist())
+        out[near, grip.side] += grip_share(grip, times[near], reach)
+    return np.minimum(out, 1.0)
+
+
+def grip_share(grip: Grip, times: Array, reach: float) -> Array:
+    """How much of a grip there is at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
+    return smooth((times - grip.start + reach) / reach) * smooth((grip.end + reach - times) / reach)

@@ -1,0 +1,65 @@
+"""Which way pelvis, chest and head face: with the feet, and to the screen as far as they can (thesis 5.7)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.plan import Plan, Turn
+from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.trajectory.course import Course
+from dancetutor_cli.motion.trajectory.reach import press_share, turned_for_hands, wrapped
+from dancetutor_cli.numerics.controller import Controller, follow
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.numerics.smoothing import smooth_path
+
+Array = NDArray[np.float64]
+WRUNG = np.radians(110.0)  # before the screen is right behind her, the chest gives up looking at it over so far
+PELVIS_SMOOTH, CHEST_SMOOTH, HEAD_SMOOTH = 0.08, 0.05, 0.04  # seconds over which each of them turns
+
+
+def pelvis_yaw(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+    """Yaw (n,) of the pelvis at even times, radians, unwrapped: it turns with the steps, and for hands behind it."""
+    turned = _turned(plan.turns, times) + turned_for_hands(plan.presses, times, settings.hands)
+    rate = 1.0 / float(times[1] - times[0])
+    return np.asarray(smooth_path(turned[:, None], np.ones(len(times)), rate, PELVIS_SMOOTH)[:, 0])
+
+
+def _turned(turns: tuple[Turn, ...], times: Array) -> Array:
+    if not turns:
+        return np.zeros_like(times)
+    start = np.array([t.start for t in turns])
+    end = np.array([t.end for t in turns])
+    yaw = np.array([0.0, *(t.yaw for t in turns)])
+    i = np.maximum(np.searchsorted(start, times, side="right") - 1, 0)
+    s = (times - start[i]) / (end[i] - start[i])
+    return np.asarray(yaw[i] + smooth(s) * (yaw[i + 1] - yaw[i]))
+
+
+def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
+    """Yaw (n,) from a place on the ground (n, 2) to the screen."""
+    return np.asarray(np.arctan2(-0.5 * ground[:, 0], settings.look.distance - ground[:, 1]))
+
+
+def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSettings) -> tuple[Array, Array]:
+    """Yaws (n,) of chest and head: they keep to the screen as far as they can; when the body turns past, they whip
+    round.
+
+    ahead (n,) : how much she looks where she walks and not at the screen
+    """
+    look, ones = settings.look, np.ones(len(course.yaw))
+    to_screen = screen_yaw(course.ground, settings)
+    gap = wrapped(to_screen - course.yaw)
+    torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
+    torso = torso * smooth((np.pi - np.abs(gap)) / WRUNG)  # a spine is not wrung from one side to the other at once
+    torso = torso * (1.0 - ahead)
+    for press in (p for p in plan.presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
+        share = press_share(press, course.times, settings.hands.reach_down)
+        torso = torso + share * (np.copysign(np.radians(look.torso_limit), press.turn) - torso)
+    controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
+    smoothed = smooth_path(torso[:, None], ones, course.rate, CHEST_SMOOTH)
+    chest = course.yaw + follow(smoothed, course.rate, controller)[:, 0]
+    gap = wrapped(to_screen - chest)
+    head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
+    head = head * (1.0 - settings.walk.ahead * ahead)
+    return chest, chest + smooth_path(head[:, None], ones, course.rate, HEAD_SMOOTH)[:, 0]
