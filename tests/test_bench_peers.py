@@ -1,0 +1,37 @@
+"""tools/bench_peers.py: programs take turns, ratios are to ours, and what fails is named and left out."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+TOOL = Path(__file__).parent.parent / "tools" / "bench_peers.py"
+SPIN = "import sys, time; t = time.process_time()\nwhile time.process_time() - t < {}: pass"
+
+
+def told(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, str(TOOL), str(folder), *arguments], capture_output=True, text=True)
+
+
+def command(code: str, place: str = "{folder}") -> str:
+    return f"'{sys.executable}' -c '{code}' {place}"
+
+
+def test_ratios_and_failures(tmp_path: Path) -> None:
+    for name in ("a.sm", "b.ssc"):
+        (tmp_path / name).touch()
+    ours, twice = command(SPIN.format(0.1)), command(SPIN.format(0.15), "{file}")
+    run = told(tmp_path, "--runs", "2", "--ours", ours, "--peer", f"each={twice}", "--peer", "none=/not/there {folder}",
+               "--peer", f"dies={command('raise SystemExit(9)')}")  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    ratio = re.search(r"\| each \| ([0-9.]+) \|", run.stdout)
+    assert ratio and 1.5 < float(ratio[1]) < 6.0  # 0.3 s and two starts of Python against 0.1 s and one
+    assert "| none | left out: /not/there: " in run.stdout and "ended with status 9" in run.stdout
+
+
+def test_a_command_without_a_place_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.sm").touch()
+    run = told(tmp_path, "--peer", "x=cat")
+    assert run.returncode == 1 and run.stderr.strip() == "x: the command needs {folder} or {file}"
