@@ -6,6 +6,7 @@ made to break whoever opens them. What is wrong is one line, which quotes nothin
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import stat
@@ -44,7 +45,9 @@ def read_bytes(path: Path, limit: int) -> bytes:
         said = "is a link to a file that is not there" if os.path.islink(path) else "no such file or folder"  # noqa: PTH114
         raise MissingFileError(path, f"cannot be read: {said}") from None
     except (OSError, ValueError) as error:
-        raise FileError(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        said = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        is_too_long = getattr(error, "errno", None) == errno.ENAMETOOLONG  # so no file can have that name
+        raise (MissingFileError if is_too_long else FileError)(path, said) from None
     try:
         status = os.fstat(descriptor)
         for is_kind, what in _KINDS:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-_TOKEN = re.compile(rb"//[^\n]*|\\.?|[#:;]", re.DOTALL)
+_TOKEN = re.compile(rb"//[^\n]*|\\.?|#+|[:;]", re.DOTALL)
+_MOST_VALUES = 4096  # of one tag; games read the first few; of more only the last is kept
 _COMMENT_OR_ESCAPE = re.compile(rb"//[^\n]*|\\(.?)", re.DOTALL)
 
 
@@ -19,7 +20,10 @@ class Tag:
 
 
 def scan(data: bytes) -> list[Tag]:
-    """All tags of a file in order. A missing `;` is made up for where the games do; text between tags is dropped."""
+    """All tags of a file in order. A missing `;` is made up for where the games do; text between tags is dropped.
+
+    So is a tag with neither name nor value: a file may hold millions of them.
+    """
     tags: list[Tag] = []
     params: list[tuple[int, int]] = []
     begin = -1  # offset of the '#' of the open tag, -1 between tags
@@ -28,27 +32,30 @@ def scan(data: bytes) -> list[Tag]:
         at = match.start()
         token = data[at]
         if token == 35:  # '#'
+            # Of several in a row each ends the tag of the one before, which has no name; where none counts, none does.
             if begin < 0:
-                begin, start = at, at + 1
+                begin, start = match.end() - 1, match.end()
             elif _first_on_line(data, start, at):
-                params.append((start, at))
-                tags.append(_tag(data, begin, params))
-                params, begin, start = [], at, at + 1
+                _end(tags, data, begin, params, (start, at))
+                params, begin, start = [], match.end() - 1, match.end()
         elif begin >= 0 and token in b":;":
-            params.append((start, at))
-            start = at + 1
             if token == 59:  # ';'
-                tags.append(_tag(data, begin, params))
+                _end(tags, data, begin, params, (start, at))
                 params, begin = [], -1
+            elif len(params) < _MOST_VALUES:
+                params.append((start, at))
+            start = at + 1
     if begin >= 0:
-        params.append((start, len(data)))
-        tags.append(_tag(data, begin, params))
+        _end(tags, data, begin, params, (start, len(data)))
     return tags
 
 
-def _tag(data: bytes, begin: int, params: list[tuple[int, int]]) -> Tag:
-    (a, b), *values = params
-    return Tag(plain(data[a:b]).decode("latin-1").upper(), begin, tuple(values))
+def _end(tags: list[Tag], data: bytes, begin: int, params: list[tuple[int, int]], last: tuple[int, int]) -> None:
+    """Add the tag that ends with the value `last`, if there is anything in it."""
+    (a, b), *values = (*params, last)
+    name = plain(data[a:b]).decode("latin-1").upper()
+    if values or name.strip():
+        tags.append(Tag(name, begin, tuple(values)))
 
 
 def _first_on_line(data: bytes, start: int, at: int) -> bool:

@@ -62,8 +62,13 @@ def analyze_file(task: Task) -> FileResult:
         tuple(_warnings(song, charts)),
         check_file(FileSubject(song), task.settings),
         charts,
-        tuple(chart.label for chart in song.charts if chart not in selected),
+        _unselected(song, selected),
     )
+
+
+def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
+    meant = {chart.index for chart in selected}  # a file may hold thousands of charts
+    return tuple(chart.label for chart in song.charts if chart.index not in meant)
 
 
 def load_song(task: Task) -> Song:
