@@ -9,6 +9,19 @@ from collections.abc import Sequence
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run `dancetutor`; ends the process with 0, 1 (findings) or 2 (something could not be read or run)."""
+    if sys.stderr is None:  # closed, as by `2>&-`
+        sys.stderr = open(os.devnull, "w")  # noqa: PTH123, SIM115
+    if sys.stdout is None:
+        _say("standard output is closed; send it to a file, or to /dev/null")
+        sys.exit(2)
+    try:
+        _run(arguments)
+    except KeyboardInterrupt:  # while the first modules are imported
+        _say("interrupted")
+        sys.exit(130)
+
+
+def _run(arguments: Sequence[str] | None) -> None:
     from dancetutor_cli.startup import collect_seldom, leave_garbage
 
     collect_seldom()

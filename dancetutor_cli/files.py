@@ -8,8 +8,10 @@ and what a killed process left behind is found, seen to be nobody's, and removed
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
+import re
 import stat
 import time
 from collections.abc import Callable, Iterator
@@ -23,6 +25,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+_LONE = re.compile("[\ud800-\udfff]")
 SUFFIX = ".dancetutor.tmp"
 _LONGEST_NAME = 255 - len(SUFFIX) - 1  # bytes; a longer file name is hashed
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
@@ -69,6 +72,11 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
             file.close()  # Windows renames no open file
         temporary.replace(target)
     _sync_folder(target.parent)
+
+
+def encoded(text: str) -> bytes:
+    """JSON text in UTF-8. A file name that is no text stands in it as \\udcXX, and is the same name when it is read."""
+    return _LONE.sub(lambda found: f"\\u{ord(found[0]):04x}", text).encode("utf-8")
 
 
 def back_up(path: Path) -> Path:
@@ -125,7 +133,11 @@ def _target(path: Path) -> Path:
         return path.resolve(strict=True) if path.is_symlink() else path
     except FileNotFoundError:
         raise FileError(path, "is a link to a file that is not there") from None
-    except (OSError, RuntimeError) as error:  # RuntimeError: how Python before 3.13 reports a circle of links
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise FileError(path, "cannot be written: its name is too long for the file system") from error
+        raise FileError(path, "is a link that leads nowhere") from error
+    except RuntimeError as error:  # how Python before 3.13 reports a circle of links
         raise FileError(path, "is a link that leads nowhere") from error
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.long_work import LONG, confirm_long
 from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
@@ -72,12 +73,13 @@ _FILE = click.Path(path_type=Path)
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
 )
+@click.option("--yes", is_flag=True, help="Bake even a very long motion without asking.")
 @character_option
 @selection_options
 @preset_option
 def command(
     file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
-    gait: str, motion: Path | None, jobs: int,
+    gait: str, motion: Path | None, jobs: int, yes: bool,
     report_to: str | None, plot: Path | None, character: str, preset: str | None, **selection: Any,
 ) -> None:  # fmt: skip
     """Bake a 3D dancer who plays one chart of FILE.
@@ -111,7 +113,16 @@ def command(
         click.echo(f"warning: {safe(note)}", err=True)
     target = output or Path(default_name(asked.song, asked.chart))
     check_file(target, SUFFIXES)
+    _allow_long(asked, file, yes)
     _bake_and_write(asked, task, target, dances, report_to, plot)
+
+
+def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
+    first, last = (float(second) for second in asked.play.rows.second[[0, -1]])
+    start, end = asked.section or (first, last)
+    seconds = min(end, last) - max(start, first)
+    if seconds > LONG and not yes:
+        confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
 def _bake_and_write(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import signal
-import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ import click
 
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.long_work import LONG, confirm_long
 from dancetutor_cli.commands.selection import preset_option, selection_options
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.targets import check_file, check_folder, make_folder
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.encoder import Target
 
 LONG_GIF = 20.0  # seconds; a megabyte takes about four
-LONG = 20 * 60.0  # seconds of film; more than this is asked about first
 
 
 @click.command()
@@ -119,9 +119,15 @@ def _render_one(
         check_file(target)
     if not options["poses"]:
         _allow_long(subject, path, yes)
+    is_new = folder is not None and not target.exists()
     if folder is not None:
         make_folder(target)
-    _make(request, subject, target, kind, quiet, options)
+    try:
+        _make(request, subject, target, kind, quiet, options)
+    finally:
+        if is_new:
+            with suppress(OSError):
+                target.rmdir()  # only while nothing is in it
 
 
 def default_name(song: Song, chart: Chart) -> str:
@@ -139,10 +145,7 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
     what = f"{file}: the film would last {clock.seconds / 60:.0f} minutes ({clock.frames:,} frames)"
     if clock.seconds <= LONG:
         what = f"{file}: the chart is {subject.written / 3600:.1f} hours long, though its last note is early"
-    if sys.stdin.isatty() and sys.stderr.isatty():
-        click.confirm(f"{what}. Render it?", abort=True, err=True)
-    else:
-        raise UsageError(f"{what}; choose a part with --section, or say --yes")
+    confirm_long(what, "Render")
 
 
 def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet: bool, options: dict[str, Any]) -> None:

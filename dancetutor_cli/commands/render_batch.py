@@ -13,6 +13,7 @@ import click
 
 from dancetutor_cli.commands.film_options import film_request
 from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.files import encoded
 from dancetutor_cli.targets import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def _open_results(path: Path | None, stack: ExitStack) -> TextIO | None:
 
 def _write(results: TextIO | None, line: dict[str, Any]) -> None:
     if results is not None:
-        results.write(json.dumps(line, ensure_ascii=False) + "\n")
+        results.write(encoded(json.dumps(line, ensure_ascii=False) + "\n").decode("utf-8"))
         results.flush()
 
 

@@ -25,7 +25,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.motion.model import Bar, Grip
 from dancetutor_cli.motion.plan import FootTrack, Plan, Press
 from dancetutor_cli.play.model import Limb, Part, StepKind
@@ -39,7 +39,7 @@ def write_moves(
 ) -> None:
     """Write the moves of a plan that begin in a section, seconds; bar : behind her, if any. Raises FileError."""
     data = moves_data(plan, title, chart, section, bar)
-    write_atomic(path, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+    write_atomic(path, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
 def moves_data(

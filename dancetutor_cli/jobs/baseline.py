@@ -12,7 +12,7 @@ from typing import Any
 
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import FileError, MissingFileError
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.lint.model import Finding
 
 SCHEMA = 1
@@ -73,7 +73,7 @@ class Baseline:
         entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.known.items())]
         body = ",\n  ".join(entries)
         text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
-        write_atomic(self.path, text.encode("utf-8", "replace"))
+        write_atomic(self.path, encoded(text))
 
     def _relative(self, file: str) -> str:
         return Path(os.path.relpath(Path(file).absolute(), self.path.absolute().parent)).as_posix()

@@ -11,7 +11,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.film_request import Subject
 from dancetutor_cli.video.clock import Moments
@@ -52,7 +52,7 @@ def write_pose_index(folder: Path, subject: Subject, plan: FilmPlan) -> None:
             }
         )
     data = {"schema": 1, "path": str(subject.song.path), "chart": subject.chart.label, "poses": entries}
-    write_atomic(folder / INDEX, (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+    write_atomic(folder / INDEX, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
 def write_poster(path: Path, plan: FilmPlan) -> None:

@@ -7,6 +7,7 @@ import pickle
 import shutil
 import uuid
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import DancetutorError, FileError
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.pool import Report, Task
 from dancetutor_cli.video.encoder import Encoding, join
@@ -101,6 +102,8 @@ class Outcome:
 def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> Outcome:
     """What became of a job."""
     if error is not None:
+        if opened is not None and not any(part.path.is_file() for part in opened.parts):
+            shutil.rmtree(opened.folder, ignore_errors=True)  # nothing in it is worth going on with
         return Outcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
     assert opened is not None
     status = "skipped" if opened.skipped else "done"
@@ -161,7 +164,7 @@ def close_film(report: Report, job: FilmJob, opened: Opened) -> None:
     """Join the segments, put the film in its place, and note what it was made of."""
     finish(list(opened.parts), job.encoding, opened.sound, opened.folder, job.output)
     record = {"schema": 1, "key": opened.key, "size": _size(job.output), "chart": job.label, "frames": opened.frames}
-    write_atomic(job.record, (json.dumps(record, ensure_ascii=False, indent=1) + "\n").encode())
+    write_atomic(job.record, encoded(json.dumps(record, ensure_ascii=False, indent=1) + "\n"))
     shutil.rmtree(opened.folder, ignore_errors=True)
 
 
@@ -222,10 +225,22 @@ def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encod
     part = segment.path
     if encoding.target != "png":
         part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.suffix}")
-    encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
-    if part != segment.path:
-        part.replace(segment.path)
+    try:
+        encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
+        if part != segment.path:
+            part.replace(segment.path)
+    except BaseException:  # a full disk, or the end of this worker
+        _clear(part, segment)
+        raise
     return segment.number
+
+
+def _clear(part: Path, segment: Segment) -> None:
+    """Remove what there is of a segment that will not be finished."""
+    pictures = [part / f"frame_{number:06d}.png" for number in range(segment.first, segment.last)]
+    for file in pictures if part.is_dir() else [part]:
+        with suppress(OSError):
+            file.unlink(missing_ok=True)
 
 
 def frames_of(task: Task) -> int:

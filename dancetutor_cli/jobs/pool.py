@@ -108,7 +108,23 @@ class SerialWorkers:
 
 
 def _leave(_number: int, _frame: object) -> None:
+    """End; what breaks on the way out, as callbacks do that end in the middle, has nobody to be told."""
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     sys.exit(1)
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """A process started in here never hears of Ctrl-C: while it imports, it would print a traceback."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _worker(connection: Connection) -> None:
@@ -157,7 +173,8 @@ class ProcessWorkers:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=_worker, args=(theirs,), daemon=True)
-        process.start()
+        with _uninterrupted():
+            process.start()
         theirs.close()
         self._workers.append(_Worker(process, ours))
 

@@ -11,6 +11,7 @@ from typing import Any
 from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.files import encoded
 from dancetutor_cli.markers.letters import limbs_of
 from dancetutor_cli.markers.model import ChartFeet
 from dancetutor_cli.play.model import Limb, Part
@@ -103,7 +104,7 @@ def _files(path: Path, old: bytes | None) -> dict[str, Any]:
     if old is None:
         return {}
     try:
-        data = parse_json(old, path)
+        data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
         files = data["files"]
         if data["program"] == "dancetutor" and all(isinstance(f["charts"], list) for f in files.values()):
             return dict(files)
@@ -124,4 +125,4 @@ def _dump(files: dict[str, Any]) -> bytes:
         lines = ",\n".join("   " + json.dumps(entry, ensure_ascii=False) for entry in files[name]["charts"])
         blocks.append(f'  {json.dumps(name, ensure_ascii=False)}: {{"charts": [\n{lines}]}}')
     head = f'{{"schema": {_SCHEMA}, "program": "dancetutor", "files": {{\n'
-    return (head + ",\n".join(blocks) + "}}\n").encode("utf-8", "surrogateescape")
+    return encoded(head + ",\n".join(blocks) + "}}\n")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
@@ -179,3 +179,28 @@ def test_ranges_are_read() -> None:
     for text in ("0/3", "4/3", "1", "a/b"):
         with pytest.raises(UsageError):
             parse_shard(text)
+
+
+def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a segment and the pictures of a film that cannot be finished go; finished segments stay."""
+
+    class Pictures:
+        def frames(self, first: int, last: int) -> Iterator[int]:
+            yield from range(first, last)
+
+    def full(frames: Iterator[int], encoding: Encoding, path: Path, first: int) -> None:
+        if encoding.target == "png":
+            path.mkdir(exist_ok=True)
+            (path / f"frame_{first:06d}.png").write_bytes(b"a picture")
+        else:
+            path.write_bytes(b"half a segment")
+        raise FileError(path, "No space left on device")
+
+    monkeypatch.setattr(film_work, "_film", lambda plan: Pictures())
+    monkeypatch.setattr("dancetutor_cli.video.encoder.encode_segment", full)
+    for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
+        encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]
+        segment = film_work.Segment(0, 0, 4, tmp_path / name)
+        with pytest.raises(FileError):
+            film_work.render_segment(lambda n: None, tmp_path / "plan", segment, encoding)
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == []
