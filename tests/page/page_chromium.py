@@ -22,6 +22,8 @@ FLAGS = (
     "--remote-debugging-pipe", "--proxy-server=127.0.0.1:9",
 )  # fmt: skip
 
+NOW = "Number(document.querySelector('.strip').getAttribute('aria-valuenow'))"  # the second of the music that is shown
+
 
 def find() -> str:
     """The browser's command; skips the test with the reason where there is none."""
@@ -178,3 +180,17 @@ class Browser:
         os.close(self._out)
         os.close(self._in)
         shutil.rmtree(self.profile, ignore_errors=True)
+
+
+def text(browser: Browser, selector: str) -> str:
+    """What an element says."""
+    return str(browser.run(f"document.querySelector('{selector}').textContent"))
+
+
+def pad_script() -> str:
+    """A gamepad as the page sees it: an object whose buttons the test presses."""
+    return (
+        "window.pad = {id: 'test mat', index: 0, connected: true, mapping: '', axes: [], timestamp: 0,"
+        " buttons: Array.from({length: 10}, () => ({pressed: false, value: 0}))};"
+        "navigator.getGamepads = () => [window.pad];"
+    )

@@ -301,11 +301,12 @@ export class App {
     const { t, transport } = this;
     if (this.message) return this.message;
     if (transport.waiting) return t("waiting");
-    if (!this.played && !this.sound.music) return t("musicMissing", { name: this.doc.words.music || "…" });
     const measure = (/** @type {number} */ s) => String(Math.round((100 * this.chart.beatAt(s)) / 4) / 100);
     const { loop } = transport;
     const looped = loop ? t("loopFrom", { from: measure(loop.a), to: measure(loop.b), passes: this.passes }) : "";
-    return [this.both ? this.besideText() : "", looped].filter(Boolean).join(" · ");
+    const told = [this.both ? this.besideText() : "", looped].filter(Boolean).join(" · ");
+    const silent = !this.played && !this.sound.music;
+    return told || (silent ? t("musicMissing", { name: this.doc.words.music || "…" }) : "");
   }
 
   /** Who dances beside her, and where her feet differ. */

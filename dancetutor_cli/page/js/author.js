@@ -61,7 +61,7 @@ function costText(app, row) {
 /** Lines of `feet` in dancetutor.yaml. @param {import("./app.js").App} app */
 export function yamlOf(app) {
   const { words } = app.doc;
-  const lines = ["feet:", "  - when:", `      path: ${quoted(words.file)}`, `      steps_type: ${words.steps}`,
+  const lines = ["feet:", "  - when:", `      path: ${quoted(words.file)}`, `      steps-type: ${words.steps}`,
     `      difficulty: ${words.difficulty}`, `      meter: ${words.meter}`, "    steps:"];
   for (const row of app.redance.changedRows()) lines.push(`      ${round(row.beat)}: ${quoted(letters(app, row))}`);
   return `${lines.join("\n")}\n`;

@@ -1,0 +1,51 @@
+"""The page where WebGL is missing, which draws quickly whatever else the machine does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from page_chromium import NOW, Browser, pad_script, text
+from PIL import Image
+
+
+@pytest.fixture(scope="module")
+def flat(page_file: Path) -> Iterator[Browser]:
+    """A browser without WebGL."""
+    one = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
+    one.size(1280, 720)
+    yield one
+    one.close()
+
+
+def test_without_webgl_feet_from_above_are_shown(flat: Browser, page_file: Path, tmp_path: Path) -> None:
+    flat.open(page_file)
+    for _ in range(2):
+        flat.key("ArrowRight")
+    flat.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    x, y, w, h = (int(v) for v in flat.box(".view"))
+    pixels = np.asarray(Image.open(flat.picture(tmp_path / "a.png")).convert("RGB")).astype(int)
+    view = pixels[y : y + h, x : x + w]
+    for colour in ((255, 138, 31), (22, 194, 207)):
+        assert (np.abs(view - np.array(colour)).max(axis=2) <= 30).mean() > 0.002
+
+
+def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) -> None:
+    flat.open(page_file)
+    flat.run(pad_script())
+    flat.run("location.hash = '#m0.5-1.5@0.25'")
+    flat.wait("document.querySelector('.said').textContent.includes('m0.5')")
+    flat.key("i", "KeyI")
+    flat.key("p", "KeyP")
+    flat.key(" ", "Space")
+    flat.run(  # the mat says when it was pressed, however slowly pictures come
+        "new Promise(done => { const press = () => { window.pad.buttons[0].pressed = true;"
+        " window.pad.timestamp = performance.now(); done(1); };"
+        "const look = () => " + NOW + " < 1.8 ? requestAnimationFrame(look)"
+        " : setTimeout(press, (2 - " + NOW + ") / 0.25 * 1000); requestAnimationFrame(look); })"
+    )
+    flat.wait("/ [1-9]\\d* missed/.test(document.querySelector('.score').textContent)")
+    counts = [int(word) for word in text(flat, ".score").split() if word.isdigit()]
+    assert sum(counts[:3]) == 1 and counts[3] >= 1, text(flat, ".score")
