@@ -8,6 +8,7 @@ length of the song.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,10 +94,20 @@ def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = 
             gives.append(np.full(len(highs[-1]), part.give))
     every = np.concatenate(rows)
     width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
-    stacked = np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives)
+    stacked = _Rows(np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives))
     right = np.ascontiguousarray(problem.right[:, 0])
-    x, found, rounds = _interior_point(problem.bands, right, *stacked, TOLERANCE, most or ROUNDS)
+    x, found, rounds = _interior_point(problem.bands, right, stacked, TOLERANCE, most or ROUNDS)
     return Solution(x, bool(found), int(rounds))
+
+
+class _Rows(NamedTuple):
+    """m one-sided limits  rows[r] x[start[r] : start[r] + width[r]] <= high[r] , each of which may give way."""
+
+    start: NDArray[np.int64]
+    width: NDArray[np.int64]
+    rows: Array
+    high: Array
+    give: Array
 
 
 @njit(cache=True)
@@ -112,7 +123,8 @@ def _times_band(bands: Array, x: Array) -> Array:
 
 
 @njit(cache=True)
-def _times_rows(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, x: Array) -> Array:
+def _times_rows(limits: _Rows, x: Array) -> Array:
+    start, width, rows = limits.start, limits.width, limits.rows
     out = np.zeros(len(start))
     for r in range(len(start)):
         total = 0.0
@@ -123,7 +135,8 @@ def _times_rows(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array,
 
 
 @njit(cache=True)
-def _add_transposed(start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, z: Array, out: Array) -> None:
+def _add_transposed(limits: _Rows, z: Array, out: Array) -> None:
+    start, width, rows = limits.start, limits.width, limits.rows
     for r in range(len(start)):
         for i in range(width[r]):
             out[start[r] + i] += rows[r, i] * z[r]
@@ -140,10 +153,11 @@ def _longest_step(value: Array, change: Array) -> float:
 
 @njit(cache=True)
 def _direction(
-    factor: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, give: Array, dual: Array,
-    primal: Array, s: Array, z: Array, aim: Array,
-) -> tuple[Array, Array, Array]:  # fmt: skip
-    """Newton step for residuals `dual`, `primal` and wanted products s z = aim."""
+    factor: Array, limits: _Rows, dual: Array, primal: Array, slack: tuple[Array, Array], aim: Array
+) -> tuple[Array, Array, Array]:
+    """Newton step for residuals `dual`, `primal` and wanted products s z = aim; slack : s and z"""
+    start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
+    s, z = slack
     right = -dual
     for r in range(len(start)):
         push = (aim[r] - s[r] * z[r] + z[r] * primal[r]) / (s[r] + give[r] * z[r])
@@ -161,22 +175,20 @@ def _direction(
 
 
 @njit(cache=True)
-def _interior_point(
-    bands: Array, right: Array, start: NDArray[np.int64], width: NDArray[np.int64], rows: Array, high: Array,
-    give: Array, tolerance: float, most: int,
-) -> tuple[Array, bool, int]:  # fmt: skip
+def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float, most: int) -> tuple[Array, bool, int]:
     """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own."""
+    start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
     x = _solve_one(_factor(bands), right)
     m = len(high)
     if m == 0:
         return x, True, 0
-    s = np.maximum(high - _times_rows(start, width, rows, x), 0.1)
+    s = np.maximum(high - _times_rows(limits, x), 0.1)
     z = np.full(m, 0.1)
     scale = 1.0 + np.abs(right).max()
     for turn in range(most):
         dual = _times_band(bands, x) - right
-        _add_transposed(start, width, rows, z, dual)
-        primal = _times_rows(start, width, rows, x) + s - give * z - high
+        _add_transposed(limits, z, dual)
+        primal = _times_rows(limits, x) + s - give * z - high
         mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, turn
@@ -189,11 +201,11 @@ def _interior_point(
                     for j in range(i, width[r]):
                         system[start[r] + i, j - i] += weighted * rows[r, j]
         factor = _factor(system)
-        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, np.zeros(m))
+        dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
         after = ((s + ap * ds) * (z + ad * dz)).sum() / m
         centre = (after / mu) ** 3
-        dx, ds, dz = _direction(factor, start, width, rows, give, dual, primal, s, z, centre * mu - ds * dz)
+        dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
         if give.max() > 0.0:
             ap = ad = min(ap, ad)

@@ -7,7 +7,8 @@ hair on every machine. Segments only swing; they never twist, for a bone is turn
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +30,7 @@ ITERATIONS = 5  # of the constraints in each step
 SETTLE = 1.0  # seconds of hanging still before the first frame
 
 
-@dataclass(frozen=True, slots=True)
-class Anchors:
+class Anchors(NamedTuple):
     """What the braid hangs on and collides with, at even times: each (n, 3) or (n, 4), in the world."""
 
     root: Array
@@ -49,11 +49,7 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
     fixed = times[0] + np.arange(steps) / settings.rate
     anchors = _anchors(skeleton, times, positions, world, fixed)
     bones = np.array([*(skeleton.offsets[skeleton.index(n)] for n in JOINTS[1:]), TIP])
-    points = _simulate(
-        anchors.root, anchors.head_turn, anchors.head, anchors.back_low, anchors.back_high, bones,
-        1.0 / settings.rate, int(SETTLE * settings.rate), settings.gravity, settings.damping, settings.stiffness,
-        settings.head_radius, settings.back_radius,
-    )  # fmt: skip
+    points = _simulate(anchors, bones, _Braid(**asdict(settings)), int(SETTLE * settings.rate))
     at = cubic(fixed, points.reshape(steps, -1), times).reshape(len(times), len(bones) + 1, 3)
     parent = world[:, skeleton.index("skullbase")]
     for k, name in enumerate(JOINTS):
@@ -93,11 +89,20 @@ def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
+class _Braid(NamedTuple):
+    """The numbers of `HairSettings`, for the kernel."""
+
+    rate: float
+    gravity: float
+    damping: float
+    stiffness: float
+    head_radius: float
+    back_radius: float
+
+
 @njit(cache=True)
-def _simulate(
-    root: Array, turn: Array, head: Array, low: Array, high: Array, bones: Array, step: float, settle: int,
-    gravity: float, damping: float, stiffness: float, head_radius: float, back_radius: float,
-) -> Array:  # fmt: skip
+def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Array:
+    root, turn, step = anchors.root, anchors.head_turn, 1.0 / braid.rate
     n = len(bones)
     lengths = np.sqrt((bones**2).sum(axis=1))
     out = np.empty((len(root), n + 1, 3))
@@ -107,7 +112,7 @@ def _simulate(
     for k in range(n):
         p[k + 1, 0], p[k + 1, 1], p[k + 1, 2] = add(_vec(p[k]), qrot(first, _vec(bones[k])))
     before[:] = p
-    keep = math.exp(-damping * step)
+    keep = math.exp(-braid.damping * step)
     for frame in range(-settle, len(root)):
         f = max(frame, 0)
         q = (turn[f, 0], turn[f, 1], turn[f, 2], turn[f, 3])
@@ -116,9 +121,9 @@ def _simulate(
                 moved = (p[k, d] - before[k, d]) * keep
                 before[k, d] = p[k, d]
                 p[k, d] += moved
-            p[k, 1] -= gravity * step * step
+            p[k, 1] -= braid.gravity * step * step
         p[0] = root[f]
-        centre, bottom, top = _vec(head[f]), _vec(low[f]), _vec(high[f])
+        centre, bottom, top = _vec(anchors.head[f]), _vec(anchors.back_low[f]), _vec(anchors.back_high[f])
         held = add(_vec(p[0]), qrot(q, _vec(bones[0])))
         for _ in range(ITERATIONS):
             for k in range(1, n + 1):
@@ -128,9 +133,9 @@ def _simulate(
                     rest = held
                 else:
                     rest = add(above, scale(sub(above, _vec(p[k - 2])), lengths[k - 1] / lengths[k - 2]))
-                here = add(here, scale(sub(rest, here), stiffness))
-                here = _pushed_out(here, centre, centre, head_radius)
-                here = _pushed_out(here, bottom, top, back_radius)
+                here = add(here, scale(sub(rest, here), braid.stiffness))
+                here = _pushed_out(here, centre, centre, braid.head_radius)
+                here = _pushed_out(here, bottom, top, braid.back_radius)
                 bone = sub(here, above)
                 here = add(above, scale(bone, lengths[k - 1] / length(bone)))
                 p[k, 0], p[k, 1], p[k, 2] = here

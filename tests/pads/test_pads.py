@@ -70,7 +70,7 @@ def test_a_pad_of_ones_own(tmp_path: Path) -> None:
         ("[0, 0]", "[0, x]", 3, "'x' must be a number"),
         ("[b, 1, 0, [1, 0]]", "[b, -1, 0, [1, 0]]", 8, "same name or place"),
         ("[b, 1, 0, [1, 0]]", "[b, 1, 0]", 8, "a panel is"),
-        ("[0, 0]", "[0, .nan]", 3, "must be a number"),
+        ("[0, 0]", "[0, .nan]", 3, "a number must be finite"),
         ("panels:", "panels: [", 9, "expected"),
     ],
 )

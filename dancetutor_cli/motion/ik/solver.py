@@ -45,25 +45,25 @@ PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
 class Targets:
     """What the body shall reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
 
-    pelvis : (f, 3) position of the root joint; pelvis_turn : (f, 4) its rotation; chest_turn : (f, 4) of the chest
-    shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_turn : (f, 2, 4), world rotation of a pinned hand
+    pelvis : (f, 3) position of the root joint; pelvis_rotation : (f, 4); chest : (f, 4) its rotation
+    shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_rotation : (f, 2, 4) of a pinned hand
     pinned : (f, 2), 0 for a free hand to 1 for a palm that must be where `wrists` says, with that rotation
-    elbows : (f, 2, 3) directions; ankles : (f, 2, 3); feet_turn : (f, 2, 4); toes_turn : (f, 2, 4)
+    elbows : (f, 2, 3) directions; ankles : (f, 2, 3); soles, toes : (f, 2, 4) rotations
     knees : (f, 2, 3) directions
     pull : (f, 2), 0 to 1, how much of a pinned hand's missing distance the body goes; None: as `pinned`
     """
 
     pelvis: Array
-    pelvis_turn: Array
-    chest_turn: Array
+    pelvis_rotation: Array
+    chest: Array
     shoulders: Array
     wrists: Array
-    hand_turn: Array
+    hand_rotation: Array
     pinned: Array
     elbows: Array
     ankles: Array
-    feet_turn: Array
-    toes_turn: Array
+    soles: Array
+    toes: Array
     knees: Array
     pull: Array | None = None
 
@@ -98,22 +98,69 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
     The poses. Feet are on their targets wherever the root could be pulled; a palm
     pinned by 1 is on its target if torso and pelvis could follow it within `PULL_ROUNDS`.
     """
-    joints = np.array([skeleton.index(name) for name in _NAMES])
-    frames = len(targets.pelvis)
-    rotations = np.zeros((frames, len(skeleton.names), 4))
+    rotations = np.zeros((len(targets.pelvis), len(skeleton.names), 4))
     rotations[..., 0] = 1.0
     root = np.array(targets.pelvis, dtype=np.float64)
+    pull = targets.pinned if targets.pull is None else targets.pull
     _solve(
-        skeleton.offsets, joints, _hinges(skeleton, joints), reach, follow, root, targets.pelvis_turn,
-        targets.chest_turn, targets.shoulders, targets.wrists, targets.hand_turn, targets.pinned,
-        targets.pinned if targets.pull is None else targets.pull, targets.elbows, targets.ankles,
-        targets.feet_turn, targets.toes_turn, targets.knees, rotations,
-    )  # fmt: skip
+        _body(skeleton, reach, follow),
+        _Trunk(root, targets.pelvis_rotation, targets.chest, targets.shoulders),
+        _Hands(targets.wrists, targets.hand_rotation, targets.pinned, pull, targets.elbows),
+        _Legs(targets.ankles, targets.soles, targets.toes, targets.knees),
+        rotations,
+    )
     return Poses(rotations, root)
 
 
-@dataclass(frozen=True, slots=True)
-class ArmGoal:
+class _Body(NamedTuple):
+    """What the kernels know of a skeleton: offsets (j, 3), indices of `_NAMES`, axes (2, 3) of the elbows.
+
+    arm : its length; reach, follow : as in `solve`
+    """
+
+    offsets: Array
+    joints: NDArray[np.int64]
+    hinges: Array
+    arm: float
+    reach: float
+    follow: float
+
+
+class _Trunk(NamedTuple):
+    """The part of `Targets` between pelvis and shoulders; the root is moved in place."""
+
+    root: Array
+    pelvis: Array
+    chest: Array
+    shoulders: Array
+
+
+class _Hands(NamedTuple):
+    """The part of `Targets` that is about hands."""
+
+    wrists: Array
+    rotation: Array
+    pinned: Array
+    pull: Array
+    elbows: Array
+
+
+class _Legs(NamedTuple):
+    """The part of `Targets` that is about legs."""
+
+    ankles: Array
+    soles: Array
+    toes: Array
+    knees: Array
+
+
+def _body(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> _Body:
+    joints = np.array([skeleton.index(name) for name in _NAMES])
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[joints[_ARM + k]])) for k in (2, 3))
+    return _Body(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
+
+
+class ArmGoal(NamedTuple):
     """Where one arm begins and its pinned hand shall be, in f cases.
 
     shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
@@ -128,14 +175,11 @@ class ArmGoal:
 
 def arm_rotations(skeleton: Skeleton, side: int, goal: ArmGoal) -> tuple[Array, Array, Array]:
     """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
-    joints = np.array([skeleton.index(name) for name in _NAMES])
+    body = _body(skeleton)
     out = np.zeros((len(goal.shoulders), len(skeleton.names), 4))
-    _one_arm(
-        skeleton.offsets, joints, _hinges(skeleton, joints), side, goal.shoulders, goal.chest, goal.wrists, goal.hands,
-        goal.elbows, out,
-    )  # fmt: skip
+    _one_arm(body, side, goal, out)
     first = _ARM + 4 * side
-    return out[:, joints[first + 1]], out[:, joints[first + 2]], out[:, joints[first + 3]]
+    return out[:, body.joints[first + 1]], out[:, body.joints[first + 2]], out[:, body.joints[first + 3]]
 
 
 def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
@@ -181,8 +225,10 @@ def _pull_root(root: Vec, turn: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, 
 
 
 @njit(cache=True)
-def _chain(start: Vec, p2: Vec, p3: Vec, end: Vec, l1: float, l2: float, l3: float) -> tuple[Vec, Vec, Vec]:
-    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`; p2, p3 are the joints between."""
+def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
+    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
+    p2, p3 = between
+    l1, l2, l3 = lengths
     p4 = end
     for _ in range(6):
         p4 = end  # backward: from the end to the start
@@ -206,9 +252,11 @@ def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
 
 @njit(cache=True)
 def _torso(
-    root: Vec, turn: Quat, chest: Quat, left: Vec, right: Vec, offsets: Array, joints: Array
+    root: Vec, turn: Quat, chest: Quat, shoulders: tuple[Vec, Vec], body: _Body
 ) -> tuple[Quat, Quat, Quat, Vec, Vec]:
     """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
+    offsets, joints = body.offsets, body.joints
+    left, right = shoulders
     o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
     lo = add(_vec(offsets[joints[_ARM]]), _vec(offsets[joints[_ARM + 1]]))
     ro = add(_vec(offsets[joints[_ARM + 4]]), _vec(offsets[joints[_ARM + 5]]))
@@ -219,7 +267,7 @@ def _torso(
     p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
     p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
     middle = scale(add(left, right), 0.5)
-    p2, p3, p4 = _chain(p1, p2, p3, middle, length(o10), length(o4), length(rest_mid))
+    p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
     q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
     q1 = _aim(qlerp(turn, q3, 0.34), o10, sub(p2, p1))
     q2 = _aim(qlerp(turn, q3, 0.67), o4, sub(p3, p2))
@@ -233,41 +281,36 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 
 
 @njit(cache=True)
-def _solve(
-    offsets: Array, joints: Array, hinges: Array, reach: float, follow: float, root: Array, pelvis_turn: Array,
-    chest_turn: Array, shoulders: Array, wrists: Array, hand_turn: Array, pinned: Array, pull: Array, elbows: Array,
-    ankles: Array, feet_turn: Array, toes_turn: Array, knees: Array, rotations: Array,
-) -> None:  # fmt: skip
+def _solve(body: _Body, trunk: _Trunk, hands: _Hands, legs: _Legs, rotations: Array) -> None:
+    offsets, joints = body.offsets, body.joints
     hips = (_vec(offsets[joints[_LEG]]), _vec(offsets[joints[_LEG + 4]]))
-    arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
-    for f in range(len(root)):
-        turn = _quat(pelvis_turn[f])
-        place, out = _vec(root[f]), rotations[f]
-        goals = (_vec(ankles[f, 0]), _vec(ankles[f, 1]))
-        left, right = _vec(shoulders[f, 0]), _vec(shoulders[f, 1])
-        place = _pull_root(place, turn, hips, goals, reach)
-        q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
-        if pull[f, 0] > 0.0 or pull[f, 1] > 0.0:
+    most = body.arm * ARM_REACH
+    for f in range(len(trunk.root)):
+        turn, chest = _quat(trunk.pelvis[f]), _quat(trunk.chest[f])
+        place, out = _vec(trunk.root[f]), rotations[f]
+        goals = (_vec(legs.ankles[f, 0]), _vec(legs.ankles[f, 1]))
+        left, right = _vec(trunk.shoulders[f, 0]), _vec(trunk.shoulders[f, 1])
+        place = _pull_root(place, turn, hips, goals, body.reach)
+        q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+        if hands.pull[f, 0] > 0.0 or hands.pull[f, 1] > 0.0:
             for _ in range(PULL_ROUNDS):
-                gl = _excess(sl, _vec(wrists[f, 0]), arm * ARM_REACH, pull[f, 0])
-                gr = _excess(sr, _vec(wrists[f, 1]), arm * ARM_REACH, pull[f, 1])
+                gl = _excess(sl, _vec(hands.wrists[f, 0]), most, hands.pull[f, 0])
+                gr = _excess(sr, _vec(hands.wrists[f, 1]), most, hands.pull[f, 1])
                 if length(gl) + length(gr) < 1e-5:
                     break
                 both = add(gl, gr)
-                place = _pull_root(add(place, scale(both, follow)), turn, hips, goals, reach)
+                place = _pull_root(add(place, scale(both, body.follow)), turn, hips, goals, body.reach)
                 left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
                 right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
-                q1, q2, q3, sl, sr = _torso(place, turn, _quat(chest_turn[f]), left, right, offsets, joints)
-        root[f, 0], root[f, 1], root[f, 2] = place
+                q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+        trunk.root[f, 0], trunk.root[f, 1], trunk.root[f, 2] = place
         _put(out[joints[0]], turn)
         _put(out[joints[_VL5]], qmul(qconj(turn), q1))
         _put(out[joints[_VT10]], qmul(qconj(q1), q2))
         _put(out[joints[_VT4]], qmul(qconj(q2), q3))
         for side in range(2):
-            hip = add(place, qrot(turn, hips[side]))
-            shoulder = sl if side == 0 else sr
-            _arm(f, side, shoulder, q3, arm, offsets, joints, hinges, wrists, hand_turn, pinned, elbows, out)
-            _leg(f, side, hip, turn, offsets, joints, reach, ankles, feet_turn, toes_turn, knees, out)
+            _arm((f, side), sl if side == 0 else sr, q3, body, hands, out)
+            _leg((f, side), add(place, qrot(turn, hips[side])), turn, body, legs, out)
 
 
 @njit(cache=True)
@@ -279,50 +322,43 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
 
 
 @njit(cache=True)
-def _arm(
-    f: int, side: int, shoulder: Vec, chest: Quat, arm: float, offsets: Array, joints: Array, hinges: Array,
-    wrists: Array, hand_turn: Array, pinned: Array, elbows: Array, out: Array,
-) -> None:  # fmt: skip
-    base = _ARM + 4 * side
+def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, body: _Body, hands: _Hands, out: Array) -> None:
+    """One arm; at : frame and side."""
+    f, side = at
+    offsets, joints, base = body.offsets, body.joints, _ARM + 4 * side
     upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
-    most = arm * (0.985 + 0.0145 * pinned[f, side])
-    reach = sub(_vec(wrists[f, side]), shoulder)
-    world, bend = limb(upper, lower, _vec(hinges[side]), reach, _vec(elbows[f, side]), most)
+    pinned = hands.pinned[f, side]
+    most = body.arm * (0.985 + 0.0145 * pinned)
+    reach = sub(_vec(hands.wrists[f, side]), shoulder)
+    world, bend = limb(upper, lower, _vec(body.hinges[side]), reach, _vec(hands.elbows[f, side]), most)
     _put(out[joints[base + 1]], qmul(qconj(chest), world))
     _put(out[joints[base + 2]], bend)
     forearm = qmul(world, bend)
     free = (1.0, 0.0, 0.0, 0.0)
-    pin = qmul(qconj(forearm), _quat(hand_turn[f, side]))
-    _put(out[joints[base + 3]], qlerp(free, pin, pinned[f, side]) if pinned[f, side] > 0.0 else free)
+    pin = qmul(qconj(forearm), _quat(hands.rotation[f, side]))
+    _put(out[joints[base + 3]], qlerp(free, pin, pinned) if pinned > 0.0 else free)
 
 
 @njit(cache=True)
-def _leg(
-    f: int, side: int, hip: Vec, turn: Quat, offsets: Array, joints: Array, most: float, ankles: Array,
-    feet_turn: Array, toes_turn: Array, knees: Array, out: Array,
-) -> None:  # fmt: skip
-    base = _LEG + 4 * side
+def _leg(at: tuple[int, int], hip: Vec, turn: Quat, body: _Body, legs: _Legs, out: Array) -> None:
+    """One leg; at : frame and side."""
+    f, side = at
+    offsets, joints, base = body.offsets, body.joints, _LEG + 4 * side
     upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
-    reach = sub(_vec(ankles[f, side]), hip)
-    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(knees[f, side]), most + 1e-5)
-    shank, foot = qmul(world, bend), _quat(feet_turn[f, side])
+    reach = sub(_vec(legs.ankles[f, side]), hip)
+    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(legs.knees[f, side]), body.reach + 1e-5)
+    shank, foot = qmul(world, bend), _quat(legs.soles[f, side])
     _put(out[joints[base]], qmul(qconj(turn), world))
     _put(out[joints[base + 1]], bend)
     _put(out[joints[base + 2]], qmul(qconj(shank), foot))
-    _put(out[joints[base + 3]], qmul(qconj(foot), _quat(toes_turn[f, side])))
+    _put(out[joints[base + 3]], qmul(qconj(foot), _quat(legs.toes[f, side])))
 
 
 @njit(cache=True)
-def _one_arm(
-    offsets: Array, joints: Array, hinges: Array, side: int, shoulders: Array, chest: Array, wrists: Array,
-    hands: Array, elbows: Array, out: Array,
-) -> None:  # fmt: skip
-    arm = length(_vec(offsets[joints[_ARM + 2]])) + length(_vec(offsets[joints[_ARM + 3]]))
-    goals, turns = np.zeros((1, 2, 3)), np.zeros((1, 2, 4))
-    pinned, poles = np.ones((1, 2)), np.zeros((1, 2, 3))
-    for f in range(len(shoulders)):
-        goals[0, side], turns[0, side], poles[0, side] = wrists[f], hands[f], elbows[f]
-        _arm(
-            0, side, _vec(shoulders[f]), _quat(chest[f]), arm, offsets, joints, hinges, goals, turns, pinned, poles,
-            out[f],
-        )  # fmt: skip
+def _one_arm(body: _Body, side: int, goal: ArmGoal, out: Array) -> None:
+    hands = _Hands(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
+    for f in range(len(goal.shoulders)):
+        hands.wrists[0, side] = goal.wrists[f]
+        hands.rotation[0, side] = goal.hands[f]
+        hands.elbows[0, side] = goal.elbows[f]
+        _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), body, hands, out[f])

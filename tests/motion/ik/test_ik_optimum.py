@@ -75,7 +75,7 @@ def out_of_plane(places: dict[str, np.ndarray], targets: Targets, f: int) -> lis
 
 def optimum(targets: Targets, f: int, root: np.ndarray, start: np.ndarray) -> dict[str, np.ndarray]:
     """The joints' places of the best pose that the optimiser finds."""
-    turn = Rotation.from_quat(targets.pelvis_turn[f, [1, 2, 3, 0]])
+    turn = Rotation.from_quat(targets.pelvis_rotation[f, [1, 2, 3, 0]])
     goals = {"talocrural": targets.ankles[f], "radiocarpal": targets.wrists[f], "shoulder": targets.shoulders[f]}
 
     def misses(x: np.ndarray) -> np.ndarray:

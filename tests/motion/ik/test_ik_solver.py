@@ -49,7 +49,7 @@ def test_feet_and_hands_are_within_a_tenth_of_a_millimetre() -> None:
         hand = positions[:, SKELETON.index(f"{name}_radiocarpal")] - targets.wrists[:, side]
         assert np.linalg.norm(foot, axis=1).max() < 1e-4
         assert np.linalg.norm(hand, axis=1).max() < 1e-4
-        turn = quat.angle_between(world[:, SKELETON.index(f"{name}_talocrural")], targets.feet_turn[:, side])
+        turn = quat.angle_between(world[:, SKELETON.index(f"{name}_talocrural")], targets.soles[:, side])
         assert turn.max() < 1e-6
 
 
@@ -82,7 +82,7 @@ def test_a_pinned_palm_is_reached_by_bending(side: int) -> None:
     targets = random_targets(50, 4)
     targets.pelvis[:, 1] = 0.55
     shift = np.array([0.0, 0.55 - 0.85, 0.0])
-    lean = quat.multiply(targets.pelvis_turn, quat.from_axis_angle(ACROSS, np.full(50, 1.2)))
+    lean = quat.multiply(targets.pelvis_rotation, quat.from_axis_angle(ACROSS, np.full(50, 1.2)))
     rest = SKELETON.rest
     for s, name in enumerate("lr"):
         arm = rest[SKELETON.index(f"{name}_shoulder")] - rest[0]
@@ -90,11 +90,11 @@ def test_a_pinned_palm_is_reached_by_bending(side: int) -> None:
     targets.wrists[:, 1 - side] += shift
     targets.wrists[:, side] = targets.shoulders[:, side] * [1, 0, 1] + [0, 0.05, 0]
     targets.pinned[:, side] = 1.0
-    targets.chest_turn[:] = lean
+    targets.chest[:] = lean
     positions, world = world_transforms(SKELETON, *solve(SKELETON, targets, REACH))
     wrist = SKELETON.index(f"{'lr'[side]}_radiocarpal")
     assert np.linalg.norm(positions[:, wrist] - targets.wrists[:, side], axis=1).max() < 1e-4
-    assert quat.angle_between(world[:, wrist], targets.hand_turn[:, side]).max() < 1e-6
+    assert quat.angle_between(world[:, wrist], targets.hand_rotation[:, side]).max() < 1e-6
 
 
 def test_legs_agree_with_numerical_optimisation() -> None:
