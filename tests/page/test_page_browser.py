@@ -19,10 +19,10 @@ from dancetutor_cli.play.model import Limb
 def fresh(browser: Browser, page_file: Path) -> None:
     """The page, opened anew, with nothing stored."""
     browser.size(1280, 720)
-    browser.open(page_file)
-    browser.run("localStorage.clear()")
+    browser.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
     browser.problems.clear()
     browser.open(page_file)
+    assert browser.run("localStorage.length") == 0
 
 
 def second(browser: Browser) -> float:

@@ -49,3 +49,21 @@ def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) ->
     flat.wait("/ [1-9]\\d* missed/.test(document.querySelector('.score').textContent)")
     counts = [int(word) for word in text(flat, ".score").split() if word.isdigit()]
     assert sum(counts[:3]) == 1 and counts[3] >= 1, text(flat, ".score")
+
+
+def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
+    flat.open(page_file)
+    flat.key("Home")
+    flat.key("w", "KeyW")
+    flat.key(" ", "Space")
+    flat.wait("document.querySelector('.said').textContent.startsWith('waiting')")
+    x, y, w, h = flat.box(".lanes")
+    lane = min(72, (w - 2 * min(46, 0.14 * w)) / 4)
+    left = x + 0.34 * (w - 4 * lane)
+    for column in (3, 0):  # right does nothing, left is the row
+        before = float(flat.run(NOW))
+        for kind in ("mousePressed", "mouseReleased"):
+            flat.mouse(kind, left + (column + 0.5) * lane, y + h / 2)
+    flat.wait(f"{NOW} > {before} + 0.2")
+    assert "1 hit" in text(flat, ".score")
+    assert flat.problems == []

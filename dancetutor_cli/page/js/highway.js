@@ -317,6 +317,14 @@ export class Highway {
     c.closePath();
   }
 
+  /** The lane at a place of the canvas, -1 for none. @param {number} px pixels of CSS @param {boolean} mirror */
+  columnAt(px, mirror) {
+    const m = this.measure();
+    const place = Math.floor((px * m.ratio - m.left) / m.lane);
+    if (place < 0 || place >= this.chart.columns) return -1;
+    return mirror ? this.chart.columns - 1 - place : place;
+  }
+
   /**
    * The note under a point of the canvas, in its own pixels of CSS; -1 if there is none.
    * @param {number} px @param {number} py @param {Scene} scene

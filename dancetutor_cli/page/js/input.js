@@ -13,7 +13,7 @@ const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the stand
 
 const LONGEST = 0.5; // seconds that a press may be old; a browser that counts otherwise is not believed
 
-/** @typedef {{column: number, device: "keys" | "pad", ago: number}} Press ago: seconds since it happened */
+/** @typedef {{column: number, device: "keys" | "pad" | "touch", ago: number}} Press ago: seconds since it happened */
 
 export class Input {
   /**
@@ -78,7 +78,11 @@ export class Input {
   /** @param {KeyboardEvent} event */
   keyUp(event) {
     const column = this.keys.indexOf(event.code);
-    if (column < 0) return;
+    if (column >= 0) this.release(column);
+  }
+
+  /** A panel is let go. @param {number} column */
+  release(column) {
     this.held[column] = false;
     this.changed = true;
   }
@@ -95,10 +99,7 @@ export class Input {
         if (is && this.learning) return this.learning(`${name}#${number}`);
         const column = buttons.indexOf(number);
         if (column >= 0 && is) this.press(column, "pad", pad.timestamp);
-        else if (column >= 0) {
-          this.held[column] = false;
-          this.changed = true;
-        }
+        else if (column >= 0) this.release(column);
       });
       this.down.set(name, now);
     }

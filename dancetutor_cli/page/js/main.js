@@ -67,6 +67,7 @@ function cameraButtons(app) {
     ? el("button", { type: "button", class: "toggle", title: app.besideText(), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
   const show = () => {
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(CAMERAS[k] === settings.camera)));
+    document.querySelector(".picture")?.classList.toggle("free", settings.camera === "free");
     both?.setAttribute("aria-pressed", String(app.both));
   };
   app.listeners.add((what) => { if (what === "settings") show(); });
@@ -115,7 +116,15 @@ async function main() {
   const timeline = new Timeline(strip, doc, app.chart, {
     start: app.start, end: app.end, seek: (second) => app.seek(second), loop: (a, b) => app.setLoop(a, b),
   });
+  lanes.addEventListener("pointerdown", (event) => { // a lane is a panel for whoever plays along by touch
+    const column = app.highway?.columnAt(event.clientX - lanes.getBoundingClientRect().left, app.mirrored) ?? -1;
+    if (!app.along || column < 0) return;
+    event.preventDefault();
+    app.input.press(column, "touch", event.timeStamp);
+    lanes.addEventListener("pointerup", () => app.input.release(column), { once: true });
+  });
   lanes.addEventListener("click", (event) => {
+    if (app.along) return;
     const box = lanes.getBoundingClientRect();
     app.chosen = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
     if (app.chosen >= 0) { app.transport.pause(); tabs.choose("author"); }
@@ -123,6 +132,9 @@ async function main() {
   });
   listenToKeys(app, actions);
   takeDrops();
+  app.listeners.add((what) => { // beside each other or below: a loop that begins is seen
+    if (what === "loop" && app.passage >= 0 && stage.getBoundingClientRect().top < 0) root.scrollIntoView();
+  });
   app.listeners.add((what) => { if (what === "frame") said.textContent = app.said(); });
   window.addEventListener("resize", () => { app.fresh = true; });
   window.addEventListener("hashchange", () => app.readLink(location.hash));

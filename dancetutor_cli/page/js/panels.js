@@ -54,7 +54,7 @@ export function findingsPanel(app) {
   return el("div", {}, el("p", { class: "hint" }, t("findingsHint")), list);
 }
 
-const SIGNS = { error: "⛔", warning: "▲", info: "●" };
+const SIGNS = { error: "■", warning: "▲", info: "●" };
 
 /** Music, cameras of this visit, language. @param {import("./app.js").App} app @param {(file: File) => Promise<void>} load */
 export function settingsPanel(app, load) {

@@ -134,8 +134,9 @@ export class Timeline {
       if (one.second === null) continue;
       const at = x(one.second);
       c.fillStyle = this.doc.style.callout[one.severity] ?? "#fff";
-      c.beginPath(); // shapes differ too: a triangle for errors and warnings, a dot for the rest
+      c.beginPath(); // shapes differ too: a square for errors, a triangle for warnings, a dot for the rest
       if (one.severity === "info") c.arc(at, bars + 4 * ratio, 2 * ratio, 0, 2 * Math.PI);
+      else if (one.severity === "error") c.rect(at - 3.5 * ratio, bars + ratio, 7 * ratio, 7 * ratio);
       else {
         c.moveTo(at, bars + ratio);
         c.lineTo(at + 4 * ratio, bars + 8 * ratio);
