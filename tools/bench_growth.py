@@ -100,7 +100,9 @@ def _panel(
     low, high = log10(span[0]), log10(span[1])
 
     def at(x: float, y: float) -> tuple[float, float]:
-        return left + width * (log10(x) - first) / (last - first), top + height * (high - log10(y)) / (high - low)
+        return left + 24 + (width - 48) * (log10(x) - first) / (last - first), top + height * (high - log10(y)) / (
+            high - low
+        )
 
     out = [f'<text x="{left}" y="{top - 8}" font-weight="bold">{title}</text>',
            f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#888"/>']  # fmt: skip
