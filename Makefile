@@ -16,6 +16,8 @@ help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
 	@echo "make test    run the tests (sets up the development tools too)"
 	@echo "make lint    ruff and mypy --strict"
+	@echo "make fuzz    broken input for every reader, MINUTES=10; finds go to tests/data/fuzz/"
+	@echo "make kill-test  end annotate, render and analyze at KILLS=300 random moments; nothing may be lost"
 	@echo "make bench   measure speed; print a table"
 	@echo "make motion-report  the quality of the motion on 40 charts (COUNT=400: more); a table in build/"
 	@echo "make setup   only set up $(VENV)"
@@ -68,6 +70,14 @@ character: build/venv-character/.ready
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)
+
+MINUTES ?= 10
+fuzz: setup-dev
+	@$(BIN)/python tools/fuzz.py --minutes $(MINUTES) $(FUZZ_ARGS)
+
+KILLS ?= 300
+kill-test: setup-dev
+	@$(BIN)/python tools/kill_test.py --count $(KILLS)
 
 COUNT ?= 40
 motion-report: setup-dev

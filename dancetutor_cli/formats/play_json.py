@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.bounded import read_json
+from dancetutor_cli.bounded import read_json, shown_key
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.pads import Pad
@@ -52,7 +52,7 @@ def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
         facing[i] = _number(path, row, "facing")
         for side in (0, 1):
             reserved[side] = max(reserved[side], rows.hold_end[i][limb[i] == side].max(initial=-1))
-        moves.append(tuple(str(m) for m in row.get("moves", ())))
+        moves.append(tuple(str(m) for m in _listed(path, row, "moves")))
     if table:
         raise FileError(path, f"{chart.label}: the chart has no row at beat {min(table) / TICKS_PER_BEAT:g}")
     return Play(rows, limb, part, feet, facing, (), np.zeros((n, 0), dtype=np.int64), None, tuple(moves), str(path))
@@ -87,14 +87,18 @@ def _rows_by_tick(path: Path, rows: list[Any]) -> dict[int, dict[str, Any]]:
 def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, part: Any) -> None:
     """Fill one row of limb and part."""
     where = f"beat {tick / TICKS_PER_BEAT:g}"
-    for step in row.get("steps", ()):
+    for step in _listed(path, row, "steps"):
+        if not isinstance(step, dict):
+            raise FileError(path, f"{where}: a step is no object")
         column, name = step.get("column"), step.get("limb")
-        if not isinstance(column, int) or not 0 <= column < len(steps) or not steps[column]:
+        if not isinstance(column, int) or isinstance(column, bool) or not 0 <= column < len(steps) or not steps[column]:
             raise FileError(path, f"{where}: the chart has no step in column {column}")
-        if name is not None and name not in _LIMBS:
-            raise FileError(path, f"{where}: no limb is called '{name}'; there are {', '.join(_LIMBS)}, null")
+        if name is not None and (not isinstance(name, str) or name not in _LIMBS):
+            raise FileError(
+                path, f"{where}: no limb is called '{shown_key(name)}'; there are {', '.join(_LIMBS)}, null"
+            )
         limb[column] = Limb.UNPLAYED if name is None else _LIMBS[name]
-        part[column] = _PARTS.get(step.get("part"), int(Part.WHOLE))
+        part[column] = _PARTS.get(str(step.get("part")), int(Part.WHOLE))
     if (missing := np.flatnonzero((steps > 0) & (limb == Limb.NONE))).size:
         raise FileError(path, f"{where}: the step in column {missing[0]} has no limb")
 
@@ -106,17 +110,25 @@ def _leave_mines(feet: Any, mines: Any, held: Any) -> None:
             feet[side] = -1
 
 
+def _listed(path: Path, row: dict[str, Any], name: str) -> list[Any]:
+    value = row.get(name, [])
+    if not isinstance(value, list):
+        raise FileError(path, f"a row's {name} is no list")
+    return value
+
+
 def _panel(path: Path, row: dict[str, Any], side: str, columns: int) -> int:
-    value = row.get("feet", {}).get(side)
+    feet = row.get("feet", {})
+    value = feet.get(side) if isinstance(feet, dict) else feet
     if value is None:
         return -1
-    if not isinstance(value, int) or not 0 <= value < columns:
-        raise FileError(path, f"beat {row['beat']:g}: the {side} foot stands on {value}, which is no panel")
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < columns:
+        raise FileError(path, f"beat {row['beat']:g}: the {side} foot stands on {shown_key(value)}, which is no panel")
     return value
 
 
 def _number(path: Path, row: dict[str, Any], name: str) -> float:
     value = row.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise FileError(path, f"a row's {name} is {value!r}, which is no number")
+        raise FileError(path, f"a row's {name} is {shown_key(repr(value))}, which is no number")
     return float(value)
