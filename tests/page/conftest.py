@@ -31,9 +31,9 @@ def write_song(folder: Path, title: str = TITLE) -> Path:
 
 @pytest.fixture(scope="session")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Page:
-    """The page of the hostile song."""
+    """The page of the hostile song, with the next best play beside."""
     path = write_song(tmp_path_factory.mktemp("song"))
-    return make_page(PageTask(BakeTask(path, Selection(), "thesis", fps=30.0)))
+    return make_page(PageTask(BakeTask(path, Selection(), "thesis", fps=30.0), beside="next"))
 
 
 @pytest.fixture(scope="session")

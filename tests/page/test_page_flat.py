@@ -67,3 +67,11 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.wait(f"{NOW} > {before} + 0.2")
     assert "1 hit" in text(flat, ".score")
     assert flat.problems == []
+
+
+def test_the_other_dancer_is_named_with_the_rows_that_differ(flat: Browser, page_file: Path) -> None:
+    flat.open(page_file)
+    flat.key("2", "Digit2")
+    flat.wait("/next best feet \\(other feet in [1-9]/.test(document.querySelector('.said').textContent)")
+    flat.key("2", "Digit2")
+    flat.wait("!document.querySelector('.said').textContent.includes('next best')")
