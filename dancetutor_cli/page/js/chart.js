@@ -45,6 +45,8 @@ export class Chart {
     this.judged = /** @type {Uint8Array} */ (arrays.get("note.judged"));
     this.beats = /** @type {number[]} */ (doc.beats);
     this.columns = doc.pad.panels.length;
+    /** @type {Map<number, number>} limbs that the author gave to notes */
+    this.given = new Map();
     /** @type {number[][]} notes that press a panel, by column */
     this.presses = Array.from({ length: this.columns }, () => []);
     for (let n = 0; n < this.second.length; ++n) {

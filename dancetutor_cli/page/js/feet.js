@@ -77,5 +77,5 @@ export function lightOf(chart, column, second, fade) {
   const level = second < end
     ? Math.max(HELD, fresh)
     : Math.max(0, 1 - (second - end) / fade) ** 1.5 * (end === start ? 1 : HELD);
-  return { level: Math.min(1, level), limb: chart.limb[n] };
+  return { level: Math.min(1, level), limb: chart.given.get(n) ?? chart.limb[n] };
 }

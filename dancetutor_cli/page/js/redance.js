@@ -69,6 +69,7 @@ export class Redance {
       }
     }
     for (const [note, limb] of this.given) this.limbs.set(note, limb); // what was asked for holds above what follows
+    this.chart.given = this.limbs;
     this.windows = this.windowsOf();
   }
 
