@@ -26,7 +26,7 @@ def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
     A stretch too short for two of them has its own start and end.
     """
     regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
-    extra = [t for foot in plan.feet for s in foot.swings for t in (s.lift, s.land)]
+    extra = [t for foot in plan.feet for m in foot.moves for t in (m.lift, m.land)]
     extra += [t for p in plan.presses for t in (p.start, p.end)]
     special = np.array([t for t in extra if start <= t <= end])
     times = np.concatenate((special, regular))

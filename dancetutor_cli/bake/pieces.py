@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys
 from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.moves import Walk
 from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.rig import quaternion as quat
 
@@ -56,7 +57,7 @@ def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
     """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand around every so often."""
     if end - start <= LONGEST:
         return [start, end]
-    moving = sorted((s.lift, s.land) for track in plan.feet for s in track.swings)
+    moving = sorted((m.lift, m.land) for track in plan.feet for m in track.moves)
     moving += [(p.start - p.lead, p.end + p.lead) for p in plan.presses]
     lifts, lands = np.array(sorted(moving)).reshape(-1, 2).T
     lands = np.maximum.accumulate(np.concatenate(([-np.inf], lands)))  # when both feet are down again
@@ -85,18 +86,19 @@ def trimmed(plan: Plan, start: float, end: float) -> Plan:
         turns=tuple(t for t in turns[first:] if t.start <= end),
         presses=tuple(p for p in plan.presses if p.end >= start - 2.0 and p.start <= end + 2.0),
         grips=tuple(g for g in plan.grips if g.end >= start - 2.0 and g.start <= end + 2.0),
+        touches=tuple(c for c in plan.contacts if c.end >= start and c.start <= end),
         walks=tuple(w for w in plan.walks if w.end >= start and w.start <= end),
     )
 
 
 def _track(track: FootTrack, start: float, end: float) -> FootTrack:
-    swings = track.swings
-    first = max(int(np.searchsorted([s.land for s in swings], start)) - 2, 0)
-    kept = tuple(s for s in swings[first:] if s.lift <= end + AFTER)
+    moves = track.moves
+    first = max(int(np.searchsorted([m.land for m in moves], start)) - 2, 0)
+    kept = tuple(m for m in moves[first:] if m.lift <= end + AFTER)
     if first == 0:
-        return replace(track, swings=kept)
-    before = swings[first - 1]
-    return FootTrack(before.target, before.yaw, kept, before.level)
+        return replace(track, moves=kept)
+    before = moves[first - 1]
+    return FootTrack(before.target, before.yaw, kept, before.level if isinstance(before, Walk) else 0.0)
 
 
 def joined(pieces: Sequence[Piece], done: Iterable[Done]) -> Done:

@@ -27,11 +27,17 @@ from typing import Any
 
 from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.motion.model import Bar, Grip
+from dancetutor_cli.motion.moves import Gallop, Hover, Jump, Move, Pivot, Sidestep, Step, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack, Plan, Press
 from dancetutor_cli.play.model import Limb, Part, StepKind
 
 SCHEMA = 1
 _FEET = ("left_foot", "right_foot")
+
+
+KINDS: dict[type[Move], str] = {  # what moves are called in the file
+    Step: "step", Jump: "jump", Gallop: "gallop", Hover: "evade", Pivot: "pivot", Sidestep: "aside", Walk: "walk",
+}  # fmt: skip
 
 
 def write_moves(
@@ -83,9 +89,9 @@ def _stand(plan: Plan, start: float) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for name, track in zip(_FEET, plan.feet, strict=True):
         at, yaw = track.start, track.start_yaw
-        for swing in track.swings:
-            if _round(swing.lift) < start:
-                at, yaw = swing.target, swing.yaw
+        for move in track.moves:
+            if _round(move.lift) < start:
+                at, yaw = move.target, move.yaw
         out[name] = {"at": _place(at), "yaw": _degrees(yaw)}
     turned = [t.yaw for t in plan.turns if t.start < start]
     out["body"] = {"yaw": _degrees(turned[-1] if turned else 0.0)}
@@ -123,21 +129,23 @@ def _grip(bar: Bar, grip: Grip) -> dict[str, Any]:
 
 def _foot_moves(track: FootTrack, limb: str) -> list[dict[str, Any]]:
     out, place = [], track.start
-    for s in track.swings:
+    for move in track.moves:
+        level = move.level if isinstance(move, Walk) else 0.0
+        tuck = move.tuck if isinstance(move, Jump) else 0.0
         out.append(
             {
                 "limb": limb,
-                "kind": s.kind,
-                "start": _round(s.lift),
-                "end": _round(s.land),
+                "kind": KINDS[type(move)],
+                "start": _round(move.lift),
+                "end": _round(move.land),
                 "from": _place(place),
-                "to": _place(s.target),
-                "yaw": _degrees(s.yaw),
-                "height": _round(s.height + s.tuck),
-                **({"level": _round(s.level)} if s.level else {}),
+                "to": _place(move.target),
+                "yaw": _degrees(move.yaw),
+                "height": _round(move.height + tuck if isinstance(move, Swing) else 0.0),
+                **({"level": _round(level)} if level else {}),
             }
         )
-        place = s.target
+        place = move.target
     return out
 
 

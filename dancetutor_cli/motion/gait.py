@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import read
-from dancetutor_cli.motion.plan import Plan, Walk
+from dancetutor_cli.motion.plan import Plan, Route
 from dancetutor_cli.motion.settings import numbers
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.resources import config_path
@@ -123,7 +123,7 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
     return numbers(source, "slow", Gait), numbers(source, "quick", Gait)
 
 
-def walking(walks: tuple[Walk, ...], times: Array) -> GaitPose | None:
+def walking(walks: tuple[Route, ...], times: Array) -> GaitPose | None:
     """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
     total: GaitPose | None = None
     for walk in walks:

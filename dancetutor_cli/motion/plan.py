@@ -2,54 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.model import Contact, Grip
+from dancetutor_cli.motion.moves import Move, Swing
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Swing:
-    """One foot leaves the ground at `lift` and comes down at `land` (seconds).
-
-    target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
-    height : peak of the sole in metres, `tuck` more in a jump: the first part rises and falls as the body does
-    pitches : heel up, radians, at lift, at most, at landing, then standing
-    bulge : (x, z) added at the middle of the path, to go around the other foot
-    kind : "step", "jump", "evade" (over a mine), "gallop" (the second foot of one),
-        "pivot" (turning on the ball, which stays down), "aside" (in a wait, to the other pad) or "walk"
-    level : height of the ground where it lands
-    turn : for jumps, how far the line between the feet turns, radians; middle0, middle1 : its middle before and after
-    turning : the part of a jump's way that goes round that middle; the rest is straight
-    """
-
-    lift: float
-    land: float
-    target: tuple[float, float]
-    yaw: float
-    height: float
-    pitches: tuple[float, float, float, float]
-    bulge: tuple[float, float] = (0.0, 0.0)
-    kind: str = "step"
-    tuck: float = 0.0
-    turn: float = 0.0
-    middle0: tuple[float, float] = (0.0, 0.0)
-    middle1: tuple[float, float] = (0.0, 0.0)
-    level: float = 0.0
-    turning: float = 0.5
-
-
-@dataclass(frozen=True, slots=True)
 class FootTrack:
-    """All swings of a foot in order of time, never overlapping, and where it stood before the first: on what level."""
+    """All moves of a foot in order of time, never overlapping, and where it stood before the first: on what level."""
 
     start: tuple[float, float]
     start_yaw: float
-    swings: tuple[Swing, ...]
+    moves: tuple[Move, ...]
     start_level: float = 0.0
 
 
@@ -79,7 +49,7 @@ class Press:
 
 
 @dataclass(frozen=True, slots=True)
-class Walk:
+class Route:
     """A walk from `start` to `end`, seconds, with the landings in between, the first one of foot `first`.
 
     gait : "flat" or "heels"; share : 0 to 1, how much of its quick form is in it
@@ -95,8 +65,10 @@ class Walk:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Everything that the chart asks of the dancer. `first`, `last` : seconds of the first and last contact.
+    """Everything that the chart asks of the dancer.
 
+    touches : what presses which panel from when on, until when at the latest, in order
+    first, last : seconds at which the first contact of the song begins and the last one ends
     grips : when her hands rest on the bar behind her, as in `Motion`; walks : in order of time
     lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
         play is danced as the mirror image
@@ -105,11 +77,11 @@ class Plan:
     feet: tuple[FootTrack, FootTrack]
     turns: tuple[Turn, ...]
     presses: tuple[Press, ...]
-    contacts: tuple[Contact, ...]
+    touches: tuple[Contact, ...]
     first: float
     last: float
     grips: tuple[Grip, ...] = ()
-    walks: tuple[Walk, ...] = ()
+    walks: tuple[Route, ...] = ()
     lead: int = 0
 
     @property
@@ -117,11 +89,27 @@ class Plan:
         """1 for a plan that the left foot leads, -1 for its mirror image: the sign of what is chosen for variety."""
         return 1.0 - 2.0 * self.lead
 
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """What presses which panel, and how long: until the foot leaves, at the latest until its touch ends."""
+        lifts = [np.array([move.lift for move in track.moves if isinstance(move, Swing)]) for track in self.feet]
+        return tuple(_ended(touch, lifts[touch.limb]) if touch.limb < len(lifts) else touch for touch in self.touches)
+
+    @property
+    def flights(self) -> Array:
+        """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
+        return airborne(self.feet)
+
+
+def _ended(touch: Contact, lifts: Array) -> Contact:
+    k = int(np.searchsorted(lifts, touch.start))
+    return replace(touch, end=min(touch.end, float(lifts[k]))) if k < len(lifts) else touch
+
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
     """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
     out = []
-    left, right = ([s for s in f.swings if s.kind != "pivot"] for f in feet)
+    left, right = ([m for m in f.moves if isinstance(m, Swing)] for f in feet)
     i = j = 0
     while i < len(left) and j < len(right):
         start, end = max(left[i].lift, right[j].lift), min(left[i].land, right[j].land)

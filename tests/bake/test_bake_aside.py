@@ -12,6 +12,7 @@ from bake_plays import Event, L, R, chart, pad, play
 from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.motion.footwork.footfalls import stand_at
 from dancetutor_cli.motion.footwork.sidesteps import footfalls
+from dancetutor_cli.motion.moves import Jump, Sidestep, Step
 from dancetutor_cli.motion.plan import Plan, Swing
 from dancetutor_cli.motion.settings import default_settings
 
@@ -30,7 +31,7 @@ def planned(wait: float, double: bool = True, **more: Any) -> Plan:
 
 def asides(plan: Plan) -> list[tuple[int, Swing]]:
     """Side-steps in order of time, each with its foot."""
-    found = [(side, s) for side, track in enumerate(plan.feet) for s in track.swings if s.kind == "aside"]
+    found = [(side, s) for side, track in enumerate(plan.feet) for s in track.moves if isinstance(s, Sidestep)]
     return sorted(found, key=lambda f: f[1].lift)
 
 
@@ -43,7 +44,7 @@ def test_she_steps_aside_in_time(wait: float) -> None:
     assert found[0][1].lift > LAST and found[-1][1].land <= LAST + wait - settings.walk.settle + 1e-9
     assert all(a.land <= b.lift for (_, a), (_, b) in pairwise(found))  # one foot stands
     for side, track in enumerate(plan.feet):  # always to her right
-        way = [track.start, *(s.target for s in track.swings if s.land <= LAST)][-1:]
+        way = [track.start, *(s.target for s in track.moves if s.land <= LAST)][-1:]
         way += [s.target for k, s in found if k == side]
         assert all(b[0] < a[0] for a, b in pairwise(way))
 
@@ -51,11 +52,11 @@ def test_she_steps_aside_in_time(wait: float) -> None:
 @pytest.mark.parametrize("wait", [1.6, 2.0, 2.4])
 def test_the_note_is_reached_by_a_step(wait: float) -> None:
     plan, note = planned(wait), LAST + wait
-    arrival = next(s for s in plan.feet[1].swings if s.land == note)
-    standing = [s for s in plan.feet[0].swings if s.land < note][-1]
+    arrival = next(s for s in plan.feet[1].moves if s.land == note)
+    standing = [s for s in plan.feet[0].moves if s.land < note][-1]
     far = float(np.hypot(*(np.array(arrival.target) - standing.target)))
-    assert arrival.kind == "step" and far < (0.72 if wait < 2.0 else 0.60)  # 1.4 without side-steps
-    assert not any(s.kind == "jump" and s.land > LAST for track in plan.feet for s in track.swings)
+    assert isinstance(arrival, Step) and far < (0.72 if wait < 2.0 else 0.60)  # 1.4 without side-steps
+    assert not any(isinstance(s, Jump) and s.land > LAST for track in plan.feet for s in track.moves)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -73,7 +74,7 @@ def test_feet_come_no_farther_apart_than_a_straddle() -> None:
     plan = planned(1.2)
     times = np.array([s.land for _, s in asides(plan)])
     for time in times:
-        here = [[s.target for s in t.swings if s.land <= time][-1] for t in plan.feet]
+        here = [[s.target for s in t.moves if s.land <= time][-1] for t in plan.feet]
         assert np.hypot(*(np.array(here[0]) - here[1])) < 0.7
 
 
@@ -93,8 +94,8 @@ def test_she_stays_without_time_or_reason() -> None:
 def test_she_does_not_wait_with_a_foot_on_each_pad() -> None:
     rows = [*events(1.6)[:6], (5.4, {2: L}), (5.8, {4: R}), (7.4, {3: R}), (7.8, {0: L})]
     plan = plan_of(chart(), play(rows, True), pad(True))
-    stood = [[s.target for s in t.swings if s.land <= 7.0][-1] for t in plan.feet]
-    wide = [[s.target for s in t.swings if s.land <= 5.8][-1] for t in plan.feet]
+    stood = [[s.target for s in t.moves if s.land <= 7.0][-1] for t in plan.feet]
+    wide = [[s.target for s in t.moves if s.land <= 5.8][-1] for t in plan.feet]
     assert np.hypot(*(np.array(wide[0]) - wide[1])) > 0.6 and np.hypot(*(np.array(stood[0]) - stood[1])) < 0.3
 
 

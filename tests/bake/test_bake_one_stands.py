@@ -9,6 +9,7 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, mines_of, plan_of, report
+from dancetutor_cli.motion.moves import Hover, Pivot
 from dancetutor_cli.motion.plan import Plan, airborne
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.height import LEAST_PHASE
@@ -25,7 +26,7 @@ def danced(events: list[Event], mines: dict[int, list[int]], double: bool = Fals
 def planned(steps: Play, double: bool = False) -> Plan:
     plan = plan_of(chart(), steps, pad(double))
     for track in plan.feet:
-        for before, after in pairwise(track.swings):
+        for before, after in pairwise(track.moves):
             assert before.lift < before.land <= after.lift + 1e-9
     return plan
 
@@ -80,7 +81,7 @@ def test_mines_under_one_foot_again_and_again_send_it_to_the_middle(gap: float) 
     steps = danced(rows, {2 + k: [0] for k in range(6)})
     plan = planned(steps)
     assert len(flights(plan)) == 0
-    assert len([s for s in plan.feet[0].swings if s.kind == "evade"]) <= 2
+    assert len([s for s in plan.feet[0].moves if isinstance(s, Hover)]) <= 2
     meets(steps)
 
 
@@ -102,7 +103,7 @@ def test_a_jump_soon_after_a_mine(after: float) -> None:
 def test_a_foot_that_holds_does_not_leave_for_a_mine() -> None:
     events = [*ROWS, (2.0, {0: L}), (2.5, {}), (3.5, {3: R})]
     plan = planned(danced(events, {3: [0]}, holds={(2, 0): 3.0}))
-    lifts = [s for s in plan.feet[0].swings if s.lift > 2.0 and s.land < 3.0 and s.kind != "pivot"]
+    lifts = [s for s in plan.feet[0].moves if s.lift > 2.0 and s.land < 3.0 and not isinstance(s, Pivot)]
     assert lifts == []
 
 
@@ -192,5 +193,7 @@ def test_feet_that_hold_stand_off_panels_whose_mines_come_much_later() -> None:
     """In a stream feet land near the next panels; the mines there pass long after, while both feet still hold."""
     rows = [*stream(1.0, 12, 0.125), (2.5, {0: L}), (2.625, {3: R}), (4.0, {}), (4.3, {}), (5.5, {0: L})]
     steps = danced(rows, {14: [1], 15: [2]}, holds={(12, 0): 5.0, (13, 3): 5.0})
-    assert len([s for t in planned(steps).feet for s in t.swings if 2.7 < s.lift < 5.0 and s.kind != "pivot"]) == 0
+    assert (
+        len([s for t in planned(steps).feet for s in t.moves if 2.7 < s.lift < 5.0 and not isinstance(s, Pivot)]) == 0
+    )
     meets(steps)

@@ -53,7 +53,7 @@ def test_pieces_join_to_what_is_baked_whole(whole: Motion, short: None) -> None:
 def test_pieces_end_where_nobody_moves(short: None) -> None:
     plan = plan_of(chart(), play(EVENTS), pad())
     for end in piece_ends(plan, 0.0, 50.0)[1:-1]:
-        swings = [s for track in plan.feet for s in track.swings]
+        swings = [s for track in plan.feet for s in track.moves]
         assert not any(s.lift < end < s.land for s in swings)
         assert not any(p.start - p.lead < end < p.end for p in plan.presses)
 
@@ -68,7 +68,7 @@ def test_a_trimmed_plan_says_the_same() -> None:
     plan = plan_of(chart(), play(EVENTS), pad())
     part = trimmed(plan, 20.0, 30.0)
     times = np.linspace(20.0, 30.0, 500)
-    assert len(part.feet[0].swings) < len(plan.feet[0].swings) / 2
+    assert len(part.feet[0].moves) < len(plan.feet[0].moves) / 2
     for cut, full in zip(part.feet, plan.feet, strict=True):
         a, b = foot_path(cut, times, 0.09), foot_path(full, times, 0.09)
         np.testing.assert_array_equal(a.ball, b.ball)

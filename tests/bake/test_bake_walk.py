@@ -10,6 +10,7 @@ from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.chart import load
 from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, load_gait, walking
 from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.moves import Walk
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
@@ -148,7 +149,7 @@ def test_hands_swing_before_and_behind_against_the_feet(walked: Motion) -> None:
 def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
     flat, heels = (bake(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels"))
     plans = [plan_of(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels")]
-    steps = [[s.target for s in plan.feet[0].swings if s.kind == "walk"] for plan in plans]
+    steps = [[s.target for s in plan.feet[0].moves if isinstance(s, Walk)] for plan in plans]
     np.testing.assert_allclose(steps[0], steps[1])
     at = np.arange(0.6, 1.9, 0.02)
 
@@ -175,7 +176,7 @@ def test_she_walks_over_to_the_other_pad() -> None:
     before, after = sample(motion, np.array([between[0].start - 0.1, between[0].end + 0.1]))[1]
     assert before[0] - after[0] > 0.7
     for track in plan.feet:  # no step stretches from one pad to the other
-        places = np.array([track.start, *(s.target for s in track.swings)])
+        places = np.array([track.start, *(s.target for s in track.moves)])
         assert np.linalg.norm(np.diff(places, axis=0), axis=1).max() < 0.80
 
 

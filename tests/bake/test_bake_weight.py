@@ -14,6 +14,7 @@ from dancetutor_cli.bake import bake, report
 from dancetutor_cli.bake.bake import plan_of
 from dancetutor_cli.bake.quality.body import GROUND, Body, body_of
 from dancetutor_cli.bake.quality.smoothness import jerk
+from dancetutor_cli.motion.moves import Jump, Pivot, Step
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
@@ -77,7 +78,7 @@ def travelled(danced: list[tuple[float, dict[int, int]]], on_the_way: float) -> 
     total = 0.0
     for track in plan.feet:
         place = np.array(track.start)
-        for swing in track.swings:
+        for swing in track.moves:
             target = np.array(swing.target)
             total += float(np.linalg.norm(target - place)) * (first < swing.land < last)
             place = target
@@ -100,8 +101,8 @@ def test_a_foot_that_has_turned_leaves_as_early_as_one_that_has_not() -> None:
     plan = plan_of(chart(), play(danced), pad())
     turned = quick = 0
     for track in plan.feet:
-        for before, swing in zip(track.swings, track.swings[1:], strict=False):
-            if before.kind == "pivot" and swing.kind == "step" and swing.lift > 1.5:
+        for before, swing in zip(track.moves, track.moves[1:], strict=False):
+            if isinstance(before, Pivot) and isinstance(swing, Step) and swing.lift > 1.5:
                 turned += 1
                 quick += swing.land - swing.lift > 0.12
     assert turned >= 5
@@ -162,7 +163,7 @@ def test_in_quick_jumps_the_foot_with_the_longer_way_leaves_first() -> None:
     for gap, staggered in ((0.17, True), (0.6, False)):
         pressed = ({0: L, 3: R}, {2: L}, {1: L, 3: R}, {0: L})
         plan = plan_of(chart(), play([(1.0 + gap * k, pressed[k % 4]) for k in range(16)]), pad())
-        jumps = [[s for s in track.swings if s.kind == "jump" and s.land > 1.5] for track in plan.feet]
+        jumps = [[s for s in track.moves if isinstance(s, Jump) and s.land > 1.5] for track in plan.feet]
         pairs = [(a, b) for a in jumps[0] for b in jumps[1] if a.land == b.land]
         assert len(pairs) >= 6
         assert any(left.lift < right.lift - 0.01 for left, right in pairs) == staggered
@@ -172,7 +173,7 @@ def test_a_foot_that_steps_on_its_own_panel_again_hardly_moves() -> None:
     """It lands near the edge in a stream, and taps there again at leisure."""
     danced = [*stream(1.0, 13, 0.125), (2.9, {0: L}), (3.3, {0: L})]
     assert danced[12][1] == {0: L}
-    swings = [s for s in plan_of(chart(), play(danced), pad()).feet[0].swings if 2.45 < s.land < 3.0]
+    swings = [s for s in plan_of(chart(), play(danced), pad()).feet[0].moves if 2.45 < s.land < 3.0]
     before, again = swings[0], swings[-1]
     assert before.land < again.land == pytest.approx(2.9)
     assert np.hypot(*(np.array(again.target) - np.array(before.target))) < 0.05

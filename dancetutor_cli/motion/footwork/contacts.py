@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing, pair
 from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.moves import Swing
 from dancetutor_cli.motion.plan import Press
 from dancetutor_cli.play.model import Limb, Play, StepKind
 
@@ -16,12 +18,12 @@ Array = NDArray[np.float64]
 
 
 class Touches:
-    """Contacts and presses, collected row by row. `second(tick)` : seconds of the music."""
+    """Touches of panels and presses, collected row by row. `second(tick)` : seconds of the music."""
 
     def __init__(self, play: Play, second: Callable[[int], float], footing: Footing) -> None:
         self.play, self.panels, self.second, self.footing = play, footing.context.panels, second, footing
         self.presses: list[Press] = []
-        self.contacts: list[Contact] = []
+        self.touches: list[Contact] = []
 
     def add(self, i: int, time: float, limb: int, column: int) -> None:
         """A limb comes down on a column at row i; a foot on a hold may not leave before its end."""
@@ -36,7 +38,7 @@ class Touches:
         panel = pair(self.panels[column])
         if limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
             end = self._press(time, end, limb - Limb.LEFT_HAND, panel)
-        self.contacts.append(Contact(time, end, limb, column, kind, int(self.play.part[i, column]), i, panel))
+        self.touches.append(Contact(time, end, limb, column, kind, int(self.play.part[i, column]), i, panel))
 
     def _press(self, time: float, end: float, side: int, panel: tuple[float, float]) -> float:
         """A palm's press; returns its end."""
@@ -55,18 +57,14 @@ class Touches:
         beyond = np.clip(abs(np.degrees(off)) - hands.turn_from, 0.0, hands.turn_most)
         return float(np.radians(beyond) * (1.0 if side == 0 else -1.0))
 
-    def ended(self) -> tuple[Contact, ...]:
-        """All contacts, in order; one ends when its foot leaves the panel, also if that is before a hold's end."""
-        self.contacts.sort(key=lambda c: (c.start, c.limb, c.column))
-        lifts = [[s.lift for s in f.swings if s.kind != "pivot"] for f in self.footing.feet]
-        return tuple(c if c.limb >= Limb.LEFT_HAND else self._ended(c, lifts[c.limb]) for c in self.contacts)
+    def all(self) -> tuple[Contact, ...]:
+        """All touches, in order, each until it must end; a foot that is not needed any more stays a while."""
+        self.touches.sort(key=lambda c: (c.start, c.limb, c.column))
+        lifts = [[m.lift for m in f.moves if isinstance(m, Swing)][-1:] for f in self.footing.feet]
+        stays = self.footing.settings.step.longest
 
-    def _ended(self, contact: Contact, lifts: list[float]) -> Contact:
-        k = int(np.searchsorted(lifts, contact.start))
-        last = contact.end if contact.end < np.inf else contact.start + self.footing.settings.step.longest
-        end = lifts[k] if k < len(lifts) else last
-        if contact.end < np.inf:
-            end = min(end, contact.end)
-        return Contact(
-            contact.start, end, contact.limb, contact.column, contact.kind, contact.part, contact.row, contact.panel
-        )
+        def ended(touch: Contact) -> Contact:
+            left = touch.end < np.inf or any(lift >= touch.start for lift in lifts[touch.limb])
+            return touch if left else replace(touch, end=touch.start + stays)
+
+        return tuple(ended(touch) for touch in self.touches)

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.motion.model import Ground
-from dancetutor_cli.motion.plan import FootTrack, Swing, Turn, Walk
+from dancetutor_cli.motion.moves import Walk
+from dancetutor_cli.motion.plan import FootTrack, Route, Turn
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
@@ -46,9 +47,9 @@ def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, 
     """How she stands at a time: after all that landed before it."""
     balls, yaws = [], []
     for track in feet:
-        done = bisect_right(track.swings, time, key=lambda s: s.land)
-        balls.append(track.swings[done - 1].target if done else track.start)
-        yaws.append(track.swings[done - 1].yaw if done else track.start_yaw)
+        done = bisect_right(track.moves, time, key=lambda s: s.land)
+        balls.append(track.moves[done - 1].target if done else track.start)
+        yaws.append(track.moves[done - 1].yaw if done else track.start_yaw)
     before = [t.yaw for t in turns if t.end <= time]
     return Stand(np.array(balls), np.array(yaws), before[-1] if before else 0.0)
 
@@ -67,8 +68,8 @@ def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
 class WalkSteps:
     """A walk, ready to be put into a plan. room : least distance between the middle lines of her shoes, metres."""
 
-    walk: Walk
-    swings: tuple[tuple[Swing, ...], tuple[Swing, ...]]
+    walk: Route
+    swings: tuple[tuple[Walk, ...], tuple[Walk, ...]]
     turns: tuple[Turn, ...]
     room: float
 
@@ -190,7 +191,7 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
     begin, pace, ground = trip.begin, how.gait, context.ground
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
-    swings: tuple[list[Swing], list[Swing]] = ([], [])
+    swings: tuple[list[Walk], list[Walk]] = ([], [])
     turns, landings, before, least = [], [], begin.heading, np.inf
     for k, step in enumerate(steps):
         side = (first + k) % 2
@@ -206,16 +207,13 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
         level = ground.level(*middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
         target = (float(step.ball[0]), float(step.ball[1]))
-        swings[side].append(
-            Swing(
-                lift, land, target, step.yaw, pace.height + OVER_EDGE * edge, pitches, bulge, kind="walk", level=level
-            )
-        )
+        height = pace.height + OVER_EDGE * edge
+        swings[side].append(Walk(lift, land, target, step.yaw, pitches, height, bulge, level))
         places[side] = (step.ball, step.yaw)
         turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
         before = step.heading
         landings.append(land)
-    walk = Walk(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
+    walk = Route(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
     return WalkSteps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 

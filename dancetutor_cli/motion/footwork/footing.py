@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.plan import FootTrack, Swing
+from dancetutor_cli.motion.moves import Move, Pivot
+from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.swing.clearance import gaps_at, over
 from dancetutor_cli.motion.swing.foot_path import NO_TIME
 from dancetutor_cli.motion.swing.panels import ball_of
@@ -42,7 +43,7 @@ class Foot:
     free: float = -np.inf  # the foot may not leave before
     landed: float = -np.inf  # when it came down
     turned: float = -np.inf  # when it last ended a pivot
-    swings: list[Swing] = field(default_factory=list)
+    moves: list[Move] = field(default_factory=list)
     holds: dict[int, float] = field(default_factory=dict)  # columns that it holds: until when
     evading: Evading | None = None  # until its next step
 
@@ -51,14 +52,14 @@ class Foot:
         """1 for the left foot, -1 for the right one: which way its toes turn out."""
         return 1.0 if self.side == 0 else -1.0
 
-    def move(self, swing: Swing, target: Array, yaw: float) -> None:
-        """Add a swing; afterwards the foot stands at its target."""
-        if self.swings and swing.lift - self.swings[-1].land < NO_TIME:
-            heel = self.swings[-1].pitches[2]
-            swing = replace(swing, pitches=(heel, max(heel, swing.pitches[1]), *swing.pitches[2:]))
-        self.swings.append(swing)
-        self.ball, self.yaw, self.free = target, yaw, swing.land + FREE_WINDOW
-        self.landed = swing.land
+    def move(self, move: Move, target: Array, yaw: float) -> None:
+        """Add a move; afterwards the foot stands at its target."""
+        if self.moves and move.lift - self.moves[-1].land < NO_TIME:
+            heel = self.moves[-1].pitches[2]
+            move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
+        self.moves.append(move)
+        self.ball, self.yaw, self.free = target, yaw, move.land + FREE_WINDOW
+        self.landed = move.land
 
     def holding(self, time: float) -> bool:
         """Whether it is in the middle of a hold."""
@@ -102,12 +103,12 @@ class Footing:
         return self.track(self.feet[0]), self.track(self.feet[1])
 
     def track(self, foot: Foot, latest: int | None = None) -> FootTrack:
-        """What a foot has done, all of it or only its latest swings."""
-        first = 0 if latest is None else max(len(foot.swings) - latest, 0)
+        """What a foot has done, all of it or only its latest moves."""
+        first = 0 if latest is None else max(len(foot.moves) - latest, 0)
         place, yaw = self._start[foot.side]
         if first > 0:
-            place, yaw = foot.swings[first - 1].target, foot.swings[first - 1].yaw
-        return FootTrack(place, yaw, tuple(foot.swings[first:]))
+            place, yaw = foot.moves[first - 1].target, foot.moves[first - 1].yaw
+        return FootTrack(place, yaw, tuple(foot.moves[first:]))
 
     def toes(self, foot: Foot, yaw: float | None = None) -> float:
         """Where the toes of a foot point, at its own yaw or at another one; radians."""
@@ -163,15 +164,15 @@ class Footing:
 
     def pivot(self, foot: Foot, yaw: float, start: float, time: float) -> None:
         """The standing foot turns on its ball to a yaw."""
-        begin = max(start, foot.swings[-1].land + FREE_WINDOW if foot.swings else start)
+        begin = max(start, foot.moves[-1].land + FREE_WINDOW if foot.moves else start)
         if yaw == foot.yaw or begin > time - SHORTEST_PIVOT:
             return
         up = float(np.radians(self.settings.step.pivot_pitch))
-        rest = foot.swings[-1].pitches[3] if foot.swings else 0.0
+        rest = foot.moves[-1].pitches[3] if foot.moves else 0.0
         pitches = (rest, max(up, rest), rest, rest)
         free, landed = foot.free, foot.landed
-        swing = Swing(begin, time, pair(foot.ball), self.toes(foot, yaw), 0.0, pitches, kind="pivot")
-        foot.move(swing, foot.ball, yaw)
+        move = Pivot(begin, time, pair(foot.ball), self.toes(foot, yaw), pitches)
+        foot.move(move, foot.ball, yaw)
         foot.free, foot.landed, foot.turned = max(free, foot.free), landed, time
 
 

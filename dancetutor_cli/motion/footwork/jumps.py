@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.foothold import Pitches
 from dancetutor_cli.motion.footwork.footing import Footing, pair
-from dancetutor_cli.motion.plan import Swing
+from dancetutor_cli.motion.moves import Jump
 from dancetutor_cli.motion.swing.jump_ways import jump_ways
 from dancetutor_cli.rig.mass import GRAVITY
 
@@ -51,9 +51,9 @@ def fly(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) 
         up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)
-        swing = Swing(
-            lift, flight.land, pair(ends[side]), float(after[side]), height, rise, pair(aside[side]), "jump",
-            tuck, turn, *middles, turning=share,
+        swing = Jump(
+            lift, flight.land, pair(ends[side]), float(after[side]), rise, height, pair(aside[side]), tuck, turn,
+            middles, share,
         )  # fmt: skip
         foot.move(swing, ends[side], goals[side][1])
 

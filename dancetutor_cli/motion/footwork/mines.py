@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.footwork.foothold import Spot, around, beside, landing_ball, pose
 from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, HOME_OUT, SHORTEST, Evading, Foot, Footing, pair
 from dancetutor_cli.motion.footwork.jumps import Flight, fly
-from dancetutor_cli.motion.plan import Swing
+from dancetutor_cli.motion.moves import Hover
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import over
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, room_on
@@ -81,9 +81,9 @@ def _lift(footing: Footing, foot: Foot, time: float, column: int) -> None:
     mines, step, panels = footing.settings.mines, footing.settings.step, footing.context.panels
     half, first = mines.before + mines.rise, time
     lift = min(max(time - half, foot.free), max(time - SHORTEST, foot.landed + FREE_WINDOW))
-    if foot.evading is not None and foot.landed > time - half and foot.swings[-1].kind == "evade":
+    if foot.evading is not None and foot.landed > time - half and isinstance(foot.moves[-1], Hover):
         # it stays up from the last mine
-        first, lift = foot.evading.first, foot.swings.pop().lift
+        first, lift = foot.evading.first, foot.moves.pop().lift
         foot.ball, foot.yaw = foot.evading.ball, foot.evading.yaw
     elif lift > time:
         return
@@ -102,7 +102,7 @@ def _lift(footing: Footing, foot: Foot, time: float, column: int) -> None:
     bulge = around(footing, foot, (lift, time + half), target, yaw, other)
     evading = Evading(first, time, foot.ball, foot.yaw)
     toes = footing.toes(foot, yaw)
-    foot.move(Swing(lift, time + half, pair(target), toes, mines.height, PITCHES, bulge, "evade"), target, yaw)
+    foot.move(Hover(lift, time + half, pair(target), toes, PITCHES, mines.height, bulge), target, yaw)
     foot.evading = evading
     _one_after_the_other(foot, other, footing.settings)
 
@@ -110,28 +110,28 @@ def _lift(footing: Footing, foot: Foot, time: float, column: int) -> None:
 def _one_after_the_other(foot: Foot, other: Foot, settings: MotionSettings) -> None:
     """A foot goes up over a mine only when the other one is down from its step or its own mine, if it can wait."""
     need = settings.mines.before + STEEP
-    swing, evading = foot.swings[-1], foot.evading
+    swing, evading = foot.moves[-1], foot.evading
     if evading is None or not swing.lift < other.landed:
         return
-    if other.evading is not None and other.swings[-1].kind == "evade":
-        _hurried(other, settings, other.swings[-1].lift, swing.lift)
+    if other.evading is not None and isinstance(other.moves[-1], Hover):
+        _hurried(other, settings, other.moves[-1].lift, swing.lift)
     _hurried(foot, settings, min(other.landed, evading.first - need), swing.land)
 
 
 def _hurried(foot: Foot, settings: MotionSettings, lift: float, land: float) -> None:
     """A foot that evades goes up not before `lift` and is down at `land`, as far as its mines allow."""
-    evading, swing = foot.evading, foot.swings[-1]
+    evading, swing = foot.evading, foot.moves[-1]
     assert evading is not None
     need = settings.mines.before + STEEP
     lift = max(swing.lift, min(lift, evading.first - need))
     land = min(swing.land, max(land, evading.last + need))
-    foot.swings[-1] = replace(swing, lift=lift, land=land)
+    foot.moves[-1] = replace(swing, lift=lift, land=land)
     foot.landed, foot.free = land, land + (foot.free - swing.land)
 
 
 def left_standing(other: Foot, settings: MotionSettings, lift: float, time: float) -> float:
     """When a foot leaves for its step at `time`, at `lift` or later: when the other one is down again from a mine."""
-    if other.evading is None or other.landed <= lift or other.swings[-1].kind != "evade":
+    if other.evading is None or other.landed <= lift or not isinstance(other.moves[-1], Hover):
         return lift
     need = settings.mines.before + STEEP
     if other.evading.last + need > time - HASTE:  # no time: both are in the air for a moment
@@ -149,7 +149,7 @@ def resumed(foot: Foot, other: Foot, time: float, longest: float) -> float | Non
     evading, foot.evading = foot.evading, None
     if evading is None or time - evading.last > longest or other.landed > evading.last:
         return None
-    swing = foot.swings.pop()
+    swing = foot.moves.pop()
     foot.ball, foot.yaw = evading.ball, evading.yaw
     return swing.lift
 
@@ -160,15 +160,15 @@ def land_early(foot: Foot, settings: MotionSettings, time: float) -> float:
     Returns when both take off at the latest.
     """
     evading, need = foot.evading, settings.mines.before + STEEP
-    if evading is None or foot.landed <= time - HASTE - PUSH or foot.swings[-1].kind != "evade":
+    if evading is None or foot.landed <= time - HASTE - PUSH or not isinstance(foot.moves[-1], Hover):
         foot.evading = None
         return time
     if evading.last + need <= time - HASTE - PUSH:
-        _hurried(foot, settings, foot.swings[-1].lift, time - HASTE - PUSH)
+        _hurried(foot, settings, foot.moves[-1].lift, time - HASTE - PUSH)
         foot.evading = None
         return time
-    swing = foot.swings.pop()
+    swing = foot.moves.pop()
     foot.ball, foot.yaw, foot.evading = evading.ball, evading.yaw, None
-    foot.landed = foot.swings[-1].land if foot.swings else -np.inf
+    foot.landed = foot.moves[-1].land if foot.moves else -np.inf
     foot.free = min(swing.lift, foot.free)
     return max(evading.first - need, swing.lift)

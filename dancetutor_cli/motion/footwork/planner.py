@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,13 +43,12 @@ class Planner:
         """The plan of the whole song; DancetutorError if the play has no steps."""
         for i in range(len(self.play.rows)):
             self._row(i)
-        contacts = self.touches.ended()
-        if not contacts:
+        touches = self.touches.all()
+        if not touches:
             raise DancetutorError("the chart has no steps: there is nothing to dance")
-        return Plan(
-            self.footing.tracks(), tuple(self.turns), tuple(self.touches.presses), contacts,
-            contacts[0].start, max(c.end for c in contacts), lead=self.footing.lead,
-        )  # fmt: skip
+        feet, turns, presses = self.footing.tracks(), tuple(self.turns), tuple(self.touches.presses)
+        plan = Plan(feet, turns, presses, touches, touches[0].start, touches[0].start, lead=self.footing.lead)
+        return replace(plan, last=max(contact.end for contact in plan.contacts))
 
     def _row(self, i: int) -> None:
         time = float(self.play.rows.second[i])

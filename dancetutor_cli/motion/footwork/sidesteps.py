@@ -15,7 +15,8 @@ from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stan
 from dancetutor_cli.motion.footwork.foothold import around, heel_up
 from dancetutor_cli.motion.footwork.footing import Foot, Footing, pair
 from dancetutor_cli.motion.footwork.walks import places_along, walk_there
-from dancetutor_cli.motion.plan import Press, Swing, Turn
+from dancetutor_cli.motion.moves import Sidestep
+from dancetutor_cli.motion.plan import Press, Turn
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.motion.swing.timing import reduction
 from dancetutor_cli.play.model import Limb, Play
@@ -155,8 +156,8 @@ class SideSteps:
         other = footing.feet[1 - foot.side]
         lift = max(start + step.double_support * duration, foot.free)
         bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, other)
-        swing = Swing(lift, start + duration, pair(fall.ball), fall.yaw, height, pitches, bulge, "aside")
-        foot.move(swing, fall.ball, fall.heading)
+        step_aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
+        foot.move(step_aside, fall.ball, fall.heading)
         foot.evading = None
 
 

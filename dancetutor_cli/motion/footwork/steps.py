@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +21,7 @@ from dancetutor_cli.motion.footwork.foothold import (
 from dancetutor_cli.motion.footwork.footing import Foot, Footing, pair
 from dancetutor_cli.motion.footwork.jumps import Flight, Goals, fly, tuck_for
 from dancetutor_cli.motion.footwork.mines import land_early, left_standing, resumed
-from dancetutor_cli.motion.plan import Swing
+from dancetutor_cli.motion.moves import Gallop, Hover, Jump, Step, Swing
 from dancetutor_cli.motion.swing.timing import reduction
 from dancetutor_cli.play.model import Part, Play
 from dancetutor_cli.rig.mass import GRAVITY
@@ -63,27 +65,28 @@ class Steps:
         lift = time - max(duration * (1.0 - both), min(LEAST_SWING, duration + OVERLAP))
         lift = self.take_off[side][1] if galloping else left_standing(other, self.settings, lift, time)
         lift = min(max(lift, foot.earliest(time)), foot.latest(time, step.let_go)) if up is None else up
-        kind, tuck, middles = "step", 0.0, ((0.0, 0.0), (0.0, 0.0))
+        kind: type[Swing] = Step
         height = step.height_slow + cut * (step.height_fast - step.height_slow)
         if np.linalg.norm(target - foot.ball) < 0.05:
             height = max(height * step.jack_height, step.height_fast)
         if up is not None:
-            kind, height = "evade", max(height, self.settings.mines.height)
+            kind, height = Hover, max(height, self.settings.mines.height)
         if galloping:
-            kind, height = "gallop", max(height, self.settings.mines.height)
+            kind, height = Gallop, max(height, self.settings.mines.height)
             if other.side in self.take_off and self.take_off[other.side][0] > i:  # the first of the two
-                kind, height = "jump", GRAVITY * (time - lift) ** 2 / 8
-                tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump.tuck, jump.far)
-                middles = (pair(foot.ball), pair(target))
-        if kind == "step" and self._leap(time, duration, foot, (target, yaw), columns):
-            return foot.swings[-1].lift
+                kind, height = Jump, GRAVITY * (time - lift) ** 2 / 8
+        if kind is Step and self._leap(time, duration, foot, (target, yaw), columns):
+            return foot.moves[-1].lift
         pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, columns)
         toes = footing.toes(foot, yaw)
-        if kind == "step":
+        if kind is Step:
             after = footing.turned_to((yaw, other.yaw) if side == 0 else (other.yaw, yaw))
             footing.pivot(other, footing.pivot_yaw(other, after, target, toes), lift, time)
         bulge = around(footing, foot, (lift, time), target, yaw, other)
-        swing = Swing(lift, time, pair(target), toes, height, pitches, bulge, kind, tuck, 0.0, *middles)
+        swing = kind(lift, time, pair(target), toes, pitches, height, bulge)
+        if isinstance(swing, Jump):
+            tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump.tuck, jump.far)
+            swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
         foot.move(swing, target, yaw)
         return lift
 

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.footwork.footfalls import Stand, Trip, WalkSteps, footsteps, stand_at, standing
-from dancetutor_cli.motion.model import Contact, Ground
-from dancetutor_cli.motion.plan import FootTrack, Plan, Swing, Turn
+from dancetutor_cli.motion.model import Ground
+from dancetutor_cli.motion.moves import Hover, Jump, Move, Step, Swing
+from dancetutor_cli.motion.plan import FootTrack, Plan, Turn
 from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.play.model import StepKind
@@ -33,26 +34,13 @@ REST = 0.15  # seconds that she stands between a walk and a step at least
 def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """The plan with walks wherever there is time for one. mines : (m,) seconds at which mines pass; gait : its name"""
     out = walk_over(plan, mines, gait, context)
-    out = _walk_off(_walk_on(out, mines, gait, context), mines, gait, context)
-    return replace(out, contacts=_released(out)) if out.walks else plan
-
-
-def _released(plan: Plan) -> tuple[Contact, ...]:
-    """Contacts end when their foot leaves the panel, also when it leaves for a walk."""
-    lifts = [np.array([s.lift for s in t.swings if s.kind == "walk"]) for t in plan.feet]
-    out = []
-    for contact in plan.contacts:
-        if contact.limb < len(lifts):
-            after = lifts[contact.limb][lifts[contact.limb] > contact.start]
-            contact = replace(contact, end=min(contact.end, float(after.min(initial=np.inf))))
-        out.append(contact)
-    return tuple(out)
+    return _walk_off(_walk_on(out, mines, gait, context), mines, gait, context)
 
 
 def _walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """She comes from the side of the foot that leads as the song begins, if there is time before the first note."""
     ground, settings, walk = context.ground, context.settings, context.settings.walk
-    busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.swings[:1]))
+    busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
     if busy < walk.least or (mines < busy).any():
         return plan
     goal = standing(plan.feet, -np.inf)
@@ -70,7 +58,7 @@ def _walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     level = ground.level(*begin.middle)
     feet = tuple(
         FootTrack(
-            (float(b[0]), float(b[1])), float(y), (*steps.swings[side], *_from_there(track.swings, goal, side)), level
+            (float(b[0]), float(b[1])), float(y), (*steps.swings[side], *_from_there(track.moves, goal, side)), level
         )
         for side, (b, y, track) in enumerate(zip(begin.balls, begin.yaws, plan.feet, strict=True))
     )
@@ -83,7 +71,7 @@ def _walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
 def _walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     """After the last note she goes on to the other side, or back if her feet would be in each other's way."""
     ground, settings, walk = context.ground, context.settings, context.settings.walk
-    start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.swings[-1:])) + walk.pause
+    start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.moves[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
@@ -100,7 +88,7 @@ def _walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
         return plan
     free = [steps for steps in found if steps.room >= settings.step.apart]
     steps = free[0] if free else max(found, key=lambda s: s.room)
-    feet = [replace(t, swings=(*t.swings, *steps.swings[side])) for side, t in enumerate(plan.feet)]
+    feet = [replace(t, moves=(*t.moves, *steps.swings[side])) for side, t in enumerate(plan.feet)]
     return replace(plan, feet=(feet[0], feet[1]), turns=(*plan.turns, *steps.turns), walks=(*plan.walks, steps.walk))
 
 
@@ -119,7 +107,7 @@ def walk_over(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     for start, ready in _waits(plan, mines, context.settings.walk.wait):
         begin = standing(plan.feet, start, plan.turns)
         following = [_next_step(track, ready) for track in plan.feet]
-        targets = np.array([s.target for s in following if s is not None and s.kind != "evade"])
+        targets = np.array([s.target for s in following if s is not None and not isinstance(s, Hover)])
         if len(targets) < len(following):
             continue
         found = walk_there(begin, targets, (start, ready), gait, plan.lead, context)
@@ -144,7 +132,7 @@ def walk_there(
 
 
 def _next_step(track: FootTrack, time: float) -> Swing | None:
-    return next((s for s in track.swings if s.lift >= time - 1e-9 and s.kind != "pivot"), None)
+    return next((m for m in track.moves if m.lift >= time - 1e-9 and isinstance(m, Swing)), None)
 
 
 def _nearest(places: Array, targets: Array) -> float:
@@ -164,7 +152,7 @@ def places_along(squares: Array, lead: int) -> Array:
 
 def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     """Stretches from when both feet are free to when one lifts, at least so long, without mines and hands."""
-    lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.swings if s.kind != "pivot")
+    lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.moves if isinstance(s, Swing))
     held = [(c.start, c.end) for c in plan.contacts if c.kind == StepKind.HOLD]
     busy = [(p.start - p.lead, p.end + 1.0) for p in plan.presses]
     out, free = [], np.inf
@@ -182,28 +170,28 @@ def _inserted(plan: Plan, steps: WalkSteps, goal: Stand, apart: float) -> Plan:
     """The plan with a walk in a wait; what follows starts from where she has walked to."""
     tracks = []
     for side, track in enumerate(plan.feet):
-        after = [s for s in track.swings if s.land > steps.walk.start]
-        before = track.swings[: len(track.swings) - len(after)]
+        after = [s for s in track.moves if s.land > steps.walk.start]
+        before = track.moves[: len(track.moves) - len(after)]
         moved = _from_there(tuple(after), goal, side)
-        tracks.append(replace(track, swings=(*before, *steps.swings[side], *moved)))
+        tracks.append(replace(track, moves=(*before, *steps.swings[side], *moved)))
     turns = sorted([*plan.turns, *steps.turns], key=lambda t: t.start)
     walks = sorted([*plan.walks, steps.walk], key=lambda w: w.start)
     feet = _gone_around((tracks[0], tracks[1]), steps.walk.end, apart)
     return replace(plan, feet=feet, turns=tuple(turns), walks=tuple(walks))
 
 
-def _from_there(swings: tuple[Swing, ...], goal: Stand, side: int) -> tuple[Swing, ...]:
+def _from_there(moves: tuple[Move, ...], goal: Stand, side: int) -> tuple[Move, ...]:
     """What a foot does after a walk, planned as if it came from elsewhere: its pivots and its first step are new."""
     here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
     middle = goal.balls.mean(axis=0)
-    for k, swing in enumerate(swings):
-        if swing.kind == "pivot":
+    for k, move in enumerate(moves):
+        if not isinstance(move, Swing):
             continue
-        first = replace(swing, bulge=(0.0, 0.0))
-        if swing.kind == "jump":
-            first = replace(swing, turn=0.0, middle0=(float(middle[0]), float(middle[1])))
-        return (*(replace(s, target=here) for s in swings[:k]), first, *swings[k + 1 :])
-    return tuple(replace(s, target=here) for s in swings)
+        first = replace(move, bulge=(0.0, 0.0))
+        if isinstance(move, Jump):
+            first = replace(move, line_turn=0.0, middles=((float(middle[0]), float(middle[1])), move.middles[1]))
+        return (*(replace(m, target=here) for m in moves[:k]), first, *moves[k + 1 :])
+    return tuple(replace(m, target=here) for m in moves)
 
 
 def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float) -> tuple[FootTrack, FootTrack]:
@@ -213,11 +201,11 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float)
     until = max((s.land for s in firsts if s is not None), default=walked)
     out = []
     for side, track in enumerate(feet):
-        swings = list(track.swings)
-        for k, step in enumerate(swings):
-            if step.kind == "step" and walked - 1e-9 <= step.lift <= until:
-                swings[k] = replace(step, bulge=_bulge(feet, side, step, apart))
-        out.append(replace(track, swings=tuple(swings)))
+        moves = list(track.moves)
+        for k, step in enumerate(moves):
+            if isinstance(step, Step) and walked - 1e-9 <= step.lift <= until:
+                moves[k] = replace(step, bulge=_bulge(feet, side, step, apart))
+        out.append(replace(track, moves=tuple(moves)))
     return out[0], out[1]
 
 

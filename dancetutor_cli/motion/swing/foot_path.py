@@ -7,15 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.moves import Gallop, Hover, Jump, Move, Pivot, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.swing.clearance import bend
 from dancetutor_cli.motion.swing.jump_ways import turning
 from dancetutor_cli.motion.swing.timing import swung, travelled
 from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.rig.body import dancer_foot
 
 Array = NDArray[np.float64]
 EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
-HEEL_BACK, BALL_UP = 0.167, 0.028  # from the heel's edge to the joint of the ball: ahead and up, metres
+HEEL_BACK, BALL_UP = dancer_foot()
+NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
 NO_TIME = 0.03  # seconds on the ground in which a heel stays as it has landed
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
@@ -47,14 +50,14 @@ def both_feet(tracks: tuple[FootTrack, FootTrack], times: Array, heel_drop: floa
 
 def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     """Sample a foot at `times` (f,), seconds."""
-    swings = track.swings
-    lift = np.array([s.lift for s in swings])
-    land = np.array([s.land for s in swings])
-    place = np.array([track.start, *(s.target for s in swings)])
-    yaw = np.array([track.start_yaw, *(s.yaw for s in swings)])
-    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; swing done - 1 has begun
+    moves = track.moves
+    lift = np.array([m.lift for m in moves])
+    land = np.array([m.land for m in moves])
+    place = np.array([track.start, *(m.target for m in moves)])
+    yaw = np.array([track.start_yaw, *(m.yaw for m in moves)])
+    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; move done - 1 has begun
     i = np.maximum(done - 1, 0)
-    if not swings:
+    if not moves:
         still = np.zeros_like(times)
         ball = np.column_stack((np.full_like(times, place[0, 0]), still, np.full_like(times, place[0, 1])))
         ball[:, 1] = track.start_level
@@ -62,12 +65,12 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
     ground = np.where(swinging[:, None], _ground(track, place, i, s), place[done])
-    level = np.array([track.start_level, *(w.level for w in swings)])
+    level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
     up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
     turned = yaw[i] + swung(s) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
-    pivoting = swinging & np.array([w.kind == "pivot" for w in swings])[i]
+    pivoting = swinging & _are(track, Pivot)[i]
     turned = np.where(swinging, turned, yaw[done])
     return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
 
@@ -90,36 +93,40 @@ def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
     return out
 
 
+def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
+    """Which of a foot's moves are of some kinds."""
+    return np.array([isinstance(move, kinds) for move in track.moves])
+
+
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
     """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet."""
     e = travelled(s)
     start, end = place[i], place[i + 1]
     straight = start + e[:, None] * (end - start)
-    bulge = np.array([w.bulge for w in track.swings])[i] * bend(e)[:, None]
-    jumps = np.array([w.kind == "jump" for w in track.swings])
-    share = np.where(jumps, [w.turning for w in track.swings], 0.0)[i][:, None]
-    middles = np.array([(w.middle0, w.middle1) for w in track.swings])[i]
-    turn = np.array([w.turn for w in track.swings])[i]
-    round_ = turning(start, end, (middles[:, 0], middles[:, 1]), turn, e)
+    bulge = np.array([m.bulge if isinstance(m, Swing) else (0.0, 0.0) for m in track.moves])[i] * bend(e)[:, None]
+    jumps = [m if isinstance(m, Jump) else NO_JUMP for m in track.moves]
+    share = np.array([jump.round for jump in jumps])[i][:, None]
+    middles = np.array([jump.middles for jump in jumps])[i]
+    line_turn = np.array([jump.line_turn for jump in jumps])[i]
+    round_ = turning(start, end, (middles[:, 0], middles[:, 1]), line_turn, e)
     return np.asarray((1 - share) * straight + share * round_ + bulge)
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
-    height, tuck = np.array([(w.height, w.tuck) for w in track.swings])[i].T
-    kind = np.array([w.kind for w in track.swings])[i]
-    evade = 1.0 - (2.0 * s - 1.0) ** 4
+    height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
+    tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
+    hover = 1.0 - (2.0 * s - 1.0) ** 4
     # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
     step = np.sin(np.pi * s**1.35)
-    return np.asarray(
-        np.where(kind == "jump", jump, height * np.where((kind == "evade") | (kind == "gallop"), evade, step))
-    )
+    shape = np.where(_are(track, Hover, Gallop)[i], hover, step)
+    return np.asarray(np.where(_are(track, Jump)[i], jump, height * shape))
 
 
 def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
-    lift, most, land, _ = np.array([w.pitches for w in track.swings])[i].T
+    lift, most, land, _ = np.array([m.pitches for m in track.moves])[i].T
     up = lift + smooth(s / 0.4) * (most - lift)
     return np.asarray(up + smooth((s - 0.4) / 0.6) * (land - most))
 
@@ -128,7 +135,7 @@ def _stand_pitch(
     track: FootTrack, times: Array, done: NDArray[np.int64], lift: Array, land: Array, heel_drop: float
 ) -> Array:
     """Heel of a standing foot: comes down after landing, rises before the next swing."""
-    pitches = np.array([w.pitches for w in track.swings])
+    pitches = np.array([m.pitches for m in track.moves])
     landed = np.concatenate(([-1e9], land))[done]
     rest = np.concatenate(([0.0], pitches[:, 3]))[done]
     touch = np.concatenate(([0.0], pitches[:, 2]))[done]
@@ -137,7 +144,7 @@ def _stand_pitch(
     stood = leaves - landed
     rest = np.where(stood < NO_TIME, touch, rest)
     drop = np.minimum(heel_drop, 0.6 * stood)
-    early = np.array([WALKING_RISE if w.kind == "walk" else HEEL_RISE for w in track.swings] + [HEEL_RISE])[done]
+    early = np.array([WALKING_RISE if isinstance(m, Walk) else HEEL_RISE for m in track.moves] + [HEEL_RISE])[done]
     rise = np.minimum(early, 0.4 * stood)
     falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
     return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

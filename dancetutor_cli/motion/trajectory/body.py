@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import gaze_ahead, walking
-from dancetutor_cli.motion.plan import Plan, airborne
+from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.motion.trajectory.balance import Pendulum, balanced_path
@@ -90,7 +90,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     leg = settings.body.stance - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
     sink = (np.zeros(len(times)) if gait is None else gait.sink) + settings.layers.bounce * beat
-    mass_height = height_path(_wish(feet, course, context, leg, sink, bent), airborne(plan.feet), settings.body)
+    mass_height = height_path(_wish(feet, course, context, leg, sink, bent), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
     chest = chest + loose * counter_rotation(feet, course, chest, head, context)

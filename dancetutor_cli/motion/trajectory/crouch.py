@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.plan import Plan, Swing, airborne
+from dancetutor_cli.motion.moves import Jump, Swing, Walk
+from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import JumpSettings, MotionSettings
 from dancetutor_cli.motion.swing.timing import reduction
 from dancetutor_cli.numerics.smoothing import smooth_path
@@ -24,7 +25,7 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     """How fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
     step = settings.step
     fast = np.zeros(len(times))
-    for swing in (s for track in plan.feet for s in track.swings if s.kind not in ("walk", "pivot")):
+    for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk)):
         around = slice(*np.searchsorted(times, (swing.lift - AROUND, swing.land + AROUND)))
         fast[around] = np.maximum(fast[around], reduction(swing.land - swing.lift, step.fast, step.longest))
     rate = 1.0 / float(times[1] - times[0])
@@ -33,7 +34,7 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     """How much lower (n,) she is before and after jumps, metres: deeper for higher jumps, less if time is short."""
-    flights = airborne(plan.feet)
+    flights = plan.flights
     if not len(flights):
         return np.zeros(len(times))
     start, end = flights.T
@@ -56,13 +57,13 @@ def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
     Both feet of a jump come down at once and have one way; a gallop has that of the foot that comes down first.
     """
-    jumps: dict[float, Swing] = {}
-    for swing in (s for track in plan.feet for s in track.swings if s.kind == "jump"):
+    jumps: dict[float, Jump] = {}
+    for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Jump)):
         if swing.land not in jumps or jumps[swing.land].lift < swing.lift:  # the last foot to leave takes off
             jumps[swing.land] = swing
     out = np.zeros((len(times), 2))
     for _, swing in sorted(jumps.items()):
-        way = np.radians(jump.lean) * (np.array(swing.middle1) - np.array(swing.middle0))
+        way = np.radians(jump.lean) * (np.array(swing.middles[1]) - np.array(swing.middles[0]))
         first, last = swing.lift - ONSET, swing.land + OFFSET
         near = slice(*np.searchsorted(times, (first, last)))
         out[near] += np.sin(np.pi * (times[near] - first) / (last - first))[:, None] ** 2 * way

@@ -13,7 +13,8 @@ from dancetutor_cli.motion.footwork.planner import LEAD, _turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.targets import FROM_TOES, _knee_poles
 from dancetutor_cli.motion.model import Contact
-from dancetutor_cli.motion.plan import FootTrack, Plan, Swing
+from dancetutor_cli.motion.moves import Jump, Pivot, Step
+from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
 from dancetutor_cli.motion.swing.timing import swung
 from dancetutor_cli.numerics.ease import smooth
@@ -56,9 +57,10 @@ def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     footing = Footing(context(), 0)
     goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in footing.feet]
     fly(footing, Flight(1.0, 1.24), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
-    swing = footing.feet[0].swings[-1]
+    swing = footing.feet[0].moves[-1]
     for share, least in ((0.1, 0.25), (0.2, 0.5)):
         height = foot_path(footing.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        assert isinstance(swing, Jump)
         falling = swing.height * 4 * share * (1 - share)
         assert height - falling >= least * swing.tuck
 
@@ -67,8 +69,9 @@ def test_a_heel_does_not_drop_in_no_time() -> None:
     """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
     footing = Footing(context(), 0)
     foot = footing.feet[0]
-    for lift, land, kind in ((1.0, 1.2, "step"), (1.2 + FREE_WINDOW, 1.4, "pivot"), (1.41, 1.6, "step")):
-        foot.move(Swing(lift, land, (0.3, 0.1), 0.2, 0.05, (0.2, 0.4, 0.15, 0.0), kind=kind), foot.ball, foot.yaw)
+    there = (0.3, 0.1), 0.2, (0.2, 0.4, 0.15, 0.0)
+    for move in (Step(1.0, 1.2, *there, 0.05), Pivot(1.2 + FREE_WINDOW, 1.4, *there), Step(1.41, 1.6, *there, 0.05)):
+        foot.move(move, foot.ball, foot.yaw)
     times = np.linspace(1.19, 1.43, 2401)
     path = foot_path(footing.tracks()[0], times, 0.09)
     assert NO_TIME > 0.01

@@ -1,0 +1,80 @@
+"""What a foot does, one type for each kind of move; each carries only what it needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """One foot moves from `lift` to `land` (seconds), and stands at `target` then.
+
+    target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
+    pitches : heel up, radians, at lift, at most, at landing, then standing
+    """
+
+    lift: float
+    land: float
+    target: Place
+    yaw: float
+    pitches: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Pivot(Move):
+    """A standing foot turns on its ball, which stays down."""
+
+
+@dataclass(frozen=True, slots=True)
+class Swing(Move):
+    """The foot leaves the ground. height : peak of the sole, metres
+
+    bulge : (x, z) added at the middle of the path, to go around the other foot
+    """
+
+    height: float
+    bulge: Place = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Step(Swing):
+    """To a note while the other foot stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sidestep(Swing):
+    """In a wait, towards the other pad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hover(Swing):
+    """Over a mine: up soon and down late."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gallop(Swing):
+    """The second foot of a gallop, which lands later: it stays up as over a mine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Walk(Swing):
+    """A step of a walk. level : height of the ground where it lands, metres"""
+
+    level: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Jump(Swing):
+    """With the other foot, off the ground at once: the sole rises and falls as the body does.
+
+    tuck : metres that the foot is pulled up more; middles : (x, z) between the feet before and after
+    line_turn : radians that the line between the feet turns; round : the part of the way that goes round that middle,
+    the rest is straight
+    """
+
+    tuck: float = 0.0
+    line_turn: float = 0.0
+    middles: tuple[Place, Place] = ((0.0, 0.0), (0.0, 0.0))
+    round: float = 0.5
