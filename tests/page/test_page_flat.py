@@ -59,7 +59,7 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.wait("document.querySelector('.said').textContent.startsWith('waiting')")
     x, y, w, h = flat.box(".lanes")
     lane = min(72, (w - 2 * min(46, 0.14 * w)) / 4)
-    left = x + 0.34 * (w - 4 * lane)
+    left = x + 0.28 * (w - 4 * lane)
     for column in (3, 0):  # right does nothing, left is the row
         before = float(flat.run(NOW))
         for kind in ("mousePressed", "mouseReleased"):

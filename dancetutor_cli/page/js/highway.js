@@ -51,7 +51,7 @@ export class Highway {
     if (this.canvas.height !== height) this.canvas.height = height;
     const margin = Math.min(46 * ratio, width * (this.chart.columns > 5 ? 0.08 : 0.14));
     const lane = Math.min((width - 2 * margin) / this.chart.columns, 72 * ratio);
-    const left = 0.34 * (width - lane * this.chart.columns); // words need more room than numbers
+    const left = 0.28 * (width - lane * this.chart.columns); // words need more room than numbers
     return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
   }
 

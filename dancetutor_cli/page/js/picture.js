@@ -43,6 +43,7 @@ export class Picture {
     /** @type {Viewer | null} */
     this.viewer = null;
     this.scale = 1;
+    this.simple = false; // without cast shadows while it plays
     this.slow = 0;
     this.last = 0;
     this.poses = motions.map((motion) => motion.pose());
@@ -130,7 +131,8 @@ export class Picture {
   /** @param {Wanted} wanted */
   draw(wanted) {
     this.pace(wanted.playing);
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) * (this.viewer ? this.scale : 1);
+    const hurried = this.viewer !== null && wanted.playing; // a picture that stands is worth its time
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * (hurried ? this.scale : 1);
     const box = this.place.getBoundingClientRect();
     const width = Math.max(2, Math.round(box.width * ratio));
     const height = Math.max(2, Math.round(box.height * ratio));
@@ -153,7 +155,7 @@ export class Picture {
         ghost: k === 0 ? this.ghost(wanted.next) : null,
       });
     }
-    if (this.viewer) return this.viewer.draw(views);
+    if (this.viewer) return this.viewer.draw(views, hurried && this.simple);
     const next = (wanted.next?.steps ?? []).map(({ column, limb }) => ({ column, limb }));
     drawFromAbove(this.canvas, this.doc, { marks: views[0].marks, lights: this.lights, mirror: wanted.camera === "front", next });
   }
@@ -178,7 +180,7 @@ export class Picture {
     this.slow = 0.9 * this.slow + 0.1 * Math.min(apart, 4 * SLOW);
     if (this.slow <= SLOW) return;
     if (this.scale > LEAST) this.scale = Math.max(LEAST, this.scale * 0.85);
-    else if (this.viewer) this.viewer.simple = true;
+    else this.simple = true;
     this.slow = 0;
   }
 }

@@ -33,7 +33,7 @@ export class Viewer {
     const soft = isSoftware();
     const gl = canvas.getContext("webgl2", { antialias: !soft, alpha: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("no WebGL 2");
-    this.simple = false; // without cast shadows: for machines that draw slowly
+    this.simple = false;
     this.gl = gl;
     this.doc = doc;
     const shaders = doc.shaders;
@@ -59,8 +59,9 @@ export class Viewer {
     gl.enable(gl.DEPTH_TEST);
   }
 
-  /** @param {Shown[]} views */
-  draw(views) {
+  /** @param {Shown[]} views @param {boolean} simple without cast shadows: for machines that draw slowly */
+  draw(views, simple) {
+    this.simple = simple;
     const gl = this.gl;
     for (const view of views) {
       const cast = this.cast(view);
