@@ -120,6 +120,7 @@ def command(**options: Any) -> int:  # fmt: skip
         selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
         want_rows=options["format_name"] == "json",
         want_figures=options["format_name"] == "csv",
+        want_excerpts=options["format_name"] == "text",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
                                             "baseline", "update_baseline", "suggest", "alternatives")},
     )  # fmt: skip

@@ -30,6 +30,7 @@ class Task:
     suggest : whether findings shall tell which moved note would remove them
     alternatives : how many other plays shall be told of
     want_figures : whether the result shall carry densities and technical steps, for CSV
+    want_excerpts : whether findings shall carry the rows around them, for text
     """
 
     path: Path
@@ -41,6 +42,7 @@ class Task:
     suggest: bool = False
     alternatives: int = 0
     want_figures: bool = False
+    want_excerpts: bool = True
 
 
 def analyze_file(task: Task) -> FileResult:
@@ -118,7 +120,7 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         row_count=len(subject.step_rows),
         cost=0 if play is None else play.total,
         counts=subject.counts,
-        findings=findings if play is None else with_excerpts(findings, play),
+        findings=with_excerpts(findings, play) if play is not None and task.want_excerpts else findings,
         rows=json_rows(subject) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),
         figures=_figures(subject, task) if task.want_figures else None,

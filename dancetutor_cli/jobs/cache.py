@@ -45,7 +45,7 @@ class ResultCache:
         except FileError:
             return None
         digest = hashlib.sha256(data)
-        wanted = (task.presets, task.selection, task.suggest, task.alternatives, task.want_figures)
+        wanted = (task.presets, task.selection, task.suggest, task.alternatives, task.want_figures, task.want_excerpts)
         asked = f"{task.path}|{task.path.absolute()}|{wanted}"
         for part in (_program(), asked, task.settings.fingerprint(), *self._beside(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))

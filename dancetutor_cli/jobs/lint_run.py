@@ -41,6 +41,7 @@ class Request:
     update_baseline: bool = False
     want_rows: bool = False
     want_figures: bool = False
+    want_excerpts: bool = True
     suggest: bool = False
     alternatives: int = 0
 
@@ -103,7 +104,7 @@ class LintRun:
         request = self.request
         return Task(
             path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
-            request.alternatives, request.want_figures,
+            request.alternatives, request.want_figures, request.want_excerpts,
         )  # fmt: skip
 
     def fail_on(self, path: Path) -> str:
