@@ -57,6 +57,9 @@ def _run(arguments: Sequence[str] | None) -> None:
         _say(f"{where}{error.strerror or error}")
         status = 2
     except Exception as error:
+        if isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt):
+            _say("interrupted")  # the Ctrl-C fell into a kernel as it came back
+            sys.exit(130)
         # A mistake of the program, not of the user: still one line, with the way to the whole story.
         if os.environ.get("DANCETUTOR_TRACEBACK"):
             raise

@@ -71,7 +71,13 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
 @click.option("-q", "--quiet", is_flag=True, help="Leave out infos, and charts without errors and warnings.")
-@click.option("--statistics", is_flag=True, help="Print how often each rule was found.")
+@click.option(
+    "--full/--brief",
+    default=None,
+    help="Every finding with its rows, or at most a screen for a song and a page for a pack.  "
+    "[default: brief at a terminal, full into files and pipes]",
+)
+@click.option("--statistics", is_flag=True, help="Print how often each rule was found; in brief only that.")
 @click.option(
     "--sheet",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -162,7 +168,7 @@ def _report_errors(work: Callable[[], object]) -> None:
 def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     from dancetutor_cli.jobs.analyze_all import analyze_all
     from dancetutor_cli.jobs.cache import ResultCache, default_folder
-    from dancetutor_cli.reports.formats import open_report
+    from dancetutor_cli.reports.formats import open_brief_report, open_report
     from dancetutor_cli.reports.tally import Tally
 
     if options["sheet"] is not None:
@@ -175,7 +181,10 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     tasks = [run.task(path, data) for path, data in sources]
-    report = open_report(options["format_name"], next(tasks[0].presets.candidates()).name)
+    if _is_brief(options):
+        report = open_brief_report(len(tasks), known=run.has_baseline, statistics=options["statistics"])
+    else:
+        report = open_report(options["format_name"], next(tasks[0].presets.candidates()).name)
     report.begin()
     folder = None if options["no_cache"] else default_folder()
     cache = None if folder is None else ResultCache(folder)
@@ -193,6 +202,15 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
         click.echo(write_sheet(options["sheet"], tasks), err=True)
     _finish(run, tally, options)
     return tally.exit_status
+
+
+def _is_brief(options: dict[str, Any]) -> bool:
+    """Whether a screen is enough: for a person who has not asked for what takes more."""
+    if options["format_name"] != "text":
+        return False
+    if options["full"] is not None:
+        return not options["full"]
+    return sys.stdout.isatty() and not (options["suggest"] or options["alternatives"])
 
 
 def _before_work(tasks: Sequence[Task]) -> None:

@@ -120,6 +120,11 @@ class LintRun:
             is_new = self.request.update_baseline and not where.exists()
             self._baseline = Baseline(where) if is_new else load_baseline(where)
 
+    @property
+    def has_baseline(self) -> bool:
+        """Whether findings are compared with a baseline."""
+        return self._baseline is not None
+
     def without_known(self, result: FileResult) -> FileResult:
         """The result without the findings that the baseline knows."""
         baseline = self._baseline

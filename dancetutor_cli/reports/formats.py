@@ -10,6 +10,15 @@ from dancetutor_cli.reports import Report
 FORMATS = ("text", "json", "jsonl", "csv", "sarif", "github", "gitlab", "junit")
 
 
+def open_brief_report(files: int, *, known: bool, statistics: bool) -> Report:
+    """What a person at a terminal sees; see `brief.BriefReport`."""
+    from dancetutor_cli.reports.brief import BriefReport
+
+    return BriefReport(
+        _utf8_or_replacing(sys.stdout, utf8=False), sys.stderr, files, known=known, statistics=statistics
+    )
+
+
 def open_report(name: str, preset: str) -> Report:
     """A report in this format on standard output. `preset` is the cost preset's name."""
     if name == "json":

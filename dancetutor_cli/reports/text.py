@@ -16,7 +16,7 @@ from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.table import chart_table
 from dancetutor_cli.reports.tally import Tally
 
-_STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
+STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
 _WIDTH_WITHOUT_TERMINAL = 100
 _MOST_LETTERS = 16  # rows of another play that are written out
 _MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
@@ -29,7 +29,7 @@ class TextReport:
         self._stream = stream
         self._errors = errors
         self._console = make_console(stream)
-        self._colours = _colours(self._console)
+        self._colours = colours(self._console)
 
         self._plain = not _can_encode(stream, "←↙■●│·")
 
@@ -98,7 +98,7 @@ class TextReport:
             self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json tells all")
 
     def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
-        rule = self._paint(f"{finding.rule}", _STYLES[finding.severity])
+        rule = self._paint(f"{finding.rule}", STYLES[finding.severity])
         place = ":".join(str(n) for n in (finding.line, finding.column) if n is not None)
         where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
         label = f" [{safe(chart.label)}]" if chart else ""
@@ -139,7 +139,7 @@ def clock(second: float) -> str:
     return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
 
 
-def _colours(console: Console) -> ColorSystem | None:
+def colours(console: Console) -> ColorSystem | None:
     systems = {
         "standard": ColorSystem.STANDARD,
         "256": ColorSystem.EIGHT_BIT,

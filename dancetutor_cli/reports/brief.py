@@ -1,0 +1,188 @@
+"""What a person at a terminal sees of `analyze`: at most a screen for a song, a page for a pack; `--full` tells all."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import IO
+
+from rich.style import Style
+
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.reports.safe import safe, safe_path
+from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.text import STYLES, colours, make_console
+
+_COLOUR = re.compile("\x1b\\[[0-9;]*m")
+_RANK = {"error": 0, "warning": 1, "info": 2}
+_SONG = 2  # files that are one song: its .sm and its .ssc
+_MOST_UNREADABLE = 8
+_PAGE = 60  # lines of a pack
+_PLACES = 6  # of a rule in a chart
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """All findings of one rule in one chart (None: about the file)."""
+
+    path: str
+    chart: ChartResult | None
+    findings: tuple[Finding, ...]
+
+    @property
+    def first(self) -> Finding:
+        return self.findings[0]
+
+    @property
+    def order(self) -> tuple[int, int, int]:
+        """Errors first, then what is surest and most frequent."""
+        return _RANK[self.first.severity], -max(f.margin or 0 for f in self.findings), -len(self.findings)
+
+
+class BriefReport:
+    """Collects files and tells of them at the end; files that could not be read go to `errors`.
+
+    files : how many there will be
+    known : whether findings of a baseline are left out: if nothing is new, one line is enough
+    statistics : only how often each rule was found is wanted, which others print
+    """
+
+    def __init__(self, stream: IO[str], errors: IO[str], files: int, *, known: bool, statistics: bool) -> None:
+        self._stream, self._errors = stream, errors
+        self._is_song, self._known, self._statistics = files <= _SONG, known, statistics
+        console = make_console(stream)
+        self._colours, self._width = colours(console), console.width
+        self._entries: list[_Entry] = []
+        self._charts: list[tuple[FileResult, ChartResult]] = []
+        self._unreadable: list[str] = []
+        self._found: dict[str, tuple[int, int]] = {}  # by file: errors, warnings
+        self._below = ""
+
+    def begin(self) -> None:
+        """Nothing comes before the end."""
+
+    def add(self, result: FileResult) -> None:
+        """Take note of one file."""
+        if result.error is not None:
+            self._unreadable.append(safe(result.error))
+            return
+        by_rule: dict[tuple[str, int | None], list[Finding]] = defaultdict(list)
+        charts: dict[int | None, ChartResult | None] = {chart.index: chart for chart in result.charts}
+        charts[None] = None
+        for finding, chart in result.all_findings():
+            by_rule[finding.rule, None if chart is None else chart.index].append(finding)
+            errors, warnings = self._found.get(result.path, (0, 0))
+            self._found[result.path] = (
+                errors + (finding.severity == "error"), warnings + (finding.severity == "warning"),
+            )  # fmt: skip
+        self._entries += [_Entry(result.path, charts[index], tuple(f)) for (_, index), f in by_rule.items()]
+        if self._is_song:
+            self._charts += [(result, chart) for chart in result.charts]
+
+    def end(self, tally: Tally) -> None:
+        """Write it all; the last line is what was found in all."""
+        for line in self._unreadable[:_MOST_UNREADABLE]:
+            self._errors.write(f"dancetutor: {line}\n")
+        if len(self._unreadable) > _MOST_UNREADABLE:
+            more = len(self._unreadable) - _MOST_UNREADABLE
+            self._errors.write(f"dancetutor: {more} more files could not be read; --full names them\n")
+        self._errors.flush()
+        lines: list[str] = []
+        if not self._statistics and (self._entries or (self._is_song and not self._known)):
+            lines = self._song() if self._is_song else self._pack()
+        for line in (*lines, tally.summary()):
+            self._stream.write(line + "\n")
+
+    def _song(self) -> list[str]:
+        """A line for each chart, then one for each rule in each chart, as many as the screen holds."""
+        room = max(12, shutil.get_terminal_size().lines - 4)
+        by_file: dict[str, list[str]] = {}
+        for result, chart in self._charts:
+            by_file.setdefault(result.path, []).append(self._cut(f"  {_counts(chart)}"))
+        files: dict[tuple[str, ...], list[str]] = {}  # the .sm and the .ssc of a song say the same, mostly
+        for path, charts in by_file.items():
+            files.setdefault(tuple(charts), []).append(safe_path(path))
+        lines: list[str] = []
+        for charts_of, paths in files.items():
+            lines += [self._paint(self._cut(", ".join(paths)), "bold"), *charts_of]
+        shown = lines[: room // 2]
+        return [*shown, *_more(len(lines) - len(shown), "charts"), *self._listed(room - len(shown))]
+
+    def _pack(self) -> list[str]:
+        """The files with the most errors and warnings, then the surest finding of each rule."""
+        worst = sorted(self._found.items(), key=lambda item: (-item[1][0], -item[1][1], item[0]))
+        worst = [item for item in worst if any(item[1])]
+        shown = worst[: _PAGE // 3]
+        self._below = os.path.commonpath([os.path.dirname(path) for path in self._found])  # noqa: PTH120
+        lines = [self._paint(f"errors warnings  file below {safe_path(self._below or '.')}", "dim")] if shown else []
+        lines += [self._cut(f"{errors:6} {warnings:8}  {self._name(path)}") for path, (errors, warnings) in shown]
+        lines += _more(len(worst) - len(shown), "files with errors or warnings")
+        lines.append("")
+        rules: dict[str, list[_Entry]] = defaultdict(list)
+        for entry in self._entries:
+            rules[entry.first.rule].append(entry)
+        ranked = sorted(rules.values(), key=lambda all_: (min(one.order[0] for one in all_), -_sum(all_)))
+        each = 2 if len(ranked) * 3 <= _PAGE - len(lines) else 1
+        for found in ranked[: max(1, (_PAGE - len(lines) - 2) // (each + 1))]:
+            first = min(found, key=lambda one: one.order)
+            rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
+            charts = len({(one.path, one.chart and one.chart.index) for one in found})
+            lines.append(f"{rule}: {_sum(found)} in {charts} chart{'' if charts == 1 else 's'}, for example")
+            lines += [self._cut(f"  {self._told(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]]
+        return [*lines, "", _HOW]
+
+    def _listed(self, room: int) -> list[str]:
+        entries = sorted(self._entries, key=lambda one: one.order)
+        told = list(dict.fromkeys(self._cut(self._told(entry, True)) for entry in entries))
+        if not told:
+            return []
+        shown = told[: max(4, room - 3)]
+        return ["", *shown, *_more(len(told) - len(shown), "such lines"), _HOW]
+
+    def _name(self, path: str) -> str:
+        """A file by its path below the folder that all of them are in."""
+        return safe_path(os.path.relpath(path, self._below or "."))
+
+    def _told(self, entry: _Entry, one_file: bool) -> str:
+        """ "DT201 14 times, measures 3 7 9 ...: the left foot steps twice [dance-single Hard 9]" """
+        first, many = entry.first, len(entry.findings)
+        measures = list(dict.fromkeys(f.measure for f in entry.findings if f.measure is not None))
+        places = " ".join(map(str, measures[:_PLACES])) + (" ..." if len(measures) > _PLACES else "")
+        where = f", measure{'' if len(measures) == 1 else 's'} {places}" if measures else ""
+        times = f" {many} times" if many > 1 else ""
+        label = f" [{safe(entry.chart.label)}]" if entry.chart else ""
+        rule = self._paint(first.rule, STYLES[first.severity]) if one_file else ""
+        place = "" if one_file else f"{self._name(entry.path)}:{first.line or 1}"
+        return f"{rule}{place}{times}{where}:{label} {safe(first.message)}".replace("::", ":")
+
+    def _cut(self, line: str) -> str:
+        """As much of a line as the terminal is wide; colours take no room."""
+        plain = len(_COLOUR.sub("", line))
+        return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
+
+    def _paint(self, text: str, style: str) -> str:
+        return Style.parse(style).render(text, color_system=self._colours) if self._colours and text else text
+
+
+_HOW = "--full tells every finding with its rows, --format json all there is, --statistics only counts"
+
+
+def _counts(chart: ChartResult) -> str:
+    found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
+    words = [f"{n} {name}{'' if n == 1 else 's'}" for n, name in zip(found, ("error", "warning"), strict=True) if n]
+    moves = ("doublestep", "crossover-full", "spin", "bracket", "hand")
+    counted = [f"{chart.counts[move]} {move}" for move in moves if chart.counts.get(move)]
+    rows = f"{chart.row_count} rows" if chart.playable else "no pad"
+    return f"{safe(chart.label)}: {', '.join([rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
+
+
+def _sum(entries: list[_Entry]) -> int:
+    return sum(len(one.findings) for one in entries)
+
+
+def _more(count: int, what: str) -> list[str]:
+    return [f"... and {count} more {what}"] if count > 0 else []

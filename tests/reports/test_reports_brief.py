@@ -1,0 +1,101 @@
+"""What a person at a terminal sees: at most a screen for a song and a page for a pack; nothing is lost in --full."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from dancetutor_cli.commands import cli
+from dancetutor_cli.resources import charts_path
+
+SONG = charts_path() / "two_left_feet"
+HEAD = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n"
+# the left foot again and again, in four measures: the same rule many times
+TWICE = HEAD + "#NOTES:dance-single:C:{}:9::\n" + ",\n".join(["1000\n0100\n1000\n0100\n"] * 4 + ["1111\n"] * 40) + ";\n"
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(cli, ["analyze", *map(str, arguments)], standalone_mode=False)
+
+
+@pytest.fixture
+def pack(tmp_path: Path) -> Path:
+    for number in range(40):
+        path = tmp_path / "pack" / f"song {number}" / "x.sm"
+        path.parent.mkdir(parents=True)
+        path.write_text(TWICE.format("Hard"))
+    for number in range(20):
+        (tmp_path / "pack" / f"bad {number}.sm").write_text("nothing")
+    return tmp_path / "pack"
+
+
+def test_a_song_is_a_screen() -> None:
+    brief, full = run("--brief", SONG), run("--full", SONG)
+    assert len(brief.stdout.splitlines()) <= 24 < len(full.stdout.splitlines())
+    assert brief.stdout.splitlines()[-1] == full.stdout.splitlines()[-1]
+    assert "--full" in brief.stdout and brief.return_value == full.return_value == 1
+    assert run(SONG).stdout == full.stdout  # into a file or a pipe all of it
+
+
+def test_a_rule_many_times_in_a_chart_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "x.sm").write_text(TWICE.format("Hard").replace(":9:", ":4:"))
+    said = run("--brief", tmp_path / "x.sm", "--select", "low-bracket").stdout
+    (line,) = [line for line in said.splitlines() if line.startswith("DT210")]
+    assert "40 times, measures 4 5 6 7 8 9 ..." in line
+
+
+def test_a_pack_is_a_page(pack: Path) -> None:
+    brief = run("--brief", pack)
+    assert len(brief.stdout.splitlines()) <= 62 and len(brief.stderr.splitlines()) <= 10
+    assert "12 more files could not be read" in brief.stderr
+    assert "more files with errors or warnings" in brief.stdout or "song" in brief.stdout
+    assert "60 files, 40 charts" in brief.stdout.splitlines()[-1]
+    assert brief.return_value == run("--full", pack).return_value == 2
+
+
+def test_with_everything_in_the_baseline_it_is_one_line(pack: Path) -> None:
+    for path in pack.glob("bad*"):
+        path.unlink()
+    known = pack / "known.json"
+    run(pack, "--baseline", known, "--update-baseline")
+    assert run("--brief", pack, "--baseline", known).stdout == "40 files, 40 charts: no findings\n"
+    one = pack / "song 1" / "x.sm"
+    assert run("--brief", one, "--baseline", known).stdout == "1 file, 1 chart: no findings\n"
+
+
+def test_statistics_stand_alone() -> None:
+    said = run("--brief", SONG, "--statistics")
+    assert len(said.stdout.splitlines()) == 1
+    assert any("DT2" in line for line in said.stderr.splitlines())
+
+
+def test_other_formats_are_whole(pack: Path) -> None:
+    for name in ("json", "jsonl", "sarif", "github", "junit", "csv"):
+        assert run(pack, "--format", name, "--brief").stdout == run(pack, "--format", name).stdout
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no terminals to be had there")
+def test_a_terminal_gets_the_screen() -> None:
+    import pty
+
+    parent, child = pty.openpty()
+    command = [sys.executable, "-m", "dancetutor_cli", "analyze", str(SONG)]
+    started = subprocess.Popen(command, stdout=child, stderr=subprocess.DEVNULL, env={**os.environ, "TERM": "xterm"})
+    os.close(child)
+    text = b""
+    while True:
+        try:
+            part = os.read(parent, 4096)
+        except OSError:
+            break
+        if not part:
+            break
+        text += part
+    started.wait(60)
+    lines = text.decode().splitlines()
+    assert len(lines) <= 24 and "--full" in lines[-2]
