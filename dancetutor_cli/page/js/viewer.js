@@ -1,6 +1,7 @@
 // The picture: stage, shadow, dancer and ghost foot in WebGL 2, with the dancer's shaders of the films.
 
 import { axes, matrix } from "./camera.js";
+import { bind, build, drawPart, makeMesh, makeRoom, numbers, shadowMap, skinTexture, tileTexture } from "./gl.js";
 import { cross, dot, minus } from "./maths.js";
 
 const SHADOW_REACH = 2.5; // metres of the world that the shadow map shows (video/prepare.py)
@@ -21,8 +22,6 @@ const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip"
  * @property {Float32Array} lights four numbers a panel
  * @property {{skin: Float32Array, feet: boolean[]} | null} ghost
  */
-
-/** @typedef {{program: WebGLProgram, at: Record<string, WebGLUniformLocation | null>}} Program */
 
 export class Viewer {
   /**
@@ -226,166 +225,4 @@ function isSoftware() {
   const name = gl && about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
   gl?.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software/i.test(name);
-}
-
-/** @param {WebGL2RenderingContext} gl @param {{first: number, count: number}} part */
-function drawPart(gl, part) {
-  gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
-}
-
-/** @param {WebGL2RenderingContext} gl @param {number} unit @param {WebGLTexture} texture @param {WebGLUniformLocation | null} at */
-function bind(gl, unit, texture, at) {
-  gl.activeTexture(gl.TEXTURE0 + unit);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.uniform1i(at, unit);
-}
-
-/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
-function build(gl, vertex, fragment) {
-  const program = gl.createProgram();
-  for (const [kind, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
-    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`shader: ${gl.getShaderInfoLog(shader)}`);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`shaders: ${gl.getProgramInfoLog(program)}`);
-  /** @type {Record<string, WebGLUniformLocation | null>} */
-  const at = {};
-  const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
-  for (let i = 0; i < count; ++i) {
-    const name = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(program, i)).name.replace("[0]", "");
-    at[name] = gl.getUniformLocation(program, name);
-  }
-  return { program, at };
-}
-
-/** @param {WebGL2RenderingContext} gl @param {any} body @param {import("./blob.js").Arrays} arrays */
-function makeMesh(gl, body, arrays) {
-  const n = body.vertices;
-  const array = gl.createVertexArray();
-  gl.bindVertexArray(array);
-  const place = arrays.get("mesh.position");
-  const uv = arrays.get("mesh.uv");
-  const floats = new Float32Array(5 * n);
-  for (let v = 0; v < n; ++v) {
-    for (let k = 0; k < 3; ++k) floats[5 * v + k] = body.low[k] + (place[k * n + v] / 65535) * body.size[k];
-    for (let k = 0; k < 2; ++k) floats[5 * v + 3 + k] = body.uv[0][k] + (uv[k * n + v] / 65535) * body.uv[1][k];
-  }
-  buffer(gl, gl.ARRAY_BUFFER, floats);
-  attribute(gl, 0, 3, gl.FLOAT, 20, 0, false);
-  attribute(gl, 3, 2, gl.FLOAT, 20, 12, false);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.normal"), n, 3, Int8Array));
-  attribute(gl, 1, 3, gl.BYTE, 4, 0, true);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.hull"), n, 3, Int8Array));
-  attribute(gl, 2, 3, gl.BYTE, 4, 0, true);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.joints"), n, 4, Uint8Array));
-  attribute(gl, 4, 4, gl.UNSIGNED_BYTE, 4, 0, false);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.weights"), n, 4, Uint8Array));
-  attribute(gl, 5, 4, gl.UNSIGNED_BYTE, 4, 0, true);
-  const columns = arrays.get("mesh.triangles");
-  const count = columns.length / 3;
-  const triangles = new Uint32Array(columns.length);
-  for (let t = 0; t < count; ++t) for (let k = 0; k < 3; ++k) triangles[3 * t + k] = columns[k * count + t];
-  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, triangles);
-  gl.bindVertexArray(null);
-  return array;
-}
-
-/**
- * Columns of values as four bytes a vertex.
- * @param {import("./blob.js").Numbers} columns @param {number} n @param {number} width
- * @param {Int8ArrayConstructor | Uint8ArrayConstructor} kind
- */
-function interleaved(columns, n, width, kind) {
-  const out = new kind(4 * n);
-  for (let k = 0; k < width; ++k) for (let v = 0; v < n; ++v) out[4 * v + k] = columns[k * n + v];
-  return out;
-}
-
-/** @param {WebGL2RenderingContext} gl @param {any} stage */
-function makeRoom(gl, stage) {
-  const array = gl.createVertexArray();
-  gl.bindVertexArray(array);
-  const floats = [];
-  const triangles = [];
-  for (let q = 0; q < stage.kinds.length; ++q) {
-    for (let c = 0; c < 4; ++c) floats.push(...stage.corners[q][c], ...stage.uv[q][c], stage.kinds[q]);
-    triangles.push(4 * q, 4 * q + 1, 4 * q + 2, 4 * q, 4 * q + 2, 4 * q + 3);
-  }
-  buffer(gl, gl.ARRAY_BUFFER, new Float32Array(floats));
-  attribute(gl, 0, 3, gl.FLOAT, 24, 0, false);
-  attribute(gl, 1, 2, gl.FLOAT, 24, 12, false);
-  attribute(gl, 2, 1, gl.FLOAT, 24, 20, false);
-  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, new Uint16Array(triangles));
-  gl.bindVertexArray(null);
-  return { array, count: triangles.length };
-}
-
-/** @param {WebGL2RenderingContext} gl @param {number} target @param {ArrayBufferView<ArrayBuffer>} data */
-function buffer(gl, target, data) {
-  gl.bindBuffer(target, gl.createBuffer());
-  gl.bufferData(target, data, gl.STATIC_DRAW);
-}
-
-/**
- * @param {WebGL2RenderingContext} gl @param {number} number @param {number} width @param {number} kind
- * @param {number} stride @param {number} offset @param {boolean} normalised
- */
-function attribute(gl, number, width, kind, stride, offset, normalised) {
-  gl.enableVertexAttribArray(number);
-  gl.vertexAttribPointer(number, width, kind, normalised, stride, offset);
-}
-
-/** @param {WebGL2RenderingContext} gl @param {ImageBitmap} image */
-function skinTexture(gl, image) {
-  const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image);
-  gl.generateMipmap(gl.TEXTURE_2D);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAX_LOD, 3); // the films' four levels: charts' gaps stay apart
-  return texture;
-}
-
-/** @param {WebGL2RenderingContext} gl @param {Float32Array} data @param {number} width @param {number} height */
-function numbers(gl, data, width, height) {
-  const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, data);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-  return texture;
-}
-
-/** @param {WebGL2RenderingContext} gl @param {any} stage */
-function tileTexture(gl, stage) {
-  const across = stage.panel.length;
-  const deep = stage.panel[0].length;
-  const data = new Float32Array(4 * across * deep);
-  for (let j = 0; j < deep; ++j) {
-    for (let i = 0; i < across; ++i) data.set([stage.panel[i][j], ...stage.arrow[i][j], 0], 4 * (j * across + i));
-  }
-  return numbers(gl, data, across, deep);
-}
-
-/** @param {WebGL2RenderingContext} gl @param {number} texels */
-function shadowMap(gl, texels) {
-  const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, texels, texels);
-  for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.LINEAR);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-  const frame = gl.createFramebuffer();
-  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture, 0);
-  gl.drawBuffers([gl.NONE]);
-  gl.readBuffer(gl.NONE);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  return { texture, frame };
 }
