@@ -21,11 +21,12 @@ from dancetutor_cli.motion.settings import numbers
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.body import half_hips
+from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
 STANCE = 0.6  # part of a cycle that a foot stands
 SINKING = 0.55  # part of a step in which the body sinks at a plant and comes up again
-HALF_HIPS = 0.088  # metres from the middle of the pelvis to a hip
 HANDS_BACK = 0.06  # metres that hands hang farther back than in a dance
 FADE = 0.45  # seconds over which standing becomes walking and walking standing
 GAZE_AHEAD = 0.35  # seconds by which the gaze is ahead of the walk
@@ -76,7 +77,7 @@ def gait_pose(gait: Gait, phase: Array) -> GaitPose:
     roll = np.radians(gait.hip_drop) * np.sin(turn - 0.1 * np.pi)
     forward = np.cos(turn)  # 1 as the left foot lands, far ahead
     step = (2 * phase) % 1.0
-    low = HALF_HIPS * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
+    low = half_hips(dancer_skeleton()) * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
     sink = low + gait.plant * np.sin(np.pi * np.minimum(step / SINKING, 1.0)) ** 2
     return GaitPose(
         roll,

@@ -12,9 +12,3 @@ def smooth(s: ArrayLike) -> Array:
     """Slow in and out without a jump of the acceleration: 6s^5 - 15s^4 + 10s^3."""
     s = np.clip(np.asarray(s, dtype=np.float64), 0.0, 1.0)
     return np.asarray(s**3 * (10.0 + s * (6.0 * s - 15.0)))
-
-
-def cubic_out(s: ArrayLike) -> Array:
-    """Fast at first: 1 - (1 - s)^3."""
-    s = np.clip(np.asarray(s, dtype=np.float64), 0.0, 1.0)
-    return np.asarray(1.0 - (1.0 - s) ** 3)

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+import numpy as np
+
 from dancetutor_cli.rig.mass import PARTS
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.rig.soles import SOLE
+
+BALL_AHEAD = 0.046  # metres by which the ball of the foot lies before the middle of the sole
+HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
+# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
+SHOE_OUTLINE = np.array(
+    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
+     (0.084, -0.034)]
+)  # fmt: skip
 
 
 def _place(skeleton: Skeleton, name: str) -> tuple[float, float, float]:

@@ -28,7 +28,6 @@ SOLE = (
     ("toe_out", "metatarsal", (0.026, 0.0, 0.160)),
 )
 SOLE_NAMES = tuple(name for name, _, _ in SOLE)
-SOLE_LENGTH = 0.242  # metres, heel to toe
 SIDES = ("l", "r")
 _PALM_REACH, _PALM_DEPTH = 0.085, 0.022  # from the wrist along the hand, and from the middle of the hand to its palm
 

@@ -20,13 +20,14 @@ from dancetutor_cli.motion.trajectory.legs import ankle_of
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.body import half_hips
 from dancetutor_cli.rig.quaternion import UP
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
 STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
 FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
-HALF_HIPS = 0.09  # metres from the middle of the pelvis to a hip
+OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
 KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
 KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 
@@ -51,9 +52,10 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
         quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
         for t, f in zip(straight, feet, strict=True)
     ]
+    poles = _knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton) + OUTSIDE)
     return Targets(
         pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
-        np.stack(soles, axis=1), np.stack(toes, axis=1), _knee_poles(yaw, feet, pelvis, ankles), hands.pull,
+        np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,
     )  # fmt: skip
 
 
@@ -64,17 +66,18 @@ def moved(targets: Targets, by: Array) -> Targets:
     return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
 
 
-def _knee_poles(yaw: Array, feet: Feet, pelvis: Array, ankles: Array) -> Array:
+def _knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float) -> Array:
     """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
 
+    legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
     In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
     """
     left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
     out = []
     for side, foot in enumerate(feet):
         outward = 1.0 if side == 0 else -1.0
-        leg = ankles[:, side] - pelvis
-        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - HALF_HIPS, -leg[:, 1])
+        leg = legs[:, side]
+        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - hips, -leg[:, 1])
         toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
         aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
         aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT

@@ -7,19 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.swing.panels import BALL_AHEAD, HALF_PANEL
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.motion.swing.timing import swung, travelled
+from dancetutor_cli.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
 
 Array = NDArray[np.float64]
-HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
 _ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
 _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
-# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
-SOLE = np.array(
-    [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
-     (0.084, -0.034)]
-)  # fmt: skip
 OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
@@ -95,7 +90,7 @@ def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
     """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
     ahead = headings(toes)
     across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
-    points = balls[:, None] + SOLE[:, :1] * ahead[:, None] + SOLE[:, 1:] * across[:, None]
+    points = balls[:, None] + SHOE_OUTLINE[:, :1] * ahead[:, None] + SHOE_OUTLINE[:, 1:] * across[:, None]
     inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + OVER
     return np.asarray(inside.any(axis=(1, 2)))
 

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.rig.body import BALL_AHEAD
+
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
-BALL_AHEAD = 0.046  # the ball of the foot lies so far before the middle of the sole
 BALL_MARGIN = 0.024  # the middle of the ball stays so far inside the panel: more than half of it presses
 NEIGHBOUR_MARGIN = 0.044  # and so far from an edge behind which there is another panel, perhaps with a mine
 

@@ -18,6 +18,8 @@ from dancetutor_cli.motion.trajectory.height import span
 from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
 from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
 from dancetutor_cli.numerics.smoothing import cubic, low_pass, sample_path
+from dancetutor_cli.rig.body import ball_to_ankle
+from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
 NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
@@ -26,7 +28,6 @@ HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
 FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
 HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
 FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
-ANKLE_BEHIND = 0.115  # metres from the ball to the ankle
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
@@ -64,7 +65,7 @@ def balanced_path(
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
     offset = sample_path(pendulum.offset, times, nodes)
-    room = _room(feet)
+    room = _room(feet, ball_to_ankle(dancer_skeleton()))
     feet = _carrying(feet)
     low, high, middle = _support(feet)
     middle = middle + hand * _sway(feet, nodes, settings.layers)
@@ -101,9 +102,9 @@ class _Wanted:
     farthest: Array
 
 
-def _room(feet: Feet) -> tuple[Array, Array]:
-    """Lowest and highest place (n, 2) of the pelvis from which both legs reach."""
-    ankles = [f.ball[:, [0, 2]] - ANKLE_BEHIND * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
+def _room(feet: Feet, back: float) -> tuple[Array, Array]:
+    """Lowest and highest place (n, 2) of the pelvis from which both legs reach; back : from ball to ankle, metres."""
+    ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     return np.maximum(*ankles) - FARTHEST, np.minimum(*ankles) + FARTHEST
 
 

@@ -9,9 +9,10 @@ from bake_plays import context
 from dancetutor_cli.motion.footwork.foothold import Spot, beside, pose
 from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.motion.swing.clearance import HALF_SHOE, SHARES, Way, detour, over
+from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, over
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
 from dancetutor_cli.motion.swing.timing import swung, travelled
+from dancetutor_cli.rig.body import HALF_SHOE
 
 APART = default_settings().step.apart
 

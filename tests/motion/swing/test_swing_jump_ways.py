@@ -9,9 +9,8 @@ from bake_plays import context
 from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.footwork.jumps import Flight, fly
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.motion.swing.clearance import HALF_SHOE
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.swing.panels import BALL_AHEAD
+from dancetutor_cli.rig.body import BALL_AHEAD, HALF_SHOE
 
 APART = default_settings().step.apart
 
