@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.bar import on_rail
 from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
-from dancetutor_cli.motion.ik.solver import ArmGoal, arm_rotations, solve
+from dancetutor_cli.motion.ik.solver import arm_rotations, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.motion.plan import Plan

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
+from dancetutor_cli.motion.ik.kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold
-from dancetutor_cli.motion.ik.solver import ArmGoal, arm_rotations
+from dancetutor_cli.motion.ik.solver import arm_rotations
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import MotionSettings

@@ -1,0 +1,288 @@
+"""The kernels of the full-body inverse kinematics: on plain arrays, grouped by what they are about."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.rig.limb import (
+    Quat,
+    Vec,
+    add,
+    cross,
+    dot,
+    length,
+    limb,
+    qbetween,
+    qconj,
+    qframe,
+    qlerp,
+    qmul,
+    qrot,
+    scale,
+    sub,
+    unit,
+)
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
+ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+PULL_LEGS = 60  # rounds of pulling the root until both legs reach
+PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
+
+
+NAMES = (
+    "HumanoidRoot", "vl5", "vt10", "vt4",
+    "l_hip", "l_knee", "l_talocrural", "l_metatarsal", "r_hip", "r_knee", "r_talocrural", "r_metatarsal",
+    "l_sternoclavicular", "l_shoulder", "l_elbow", "l_radiocarpal",
+    "r_sternoclavicular", "r_shoulder", "r_elbow", "r_radiocarpal",
+)  # fmt: skip
+# places of the names above in the index array; the legs are one after the other, and so are the arms
+VL5, VT10, VT4, LEG, ARM = (NAMES.index(n) for n in ("vl5", "vt10", "vt4", "l_hip", "l_sternoclavicular"))
+
+
+class Body(NamedTuple):
+    """What the kernels know of a skeleton: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
+
+    arm : its length; reach, follow : as in `solve`
+    """
+
+    offsets: Array
+    joints: NDArray[np.int64]
+    hinges: Array
+    arm: float
+    reach: float
+    follow: float
+
+
+class Trunk(NamedTuple):
+    """The part of `Targets` between pelvis and shoulders; the root is moved in place."""
+
+    root: Array
+    pelvis: Array
+    chest: Array
+    shoulders: Array
+
+
+class Hands(NamedTuple):
+    """The part of `Targets` that is about hands."""
+
+    wrists: Array
+    rotation: Array
+    pinned: Array
+    pull: Array
+    elbows: Array
+
+
+class Legs(NamedTuple):
+    """The part of `Targets` that is about legs."""
+
+    ankles: Array
+    soles: Array
+    toes: Array
+    knees: Array
+
+
+class ArmGoal(NamedTuple):
+    """Where one arm begins and its pinned hand shall be, in f cases.
+
+    shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
+    """
+
+    shoulders: Array
+    chest: Array
+    wrists: Array
+    hands: Array
+    elbows: Array
+
+
+def body_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Body:
+    joints = np.array([skeleton.index(name) for name in NAMES])
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[joints[ARM + k]])) for k in (2, 3))
+    return Body(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
+
+
+def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
+    """Axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
+    out = np.zeros((2, 3))
+    for side in (0, 1):
+        arm = skeleton.offsets[joints[ARM + 4 * side + 2]]
+        out[side] = np.cross(arm, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(arm, [0.0, 0.0, 1.0]))
+    return out
+
+
+@njit(cache=True, inline="always")
+def _vec(a: Array) -> Vec:
+    return (a[0], a[1], a[2])
+
+
+@njit(cache=True, inline="always")
+def _quat(a: Array) -> Quat:
+    return (a[0], a[1], a[2], a[3])
+
+
+@njit(cache=True, inline="always")
+def _put(out: Array, q: Quat) -> None:
+    out[0], out[1], out[2], out[3] = q
+
+
+@njit(cache=True)
+def _pull_root(root: Vec, turn: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
+    """Move the root as little as needed until both ankles are within reach of their hips."""
+    left, right = qrot(turn, hips[0]), qrot(turn, hips[1])
+    for _ in range(PULL_LEGS):
+        a, b = sub(ankles[0], add(root, left)), sub(ankles[1], add(root, right))
+        far_a, far_b = length(a) - reach, length(b) - reach
+        if far_a < 1e-6 and far_b < 1e-6:
+            break
+        # where both legs are too short each draws half: neither comes first
+        share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
+        if far_a > 0.0:
+            root = add(root, scale(a, share * far_a / length(a)))
+        if far_b > 0.0:
+            root = add(root, scale(b, share * far_b / length(b)))
+    return root
+
+
+@njit(cache=True)
+def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
+    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
+    p2, p3 = between
+    l1, l2, l3 = lengths
+    p4 = end
+    for _ in range(6):
+        p4 = end  # backward: from the end to the start
+        p3 = add(p4, scale(unit(sub(p3, p4)), l3))
+        p2 = add(p3, scale(unit(sub(p2, p3)), l2))
+        p2 = add(start, scale(unit(sub(p2, start)), l1))  # forward again
+        p3 = add(p2, scale(unit(sub(p3, p2)), l2))
+        p4 = add(p3, scale(unit(sub(end, p3)), l3))
+        if length(sub(p4, end)) < 1e-5:
+            break
+    return p2, p3, p4
+
+
+@njit(cache=True)
+def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
+    """Chest rotation from where its middle line and its shoulder line point."""
+    x = unit(sub(across, scale(up, dot(across, up))))
+    rest_x = (1.0, 0.0, 0.0)
+    return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
+
+
+@njit(cache=True)
+def _torso(
+    root: Vec, turn: Quat, chest: Quat, shoulders: tuple[Vec, Vec], body: Body
+) -> tuple[Quat, Quat, Quat, Vec, Vec]:
+    """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
+    offsets, joints = body.offsets, body.joints
+    left, right = shoulders
+    o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
+    lo = add(_vec(offsets[joints[ARM]]), _vec(offsets[joints[ARM + 1]]))
+    ro = add(_vec(offsets[joints[ARM + 4]]), _vec(offsets[joints[ARM + 5]]))
+    rest_mid = scale(add(lo, ro), 0.5)
+    p1 = add(root, qrot(turn, _vec(offsets[joints[VL5]])))
+    q1, q2 = qlerp(turn, chest, 0.34), qlerp(turn, chest, 0.67)
+    # a back that is pushed together always rounds backward: without this it would snap from side to side
+    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
+    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
+    middle = scale(add(left, right), 0.5)
+    p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
+    q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
+    q1 = _aim(qlerp(turn, q3, 0.34), o10, sub(p2, p1))
+    q2 = _aim(qlerp(turn, q3, 0.67), o4, sub(p3, p2))
+    return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
+
+
+@njit(cache=True, inline="always")
+def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
+    """q, swung by as little as needed so that the bone points in the direction."""
+    return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
+
+
+@njit(cache=True)
+def solve_frames(body: Body, trunk: Trunk, hands: Hands, legs: Legs, rotations: Array) -> None:
+    offsets, joints = body.offsets, body.joints
+    hips = (_vec(offsets[joints[LEG]]), _vec(offsets[joints[LEG + 4]]))
+    most = body.arm * ARM_REACH
+    for f in range(len(trunk.root)):
+        turn, chest = _quat(trunk.pelvis[f]), _quat(trunk.chest[f])
+        place, out = _vec(trunk.root[f]), rotations[f]
+        goals = (_vec(legs.ankles[f, 0]), _vec(legs.ankles[f, 1]))
+        left, right = _vec(trunk.shoulders[f, 0]), _vec(trunk.shoulders[f, 1])
+        place = _pull_root(place, turn, hips, goals, body.reach)
+        q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+        if hands.pull[f, 0] > 0.0 or hands.pull[f, 1] > 0.0:
+            for _ in range(PULL_ROUNDS):
+                gl = _excess(sl, _vec(hands.wrists[f, 0]), most, hands.pull[f, 0])
+                gr = _excess(sr, _vec(hands.wrists[f, 1]), most, hands.pull[f, 1])
+                if length(gl) + length(gr) < 1e-5:
+                    break
+                both = add(gl, gr)
+                place = _pull_root(add(place, scale(both, body.follow)), turn, hips, goals, body.reach)
+                left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
+                right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
+                q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+        trunk.root[f, 0], trunk.root[f, 1], trunk.root[f, 2] = place
+        _put(out[joints[0]], turn)
+        _put(out[joints[VL5]], qmul(qconj(turn), q1))
+        _put(out[joints[VT10]], qmul(qconj(q1), q2))
+        _put(out[joints[VT4]], qmul(qconj(q2), q3))
+        for side in range(2):
+            _arm((f, side), sl if side == 0 else sr, q3, body, hands, out)
+            _leg((f, side), add(place, qrot(turn, hips[side])), turn, body, legs, out)
+
+
+@njit(cache=True)
+def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
+    """How far a shoulder is from where its arm could reach the wrist's target."""
+    v = sub(wrist, shoulder)
+    d = length(v)
+    return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
+
+
+@njit(cache=True)
+def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, body: Body, hands: Hands, out: Array) -> None:
+    """One arm; at : frame and side."""
+    f, side = at
+    offsets, joints, base = body.offsets, body.joints, ARM + 4 * side
+    upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
+    pinned = hands.pinned[f, side]
+    most = body.arm * (0.985 + 0.0145 * pinned)
+    reach = sub(_vec(hands.wrists[f, side]), shoulder)
+    world, bend = limb(upper, lower, _vec(body.hinges[side]), reach, _vec(hands.elbows[f, side]), most)
+    _put(out[joints[base + 1]], qmul(qconj(chest), world))
+    _put(out[joints[base + 2]], bend)
+    forearm = qmul(world, bend)
+    free = (1.0, 0.0, 0.0, 0.0)
+    pin = qmul(qconj(forearm), _quat(hands.rotation[f, side]))
+    _put(out[joints[base + 3]], qlerp(free, pin, pinned) if pinned > 0.0 else free)
+
+
+@njit(cache=True)
+def _leg(at: tuple[int, int], hip: Vec, turn: Quat, body: Body, legs: Legs, out: Array) -> None:
+    """One leg; at : frame and side."""
+    f, side = at
+    offsets, joints, base = body.offsets, body.joints, LEG + 4 * side
+    upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
+    reach = sub(_vec(legs.ankles[f, side]), hip)
+    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(legs.knees[f, side]), body.reach + 1e-5)
+    shank, foot = qmul(world, bend), _quat(legs.soles[f, side])
+    _put(out[joints[base]], qmul(qconj(turn), world))
+    _put(out[joints[base + 1]], bend)
+    _put(out[joints[base + 2]], qmul(qconj(shank), foot))
+    _put(out[joints[base + 3]], qmul(qconj(foot), _quat(legs.toes[f, side])))
+
+
+@njit(cache=True)
+def one_arm(body: Body, side: int, goal: ArmGoal, out: Array) -> None:
+    hands = Hands(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
+    for f in range(len(goal.shoulders)):
+        hands.wrists[0, side] = goal.wrists[f]
+        hands.rotation[0, side] = goal.hands[f]
+        hands.elbows[0, side] = goal.elbows[f]
+        _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), body, hands, out[f])
