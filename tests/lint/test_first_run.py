@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -117,3 +118,14 @@ def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.Monkey
     preset = load_preset("itg")
     solve_chart(song.charts[0], preset)
     assert compiled.is_compiled(preset)
+
+
+def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> None:
+    """A kernel module that is forgotten would leave old machine code in use after an edit."""
+    room = Path(compiled.__file__).parent
+    imports = re.compile(r"^from dancetutor_cli\.play(?:\.(\w+))? import (\w+)", re.MULTILINE)
+    wanted = {path.stem for path in room.glob("*.py") if "from dancetutor_cli.play.jit import njit" in path.read_text()}
+    assert {"kernel", "explore"} <= wanted
+    for name in list(wanted):
+        wanted |= {module or first for module, first in imports.findall((room / f"{name}.py").read_text())}
+    assert wanted - {"jit", "compiled"} == set(compiled._SOURCES)
