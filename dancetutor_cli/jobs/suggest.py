@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.lint.settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play import Play, Rows, StepKind, solve
+from dancetutor_cli.play.engine import engine_for
 from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.play.solver import forced_limbs
 
 # What can be mended by moving a note: doublestep, spin, jump-spin, ambiguous start, triple step.
 MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
 _AROUND = (0, -1, 1)  # rows in which a note may be moved, nearest first
+
+
+_Place = tuple[str, float | None]  # rule and beat of a finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +40,65 @@ def with_suggestions(
     """The findings, those that one moved note would remove with the edit in words. The chart is not changed."""
     if subject.play is None or subject.pad is None:
         return tuple(findings)
-    before = _places(findings)
+    trial = _Trial(subject, _of_families(settings), preset, _places(findings))
     told: list[Finding] = []
     for finding in findings:
-        best: tuple[int, str] | None = None
-        for edit in _edits(finding, subject.play, subject.chart) if finding.rule in MENDABLE else ():
-            play = solve(_edited(subject.play.rows, edit), subject.pad, preset, subject.overrides, margins=True)
-            found = _places(check_chart(replace(subject, play=play), settings))
-            mended = (finding.rule, finding.beat) not in found and found <= before
-            if mended and (best is None or play.total < best[0]):
-                best = play.total, _in_words(edit, subject)
-        told.append(finding if best is None else replace(finding, suggestion=best[1]))
+        edits = _edits(finding, subject.play, subject.chart) if finding.rule in MENDABLE else ()
+        best = trial.best(edits, (finding.rule, finding.beat))
+        told.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(told)
 
 
-def _places(findings: Sequence[Finding]) -> set[tuple[str, float | None]]:
+def _of_families(settings: Settings) -> Settings:
+    """The settings without the rules that no edit is asked about."""
+    others = frozenset(code for code in all_rules() if not code.startswith(_FAMILIES))
+    return settings.with_layer(Layer(ignore=others))
+
+
+@dataclass
+class _Trial:
+    """Tries edits of a chart, each once: findings beside each other ask for the same ones. before : what was found"""
+
+    subject: ChartSubject
+    settings: Settings
+    preset: Preset
+    before: set[_Place]
+    _totals: dict[_Edit, int] = field(default_factory=dict)
+    _found: dict[_Edit, set[_Place]] = field(default_factory=dict)
+
+    def best(self, edits: Iterable[_Edit], place: _Place) -> _Edit | None:
+        """The edit with the cheapest play that is cheaper than now, lacks the finding at a place, and brings no other.
+
+        The cost of all comes first, which is quickly found; the rules look at the cheapest only, until one will do.
+        """
+        assert self.subject.play is not None
+        for edit in sorted(edits, key=self._total):
+            if self._total(edit) >= self.subject.play.total:
+                return None
+            if edit not in self._found:
+                self._found[edit] = self._places_after(edit)
+            if place not in self._found[edit] and self._found[edit] <= self.before:
+                return edit
+        return None
+
+    def _total(self, edit: _Edit) -> int:
+        if edit not in self._totals:
+            play, pad = self.subject.play, self.subject.pad
+            assert play is not None and pad is not None
+            rows, engine = _edited(play.rows, edit), engine_for(pad, self.preset)
+            found = engine.cheapest(rows, forced_limbs(rows, self.subject.overrides))
+            self._totals[edit] = int(engine.price(rows, found).sum())
+        return self._totals[edit]
+
+    def _places_after(self, edit: _Edit) -> set[_Place]:
+        subject = self.subject
+        assert subject.play is not None and subject.pad is not None
+        rows = _edited(subject.play.rows, edit)
+        play = solve(rows, subject.pad, self.preset, subject.overrides, margins=True)
+        return _places(check_chart(replace(subject, play=play), self.settings))
+
+
+def _places(findings: Sequence[Finding]) -> set[_Place]:
     return {(finding.rule, finding.beat) for finding in findings if finding.rule.startswith(_FAMILIES)}
 
 

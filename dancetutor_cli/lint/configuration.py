@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -139,7 +140,7 @@ def _worded(value: object) -> str:
 
 def _located(source: str | Path) -> Path:
     path = Path(source)
-    if path.exists() or path.suffix:
+    if path.suffix or os.path.lexists(path):  # Path.exists may raise
         return path
     named = config_path(f"lint/{source}.yaml")
     if not named.is_file():

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.bounded import leads_out
+from dancetutor_cli.bounded import is_regular, leads_out
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
@@ -87,7 +87,7 @@ def load_preset(name_or_path: str | Path, *, confined: bool = False) -> Preset:
     if text in preset_names():
         return _load(config_path(f"presets/{text}.yaml"), (), confined)
     path = Path(name_or_path)
-    if path.suffix.lower() in (".yaml", ".yml") or path.is_file():
+    if path.suffix.lower() in (".yaml", ".yml") or is_regular(path):
         return _load(path, (), confined)
     near = did_you_mean(text, preset_names())
     raise UsageError(f"there is no preset '{text}'{near}; there are: {', '.join(preset_names())}, or give a .yaml file")
@@ -129,7 +129,7 @@ def _base(source: MarkedYaml, seen: tuple[Path, ...], confined: bool) -> Preset 
         raise _wrong(source, ("extends",), f"'{name}' extends itself")
     if confined and path == beside and leads_out(path, source.path.parent):
         raise _wrong(source, ("extends",), "'extends' leads out of the folder of this file; put it beside it")
-    if not path.is_file():
+    if not is_regular(path):
         raise _wrong(
             source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"
         )

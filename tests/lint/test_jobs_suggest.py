@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 from dancetutor_cli.chart import parse
 from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.jobs.presets import PresetChoice
@@ -29,7 +31,8 @@ def analysed(rows: list[str], folder: Path, *, suggest: bool = True) -> FileResu
 
 
 def test_the_suggested_edit_removes_the_finding_and_brings_no_other(tmp_path: Path) -> None:
-    before = analysed(SPIN, tmp_path).charts[0].findings
+    first = analysed(SPIN, tmp_path).charts[0]
+    before = first.findings
     spins = [finding for finding in before if finding.rule == "DT202"]
     assert len(spins) == 1 and spins[0].suggestion
     beat, away, to = re.fullmatch(r"move the note on beat (\S+) from (\w+) to (\w+)", spins[0].suggestion).groups()
@@ -37,7 +40,9 @@ def test_the_suggested_edit_removes_the_finding_and_brings_no_other(tmp_path: Pa
     cells = list(SPIN[row])
     assert cells[PANELS.index(away)] == "1" and cells[PANELS.index(to)] == "0"
     cells[PANELS.index(away)], cells[PANELS.index(to)] = "0", "1"
-    after = analysed([*SPIN[:row], "".join(cells), *SPIN[row + 1 :]], tmp_path).charts[0].findings
+    edited = analysed([*SPIN[:row], "".join(cells), *SPIN[row + 1 :]], tmp_path).charts[0]
+    after = edited.findings
+    assert edited.cost < first.cost  # "better" is better
     assert "DT202" not in [finding.rule for finding in after]
     assert {f.rule for f in after} <= {f.rule for f in before}
 
@@ -61,3 +66,22 @@ def test_nothing_is_suggested_unless_asked(tmp_path: Path) -> None:
 def test_the_file_stays_as_it_is(tmp_path: Path) -> None:
     analysed(SPIN, tmp_path)
     assert "\n".join(SPIN) in (tmp_path / "x.sm").read_text()
+
+
+def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """--suggest cost 19 times the run, for every edit of every finding was solved and checked whole."""
+    from dancetutor_cli.jobs import suggest
+
+    tried: list[object] = []
+    checked: list[object] = []
+    edited, places_after = suggest._edited, suggest._Trial._places_after
+    monkeypatch.setattr(suggest, "_edited", lambda rows, edit: (tried.append(edit), edited(rows, edit))[1])
+    monkeypatch.setattr(
+        suggest._Trial, "_places_after", lambda self, edit: (checked.append(edit), places_after(self, edit))[1]
+    )
+    result = analysed([*SPIN, *SPIN, *SPIN, *SPIN], tmp_path)
+    assert sum(finding.suggestion is not None for finding, _ in result.all_findings()) >= 2
+    assert len(checked) == len(set(checked)) < len(set(tried)) / 2
+    assert len(tried) == len(set(tried)) + len(checked)
