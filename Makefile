@@ -10,7 +10,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help page-tools setup setup-dev demo test lint bench motion-report character clean
+.PHONY: help page-tools setup setup-dev demo test lint bench fit motion-report character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -20,6 +20,7 @@ help:
 	@echo "make kill-test  end annotate, render and analyze at KILLS=300 random moments; nothing may be lost"
 	@echo "make bench   measure speed; print a table"
 	@echo "make motion-report  the quality of the motion on 40 charts (COUNT=400: more); a table in build/"
+	@echo "make fit     fit the presets itg and pump to labelled feet; the table of all sets, by method"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
@@ -78,6 +79,9 @@ fuzz: setup-dev
 KILLS ?= 300
 kill-test: setup-dev
 	@$(BIN)/python tools/kill_test.py --count $(KILLS)
+
+fit: setup-dev
+	@$(BIN)/python tools/fit_weights.py $(FIT_ARGS)
 
 COUNT ?= 40
 motion-report: setup-dev

@@ -126,7 +126,7 @@ def document() -> dict[str, Any]:
 
 class TestJson:
     CHART_KEYS = ["index", "steps_type", "difficulty", "meter", "description", "cost", "rows", "findings"]
-    ROW_KEYS = ["beat", "measure", "second", "line", "steps", "feet", "facing", "moves", "cost", "margin"]
+    ROW_KEYS = ["beat", "measure", "second", "line", "steps", "feet", "facing", "moves", "cost", "margin", "confidence"]
     FINDING_KEYS = ["rule", "name", "severity", "beat", "measure", "second", "line", "column", "message", "margin"]
 
     def test_keys_stand_in_the_documented_order(self, document: dict[str, Any]) -> None:
@@ -238,7 +238,7 @@ def test_the_baseline_hides_what_was_there(faulty: Path, monkeypatch: pytest.Mon
     faulty.write_text(HELD.replace("11111111", "10001000\n11111111"))  # the row moves, and so does the finding
     result = run(faulty, "--baseline", "known.json")
     assert status(result) == 1
-    assert "1 entry is no longer needed (the first: held.sm dance-double Hard C DT301 beat 0)" in result.stderr
+    assert "2 entries are no longer needed (the first: held.sm dance-double Hard C DT213 beat 0)" in result.stderr
 
 
 def test_quiet_leaves_infos_and_clean_charts_out(faulty: Path) -> None:

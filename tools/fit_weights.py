@@ -1,205 +1,200 @@
-#!/usr/bin/env python3
-"""Fit the weights of a preset to feet that people have written down, by coordinate search.
+"""Fits the presets itg and pump to the labelled feet, and shows how well that does on songs that a fit has not seen.
 
-usage: tools/fit_weights.py LABELS_DIR [--preset NAME|FILE] [--only WEIGHT ...] [--rounds N] [--leave-one-out]
-                            [--out FILE]
-e.g.   tools/fit_weights.py ../shared/data/feet --preset tools/peer_weights.yaml --leave-one-out
-
-LABELS_DIR holds the charts and labels.json, a list of
-  {"name": "mine", "kind": "song", "chart": "song.sm", "steps_type": "dance-single", "difficulty": "Hard",
-   "rows": [{"beat": 4.0, "feet": {"0": "L", "3": "R"}}, ...]}
-with the foot of each column, `?` where nobody knows; kinds are counted apart. One weight at a time is made smaller and
-larger; what lowers the loss stays. The loss of a row is 1 where a labelled foot is
-wrong; where all are right it is up to 0.1 if the row's margin is small, so that weights settle where nothing is close.
-A pull towards the preset's own weights keeps those that no label speaks about. The result is a preset that extends the
-first one. With --leave-one-out each chart in turn is left out of the fit and then scored with what the others gave;
-start that from weights which have not seen the labels, such as tools/peer_weights.yaml.
+fit_weights.py                  the table, by method, and the presets are written (`make fit`)
+fit_weights.py --dry-run        the table alone
+fit_weights.py --pins SONG.ssc ... --preset itg --out mine.yaml
+                                a preset of one's own from the feet that an author has pinned
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import math
+import re
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import feet_data
 import numpy as np
+from feet_confidence import calibrated, chart_of_calibration, reliability
+from feet_data import Labelled
+from feet_fit import Floats, Share, fitted, likelihood, part, perceptron, shares, vector
+from feet_lattice import CURVES, WEIGHTS
+from numpy.typing import NDArray
 
-from dancetutor_cli import chart as reader
 from dancetutor_cli import play
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play import Preset, Rows
-from dancetutor_cli.play.preset import MAX_WEIGHT
+from dancetutor_cli.play import Preset
 
-STEPS = (0.1, 0.3, 0.6, 0.8, 1.25, 1.6, 3.0)  # what a weight is multiplied by
-MORE = (25, 100)  # and what is added, so that a weight can come up from nothing
-SURE = 100  # a margin from here on is as good as any other
-CLOSE = 0.1  # loss of a right row without any margin
-PULL = 0.02  # loss of a weight that is twice or half of what it was
+HERE = Path(__file__).resolve().parent
+PRESETS = HERE.parent / "configs" / "presets"
+DOCS = HERE.parent / "docs"
+LABEL, CONSENSUS = 20.0, 0.05  # what a row of a label counts beside one that two programs agree on
+EVERY = 3  # of so many charts of the consensus one is looked at: they are many, and much alike
+FOLDS = {"itg": 4, "pump": 5}
+ROUNDS = 200  # of a fit from nothing; a fold begins where the fit of all ended
+ROUNDS_OF_A_FOLD = 50
+OWN_PULL = 300.0  # an author's pins are few: weights stay where they are unless many pins say otherwise
 
 
 @dataclass(frozen=True)
-class Labelled:
-    """A chart whose feet are known. rows, columns, feet: one entry for each labelled step, feet 0 left and 1 right."""
+class Task:
+    """What one preset is fitted to. judged : what it is scored on; guard : rows that only keep it from drifting."""
 
-    name: str
-    kind: str
-    rows: Rows
-    pad: Pad
-    row: np.ndarray
-    column: np.ndarray
-    foot: np.ndarray
+    preset: str
+    judged: list[Labelled]
+    guard: list[Labelled]
 
 
-def load_labels(folder: Path) -> list[Labelled]:
-    """Every chart of labels.json; rows with an unknown foot are left out."""
-    return [one_label(folder, label) for label in json.loads((folder / "labels.json").read_text(encoding="utf-8"))]
-
-
-def one_label(folder: Path, label: dict) -> Labelled:  # type: ignore[type-arg]
-    charts = reader.load(folder / label["chart"]).charts
-    chart = next(c for c in charts if (c.steps_type, c.difficulty) == (label["steps_type"], label["difficulty"]))
-    pad = load_pad(chart.steps_type)
-    if pad is None:
-        sys.exit(f"{label['chart']}: no pad for {chart.steps_type}")
-    rows = play.prepare(chart, pad)
-    row_of = {tick: row for row, tick in enumerate(rows.tick.tolist())}
-    if missing := [e["beat"] for e in label["rows"] if round(e["beat"] * TICKS_PER_BEAT) not in row_of]:
-        sys.exit(f"{label['chart']}: nothing is stepped at beat {missing[0]}")
-    cells = [
-        (row_of[round(entry["beat"] * TICKS_PER_BEAT)], int(column), "LR".index(foot))
-        for entry in label["rows"]
-        if "?" not in entry["feet"].values()
-        for column, foot in entry["feet"].items()
+def tasks() -> list[Task]:
+    """Both presets and their labels."""
+    return [
+        Task("itg", feet_data.load_dance(), feet_data.load_consensus(EVERY)),
+        Task("pump", feet_data.load_pump(), []),
     ]
-    row, column, foot = np.array(cells, dtype=np.int64).reshape(-1, 3).T
-    return Labelled(label["name"], label["kind"], rows, pad, row, column, foot)
 
 
-def right_rows(label: Labelled, preset: Preset) -> tuple[np.ndarray, np.ndarray]:
-    """For each labelled row whether all its feet are right, and its margin."""
-    found = play.solve(label.rows, label.pad, preset)
-    assert found.margin is not None
-    wrong = np.zeros(len(label.rows), dtype=bool)
-    np.logical_or.at(wrong, label.row, found.limb[label.row, label.column] != label.foot)
-    rows = np.unique(label.row)
-    return ~wrong[rows], found.margin[rows]
+def start_of(preset: Preset) -> Floats:
+    """Where every fit begins, whatever the preset says today: all things cost much the same."""
+    weights = dict.fromkeys(WEIGHTS, 50)
+    return vector(preset.with_values(weights=weights, curves=dict.fromkeys(CURVES, ((0, 50),))))
 
 
-class Losses:
-    """The loss of every label by weights, each solved once: fits that leave one label out ask for much the same."""
-
-    def __init__(self, labels: list[Labelled], home: Preset) -> None:
-        self.labels, self.home = labels, home
-        self._known: dict[tuple[int, tuple[tuple[str, int], ...]], float] = {}
-
-    def of(self, label: int, preset: Preset) -> float:
-        """Loss of all rows of one label."""
-        key = label, preset.weights
-        if key not in self._known:
-            right, margin = right_rows(self.labels[label], preset)
-            close = np.where(margin < 0, 0.0, 1.0 - np.minimum(margin, SURE) / SURE)
-            self._known[key] = float(np.where(right, CLOSE * close, 1.0).sum())
-        return self._known[key]
-
-    def pull(self, preset: Preset) -> float:
-        """What it costs that weights are not those of `home`."""
-        pairs = zip(preset.weights, self.home.weights, strict=True)
-        return PULL * sum(abs(math.log2((new + 1) / (old + 1))) for (_, new), (_, old) in pairs)
-
-    def total(self, labels: list[int], preset: Preset, enough: float = math.inf) -> float:
-        """Loss of labels and pull; given up, but still larger than `enough`, as soon as it is."""
-        total = self.pull(preset)
-        for label in labels:
-            if total >= enough:
-                break
-            total += self.of(label, preset)
-        return total
+def mixed(whole: Sequence[Share], task: Task, keep: set[str]) -> list[Share]:
+    """The judged charts with some names, and the guard."""
+    guard = part(whole, {label.name for label in task.guard}, CONSENSUS)
+    return [*part(whole, keep, LABEL if guard else 1.0), *guard]
 
 
-def fit(losses: Losses, labels: list[int], names: list[str], rounds: int) -> Preset:
-    """The best preset for some labels that coordinate search finds."""
-    best = losses.home
-    least = losses.total(labels, best)
-    for _ in range(rounds):
-        before = least
-        for name in names:
-            value = best.weight(name)
-            tried = [max(1, round(value * step)) for step in STEPS] + [value + more for more in MORE]
-            for new in tried:
-                changed = best.with_values(weights={name: min(new, MAX_WEIGHT)})
-                found = losses.total(labels, changed, least)
-                if found < least - 1e-9:
-                    best, least = changed, found
-        if least == before:
-            break
-    return best
+Outcome = list[tuple[Labelled, NDArray[np.bool_], NDArray[np.int64]]]  # chart, right rows, their margins
 
 
-def score(labels: list[Labelled], preset: Preset) -> dict[str, tuple[int, int]]:
-    """Right rows and rows by kind."""
-    out: dict[str, tuple[int, int]] = {}
+def outcome(labels: Sequence[Labelled], preset: Preset) -> Outcome:
+    """What a preset makes of charts, by the solver that the program uses."""
+    out = []
     for label in labels:
-        right, _ = right_rows(label, preset)
-        good, count = out.get(label.kind, (0, 0))
-        out[label.kind] = (good + int(right.sum()), count + len(right))
+        right, found = feet_data.right_rows(label, preset, margins=True)
+        assert found.margin is not None
+        out.append((label, right, found.margin[np.unique(label.row)]))
     return out
 
 
-def show(title: str, scores: dict[str, tuple[int, int]]) -> None:
-    """One line for people."""
-    print(title, ", ".join(f"{kind} {a}/{b} = {100 * a / max(b, 1):.2f} %" for kind, (a, b) in sorted(scores.items())))
+def cross_validated(task: Task, method: str, home: Preset) -> Outcome:
+    """Every judged chart scored by a fit that has not seen its song."""
+    whole = shares([*task.judged, *task.guard], home)
+    fold, found = feet_data.folds(task.judged, FOLDS[task.preset]), start_of(home)
+    if method == "likelihood":  # one fit of all, from which those of the folds are near
+        found = likelihood(found, mixed(whole, task, {label.name for label in task.judged}), ROUNDS)
+    out: Outcome = []
+    for number in range(FOLDS[task.preset]):
+        seen = {label.name for label, own in zip(task.judged, fold, strict=True) if own != number}
+        data = mixed(whole, task, seen)
+        begun = start_of(home)
+        preset = fitted(
+            home,
+            perceptron(begun, data) if method == "perceptron" else likelihood(found, data, ROUNDS_OF_A_FOLD),
+        )
+        out += outcome([x for x, own in zip(task.judged, fold, strict=True) if own == number], preset)
+    return out
 
 
-def leave_one_out(
-    losses: Losses, names: list[str], rounds: int, tell: Callable[[str, dict[str, tuple[int, int]]], None]
-) -> dict[str, tuple[int, int]]:
-    """Score each chart with a fit on the others: right rows and rows by kind."""
-    total: dict[str, tuple[int, int]] = {}
-    for number, label in enumerate(losses.labels):
-        others = [other for other in range(len(losses.labels)) if other != number]
-        found = score([label], fit(losses, others, names, rounds))
-        tell(f"  without {label.name}:", found)
-        for kind, (a, b) in found.items():
-            good, count = total.get(kind, (0, 0))
-            total[kind] = (good + a, count + b)
-    return total
+def percent(results: Outcome) -> dict[str, tuple[int, int]]:
+    """Right rows and rows by kind."""
+    out: dict[str, tuple[int, int]] = {}
+    for label, right, _ in results:
+        good, rows = out.get(label.kind, (0, 0))
+        out[label.kind] = (good + int(right.sum()), rows + len(right))
+    return out
 
 
-def written(preset: Preset, home: Preset, source: str) -> str:
-    """The YAML of a preset that extends another."""
-    changed = [(n, v) for (n, v), (_, old) in zip(preset.weights, home.weights, strict=True) if v != old]
-    return "\n".join([f"extends: {source}", "weights:", *(f"  {name}: {value}" for name, value in changed), ""])
+def told(title: str, results: Outcome) -> None:
+    """One line of the table."""
+    cells = [f"{kind} {100 * a / b:.2f} % of {b:,}" for kind, (a, b) in sorted(percent(results).items())]
+    print(f"  {title:<42}", "; ".join(cells), flush=True)
+
+
+def refreshed(text: str, preset: Preset, confidence: dict[int, int] | None) -> str:
+    """The YAML of a preset with other numbers; its comments stay."""
+    for name, value in preset.weights:
+        text = re.sub(rf"(?m)^(  {name}: )\d+", rf"\g<1>{value}", text)
+    for name, curve in preset.curves:
+        knots = ", ".join(f"{ms}: {cost}" for ms, cost in curve)
+        text = re.sub(rf"(?m)^(  {name}: )\{{.*?\}}", rf"\g<1>{{{knots}}}", text)
+    if confidence is not None:
+        knots = ", ".join(f"{margin}: {value}" for margin, value in confidence.items())
+        text = re.sub(r"(?m)^(confidence: )\{.*?\}", rf"\g<1>{{{knots}}}", text)
+    return text
+
+
+def own_preset(pins: Sequence[Labelled], home: Preset, source: str) -> str:
+    """The YAML of a preset that extends another by what an author's pins say."""
+    before = vector(home)
+    after = likelihood(before, shares(pins, home), pull=OWN_PULL, home=before)
+    new, old = fitted(home, after), fitted(home, before)
+    weights = [f"  {name}: {a}" for (name, a), (_, b) in zip(new.weights, old.weights, strict=True) if a != b]
+    curves = [
+        f"  {name}: {{{', '.join(f'{ms}: {cost}' for ms, cost in a)}}}"
+        for (name, a), (_, b) in zip(new.curves, old.curves, strict=True)
+        if a != b
+    ]
+    groups = (["weights:", *weights] if weights else []) + (["curves:", *curves] if curves else [])
+    told(f"{source}, pinned rows", outcome(pins, home))
+    told("with the new preset", outcome(pins, new))
+    return "\n".join([f"extends: {source}", *groups, ""])
+
+
+def fit_all(write: bool, only: str | None) -> None:
+    """The table, and the presets."""
+    for task in tasks():
+        if only not in (None, task.preset):
+            continue
+        home, began = play.load_preset(task.preset), time.process_time()
+        print(f"{task.preset}: rows right")
+        told("before, the preset as it is", outcome(task.judged, home))
+        held_out = cross_validated(task, "likelihood", home)
+        told("likelihood, songs not seen", held_out)
+        whole = shares([*task.judged, *task.guard], home)
+        names = {label.name for label in task.judged}
+        preset = fitted(home, likelihood(start_of(home), mixed(whole, task, names), ROUNDS))
+        told("likelihood, fitted to all of it", outcome(task.judged, preset))
+        if task.guard:
+            told("the same, on the consensus", outcome(task.guard, preset))
+        confidence = calibrated(held_out)
+        table = reliability(held_out, feet_data.folds)
+        print("  confidence on folds not calibrated with (said, right, rows):")
+        print("   ", "; ".join(f"{said:.1f} {right:.1f} {rows:,}" for said, right, rows in table), flush=True)
+        if write:
+            path = PRESETS / f"{task.preset}.yaml"
+            path.write_text(refreshed(path.read_text(encoding="utf-8"), preset, confidence), encoding="utf-8")
+            DOCS.mkdir(exist_ok=True)
+            picture = chart_of_calibration(task.preset, table)
+            (DOCS / f"calibration-{task.preset}.svg").write_text(picture, encoding="utf-8")
+        told("perceptron, songs not seen", cross_validated(task, "perceptron", home))
+        print(f"  {time.process_time() - began:.0f} s of processor time", flush=True)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Fit the weights of a preset to labelled charts.")
-    parser.add_argument("labels", type=Path)
-    parser.add_argument("--preset", default="itg", help="where the search starts, and what the result extends")
-    parser.add_argument("--only", nargs="+", metavar="WEIGHT", help="weights to change; default: all")
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--leave-one-out", action="store_true")
-    parser.add_argument("--out", type=Path)
+    parser = argparse.ArgumentParser(description="Fit the weights of the presets to labelled feet.")
+    parser.add_argument("--dry-run", action="store_true", help="print the table, write nothing")
+    parser.add_argument("--only", choices=FOLDS, help="one of the presets")
+    parser.add_argument("--pins", nargs="+", type=Path, metavar="FILE", help="chart files with an author's pins")
+    parser.add_argument("--preset", default="itg", help="what the author's preset extends")
+    parser.add_argument("--out", type=Path, help="the author's preset")
     arguments = parser.parse_args()
-    home = play.load_preset(arguments.preset)
-    names = arguments.only or [name for name, _ in home.weights]
-    if unknown := set(names) - {name for name, _ in home.weights}:
-        sys.exit(f"no weight {', '.join(sorted(unknown))}; there are: {', '.join(n for n, _ in home.weights)}")
-    labels = load_labels(arguments.labels)
-    show("before:", score(labels, home))
-    labels.sort(key=lambda label: len(label.rows))  # short ones first: they tell soonest that weights are no good
-    losses = Losses(labels, home)
-    best = fit(losses, list(range(len(labels))), names, arguments.rounds)
-    show("fitted:", score(labels, best))
-    print(written(best, home, arguments.preset))
+    if not arguments.pins:
+        if not (feet_data.FEET / "labels.json").is_file():
+            sys.exit("there are no labels in ../shared/data/feet: nothing to fit to")
+        fit_all(write=not arguments.dry_run, only=arguments.only)
+        return
+    pins = feet_data.load_pins(arguments.pins)
+    if not pins:
+        sys.exit("no feet are pinned in these files; see `dancetutor annotate --help` for pins")
+    text = own_preset(pins, play.load_preset(arguments.preset), arguments.preset)
     if arguments.out:
-        arguments.out.write_text(written(best, home, arguments.preset), encoding="utf-8")
-    if arguments.leave_one_out:
-        show("left out in turn:", leave_one_out(losses, names, arguments.rounds, show))
+        arguments.out.write_text(text, encoding="utf-8")
+    else:
+        print(text, end="")
 
 
 if __name__ == "__main__":

@@ -52,9 +52,12 @@ def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
         if "forced-doublestep" in names:
             stepping = 0 if (play.limb[row] == Limb.LEFT_FOOT).any() else 1
             other = 1 - stepping
-            if other not in holds:
-                holds[other] = np.flatnonzero(_HELD[play.rows.steps] & (play.limb == other))
-            out.append(_holder(row, holds[other], len(pad)))
+            for foot in range(2):
+                if foot not in holds:
+                    holds[foot] = np.flatnonzero(_HELD[play.rows.steps] & (play.limb == foot))
+            found = [_holder(row, holds[foot], len(pad)) for foot in (other, stepping)]  # or a bracket on its own hold
+            lasting = [one for one in found if _lasts(play.rows, one)]
+            out.append(lasting[0] if lasting else Blame(row, True, "pattern"))
         elif "doublestep" in names:
             out.append(_culprit(play, row, engine))
     return tuple(out)
@@ -67,6 +70,14 @@ def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
         return Blame(row, True, "pattern")
     at = int(holds[before]) // columns
     return Blame(row, True, "hold", at, int(holds[holds.searchsorted(at * columns)]) % columns)
+
+
+def _lasts(rows: Rows, held: Blame) -> bool:
+    """Whether a hold went on after the row before the doublestep; nobody knows it of a roll, which goes on by taps."""
+    if held.cause != "hold":
+        return False
+    end = int(rows.hold_end[held.cause_row, held.cause_column])
+    return end < 0 or end > int(rows.tick[max(held.row - 2, 0)])
 
 
 def _culprit(play: Play, row: int, engine: Engine) -> Blame:

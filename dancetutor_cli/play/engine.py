@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import store
+from dancetutor_cli.play.curves import curve_table
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
 from dancetutor_cli.play.jit import INTERPRETED
 from dancetutor_cli.play.kernel import PRICE, run
@@ -40,7 +41,7 @@ class Engine:
         self._explore = _EXPLORERS[preset.model]
         self._rules = Rules(
             np.array([value for _, value in preset.weights], dtype=np.int64),
-            np.array([value for _, value in preset.times], dtype=np.int64),
+            curve_table(preset),
             np.array([value for _, value in preset.switches], dtype=np.bool_),
             np.array(pad.home, dtype=np.int64),
         )

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.state import LAST, LEFT_HELD, LEFT_LIFTED, SIDE, turn
-from dancetutor_cli.play.tables import EPSILON, LEFT, RIGHT
+from dancetutor_cli.play.tables import DISTANCE_UNIT, EPSILON, LEFT, RIGHT
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES
+from dancetutor_cli.play.vocabulary import MODELS
 
 (
-    DOUBLESTEP, FAST_JACK, FOOTSWITCH, SLOW_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET, SLOW_BRACKET,
-    FAST_JUMP, CROSSOVER, CROSSOVER_START, CROSSOVER_BACK, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180,
-    FACING, DISTANCE, STRETCH, TWISTED, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, UNPLAYABLE, RESTED_DOUBLESTEP,
-    MARKED_DOUBLESTEP, RELEASED_DOUBLESTEP, MARKED_FOOTSWITCH,
-) = range(32)  # fmt: skip
+    MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
+    BRACKET_OUT_BACK, BRACKET_ASIDE, TWISTED, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING,
+    FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, UNPLAYABLE,
+) = range(len(MODELS["itg"].weights))  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
     EVENT_HALF, EVENT_FULL, EVENT_FRONT, EVENT_BACK, EVENT_SPIN, EVENT_DOUBLESTEP, EVENT_FORCED, EVENT_JUMP_FOOTSWITCH,
@@ -33,11 +33,15 @@ _SWITCH = tuple(  # by the arrow of the panel
     _BIT[name] for name in ("footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right", "footswitch")
 )
 
-# facts that cost by time, packed: distance in 1/20 panels 0..1023, then bits
+# facts that cost by time, packed: distance in 1/20 panels 0..1023, then a bit for each curve
 _DISTANCE_BITS = 10
-_F_DOUBLESTEP, _F_MARKED, _F_RELEASED, _F_JACK, _F_SWITCH, _F_BRACKET, _F_JUMP = (
-    1 << _DISTANCE_BITS + i for i in range(7)
-)
+_WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
+(
+    _F_DOUBLESTEP, _F_NEAR, _F_RELEASED, _F_FREED, _F_EARLY_FREED, _F_FORCED, _F_GROWN, _F_JACK, _F_SWITCH, _F_BRACKET,
+    _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_CROSSOVER, _F_CROSSOVER_START,
+) = (1 << _DISTANCE_BITS + i for i in range(_CURVES - 1))  # fmt: skip
+_ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner leaps
+_WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 
 @njit
@@ -57,24 +61,30 @@ def held_by(s, foot, g):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def charge_feet(before, s, pressed, released, terms, g, w):  # type: ignore[no-untyped-def]
-    """What the feet of a row cost, not counting the pose. `pressed` : bits of left and right. Facts and events."""
+def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+    """What the feet of a row cost, not counting the pose. Facts and events.
+
+    pressed : bits of left and right; ended : bits of panels whose holds ended just now, since the last row, and in the
+        very moment of the last row
+    """
     left, right = pressed[0], pressed[1]
-    facts = events = distance = 0
+    facts = events = distance = brackets = 0
     for foot in range(2):
         if not pressed[foot]:
             continue
-        distance += g.distance[before[foot], s[foot]]
+        way = int(g.distance[before[foot], s[foot]])
+        distance += way
+        terms[LEAP] += w[LEAP] * max(0, way - _ANKLE) // DISTANCE_UNIT
         if g.panels[s[foot], foot, 1] >= 0:
-            terms[BRACKET] += w[BRACKET]
-            facts |= _F_BRACKET
+            brackets += 1
             events |= EVENT_BRACKET
+            _charge_direction(s, foot, terms, g, w)
         old = mask_of(before[foot], foot, g)
-        if released & old and pressed[foot] & ~old:
+        if ended[0] & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
     if left and right:
         events |= EVENT_JUMP
-        facts |= _F_JUMP
+        facts |= _F_BRACKET_JUMP if brackets else _F_JUMP
         for foot in range(2):
             old, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
             if old & pressed[1 - foot] & ~other and not old & pressed[foot] and not before[LEFT_HELD + foot]:
@@ -82,46 +92,88 @@ def charge_feet(before, s, pressed, released, terms, g, w):  # type: ignore[no-u
                 events |= EVENT_JUMP_FOOTSWITCH
     elif left or right:
         foot = 0 if left else 1
-        more, happened = _charge_step(before, foot, pressed[foot], released, terms, g, w)
+        if brackets:
+            holds = before[LEFT_HELD + foot] and not before[LEFT_HELD + 1 - foot]
+            facts |= _F_HELD_BRACKET if holds else _F_BRACKET
+        more, happened = _charge_step(before, foot, pressed[foot], ended, terms, g, w)
         facts |= more
         events |= happened
     return facts | min(distance, (1 << _DISTANCE_BITS) - 1), events
 
 
+@njit
+def _charge_direction(s, foot, terms, g, w):  # type: ignore[no-untyped-def]
+    """Where a foot on two panels points: outward in front, as it likes best, costs nothing."""
+    heel, toe = g.panels[s[foot], foot, 0], g.panels[s[foot], foot, 1]
+    inward = (g.left[toe, 0] - g.left[heel, 0]) * (1 if foot == 0 else -1) > EPSILON
+    back = g.left[s[foot], 1] < g.left[len(g.arrow), 1] - EPSILON
+    if abs(g.left[toe, 1] - g.left[heel, 1]) <= EPSILON:
+        terms[BRACKET_ASIDE] += w[BRACKET_ASIDE]
+    elif inward and back:
+        terms[BRACKET_IN_BACK] += w[BRACKET_IN_BACK]
+    elif inward:
+        terms[BRACKET_IN_FRONT] += w[BRACKET_IN_FRONT]
+    elif back:
+        terms[BRACKET_OUT_BACK] += w[BRACKET_OUT_BACK]
+
+
 @njit(inline="always")
-def _charge_step(before, foot, pressed, released, terms, g, w):  # type: ignore[no-untyped-def]
-    """One foot steps, on one panel or two: jack, switch or doublestep."""
+def _charge_step(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+    """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
     facts = events = 0
     stands, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
     again = before[LAST] == foot + 1
     if again and pressed & ~stands == 0:
         return _F_JACK, 0
+    if not before[LAST] and pressed & ~stands:
+        facts |= _F_AFTER_JUMP
     if pressed & other and not pressed & held_by(before, 1 - foot, g):
-        marked = before[LEFT_LIFTED + 1 - foot]
-        terms[FOOTSWITCH] = w[MARKED_FOOTSWITCH] if marked else w[FOOTSWITCH]
         for panel in range(len(g.arrow)):  # a bracket may take over two
             if pressed & other & 1 << panel:
                 events |= _SWITCH[g.arrow[panel]]
                 if g.arrow[panel] in (LEFT, RIGHT):
                     terms[SIDESWITCH] = w[SIDESWITCH]
-        if not marked:
-            facts |= _F_SWITCH
-    if again and pressed & ~stands:
-        if before[LEFT_HELD + 1 - foot] or before[LEFT_HELD + foot]:
-            events |= EVENT_FORCED
-        elif released & other:
-            facts |= _F_DOUBLESTEP | _F_RELEASED
-            events |= EVENT_FORCED
+        if before[LEFT_LIFTED + 1 - foot]:
+            terms[MARKED_FOOTSWITCH] = w[MARKED_FOOTSWITCH]
         else:
-            facts |= _F_DOUBLESTEP | (_F_MARKED if before[LEFT_LIFTED + foot] else 0)
-            events |= EVENT_DOUBLESTEP
+            facts |= _F_SWITCH
+    if again:
+        more, happened = _charge_doublestep(before, foot, pressed, ended, terms, g, w)
+        facts |= more
+        events |= happened
     return facts, events
+
+
+@njit
+def _charge_doublestep(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+    """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
+    stands, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
+    if before[LEFT_HELD + foot]:
+        return 0, EVENT_FORCED  # a bracket on what it holds
+    if before[LEFT_HELD + 1 - foot]:
+        return _F_FORCED, EVENT_FORCED
+    if ended[0] & other:
+        return _F_RELEASED, EVENT_FORCED
+    if ended[1] & other:
+        return _F_FREED, EVENT_FORCED
+    if ended[2] & other:
+        return _F_EARLY_FREED, EVENT_DOUBLESTEP
+    if before[LEFT_LIFTED + foot]:
+        terms[MARKED_DOUBLESTEP] = w[MARKED_DOUBLESTEP]
+        return 0, EVENT_DOUBLESTEP
+    if pressed & stands:
+        return _F_GROWN, EVENT_DOUBLESTEP
+    for a in range(len(g.arrow)):
+        for b in range(len(g.arrow)):
+            if stands >> a & 1 and pressed >> b & 1 and g.place[a, b] >= 0:
+                return _F_NEAR, EVENT_DOUBLESTEP
+    return _F_DOUBLESTEP, EVENT_DOUBLESTEP
 
 
 @njit(inline="always")
 def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def]
-    """What facing and stance after the row cost. Returns events."""
-    events = 0
+    """What facing and stance after the row cost. Facts and events."""
+    facts = events = 0
     angle = g.angle[s[0], s[1]]
     degrees, spin, s[SIDE] = turn(g.angle[before[0], before[1]], before[SIDE], angle)
     if spin:
@@ -131,16 +183,18 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
         terms[TURN_180] = w[TURN_180]
     elif degrees >= 135.0 - EPSILON:
         terms[TURN_135] = w[TURN_135]
-    far = int(g.distance[s[0], s[1]]) - 40
+    far = int(g.distance[s[0], s[1]]) - _WIDE
     if far > 0:
-        terms[STRETCH] = w[STRETCH] * far // 20
+        terms[STRETCH] = w[STRETCH] * far // DISTANCE_UNIT
     size = abs(angle)
     terms[FACING] = w[FACING] * int(size / 45.0 + EPSILON)
+    if size > 45.0 + EPSILON:
+        terms[FACING_ASIDE] = w[FACING_ASIDE]
     if g.right[s[1], 0] >= g.left[s[0], 0] - EPSILON:
-        return events
-    terms[CROSSOVER] = w[CROSSOVER]
+        return facts, events
+    facts |= _F_CROSSOVER
     if g.right[before[1], 0] >= g.left[before[0], 0] - EPSILON:
-        terms[CROSSOVER_START] = w[CROSSOVER_START]
+        facts |= _F_CROSSOVER_START
     if pressed[0] and pressed[1]:
         terms[CROSSOVER_JUMP] = w[CROSSOVER_JUMP]
     if size >= 180.0 - EPSILON:
@@ -154,10 +208,9 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
                 events |= EVENT_FRONT
             else:
                 events |= EVENT_BACK
-                terms[CROSSOVER_BACK] = w[CROSSOVER_BACK]
     if g.panels[s[0], 0, 1] >= 0 or g.panels[s[1], 1, 1] >= 0:
         terms[TWISTED] = w[TWISTED]
-    return events
+    return facts, events
 
 
 @njit(inline="always")
@@ -170,48 +223,21 @@ def charge_mines(before, s, pressed, mines, terms, g, w):  # type: ignore[no-unt
         if mines & mask_of(s[foot], foot, g):
             terms[MINE] += w[MINE]
             s[LEFT_LIFTED + foot] = 1
-        if before[LEFT_LIFTED + foot] and pressed[1 - foot]:
+        if before[LEFT_LIFTED + foot] and pressed[1 - foot] & ~mask_of(before[foot], foot, g):
             terms[LIFTED] += w[LIFTED]
 
 
 @njit
-def charge_time(facts, ms, w, times, terms):  # type: ignore[no-untyped-def]
+def charge_time(facts, ms, curves, terms):  # type: ignore[no-untyped-def]
     """Write what packed facts cost when the row before was so many milliseconds ago; returns the sum.
 
-    times : the preset's, in the order of `vocabulary`
+    curves : int64 (c, MOST_MS + 1), cost of each curve by milliseconds
     """
     total = 0
-    if facts & _F_DOUBLESTEP:
-        full = w[MARKED_DOUBLESTEP] if facts & _F_MARKED else w[DOUBLESTEP]
-        if facts & _F_RELEASED:
-            full = w[RELEASED_DOUBLESTEP]
-        least = min(full, w[RESTED_DOUBLESTEP])
-        cost = full
-        if ms < times[0]:
-            cost = full * times[0] // max(ms, times[0] * 3 // 10, 1)
-        elif ms >= times[2]:
-            cost = least
-        elif ms > times[1]:
-            cost = full - (full - least) * (ms - times[1]) // (times[2] - times[1])
-        terms[DOUBLESTEP] += cost
-        total += cost
-    if facts & _F_JACK and ms < times[3]:
-        cost = w[FAST_JACK] * (times[3] - ms) // times[3]
-        terms[FAST_JACK] += cost
-        total += cost
-    if facts & _F_SWITCH and ms > times[4]:
-        cost = w[SLOW_FOOTSWITCH] * (min(ms, times[5]) - times[4]) // max(times[5] - times[4], 1)
-        terms[SLOW_FOOTSWITCH] += cost
-        total += cost
-    if facts & _F_BRACKET and ms > times[6]:
-        cost = w[SLOW_BRACKET] * (min(ms, times[7]) - times[6]) // max(times[7] - times[6], 1)
-        terms[SLOW_BRACKET] += cost
-        total += cost
-    if facts & _F_JUMP and ms < times[8]:
-        cost = w[FAST_JUMP] * (times[8] - ms) // times[8]
-        terms[FAST_JUMP] += cost
-        total += cost
-    distance = facts & (1 << _DISTANCE_BITS) - 1
-    cost = w[DISTANCE] * distance * 50 // max(ms, times[9], 1)
-    terms[DISTANCE] += cost
+    for curve in range(_CURVES - 1):
+        if facts >> _DISTANCE_BITS + curve & 1:
+            terms[_WEIGHTS + curve] += curves[curve, ms]
+            total += curves[curve, ms]
+    cost = curves[_CURVES - 1, ms] * (facts & (1 << _DISTANCE_BITS) - 1) // DISTANCE_UNIT
+    terms[_WEIGHTS + _CURVES - 1] += cost
     return total + cost

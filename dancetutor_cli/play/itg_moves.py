@@ -28,6 +28,7 @@ from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMB
 from dancetutor_cli.play.tables import (
     ACTION,
     COLUMN_BITS,
+    EARLIER,
     EVENTS,
     FRESH,
     HOLDS,
@@ -42,6 +43,7 @@ from dancetutor_cli.play.tables import (
 )  # fmt: skip
 
 _MASK = (1 << COLUMN_BITS) - 1
+_FORCED = (1 << 3 * COLUMN_BITS) - 1
 UNPLAYED = 5
 BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8)  # rows of `Moves.scratch`
 
@@ -93,7 +95,7 @@ def _bits(mask):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _emit(out, m, row, steps, pressed, holders, switched, kept, g, w):  # type: ignore[no-untyped-def]
+def _emit(out, m, row, earlier, steps, pressed, holders, switched, kept, g, w):  # type: ignore[no-untyped-def]
     """Write one way to play a row.
 
     pressed : bits of the panels that left foot, right foot, left hand and right hand press, and room for two more
@@ -108,10 +110,14 @@ def _emit(out, m, row, steps, pressed, holders, switched, kept, g, w):  # type: 
     left, right = pressed[0] & ~kept, pressed[1] & ~kept
     pressed[4], pressed[5] = left, right
     feet = pressed[4:6]
-    just_released = row >> RELEASED & _MASK if row >> FRESH & 1 else np.int64(0)
-    facts, events = charge_feet(before, s, feet, just_released, terms, g, w)
+    ended = pressed[6:9]
+    ended[0] = row >> RELEASED & _MASK if row >> FRESH & 1 else np.int64(0)
+    ended[1], ended[2] = row >> RELEASED & _MASK, earlier
+    facts, events = charge_feet(before, s, feet, ended, terms, g, w)
     if left or right:
-        events |= charge_pose(before, s, feet, terms, g, w)
+        posed, happened = charge_pose(before, s, feet, terms, g, w)
+        facts |= posed
+        events |= happened
     holds, rolls = row >> HOLDS & _MASK, row >> ROLLS & _MASK
     for foot in range(2):
         held = held_by(before, foot, g)
@@ -180,12 +186,12 @@ def _with_hands(out, m, row, steps, kept, switched, forced, g, w):  # type: igno
             if (j >= 0 and not (rest >> j & 1 and right_free and j != i)) or (i >= 0) + (j >= 0) != hands:
                 continue
             pressed[2], pressed[3] = 1 << i if i >= 0 else 0, 1 << j if j >= 0 else 0
-            if forced and not _fits(pressed, forced, c):
+            if forced & _FORCED and not _fits(pressed, forced, c):
                 continue
             for holders in range(4):
                 if (holders & 1 and not pressed[0] & rolls) or (holders & 2 and not pressed[1] & rolls):
                     continue
-                m = _emit(out, m, row, steps, pressed, holders, switched, kept, g, w)
+                m = _emit(out, m, row, forced >> EARLIER & _MASK, steps, pressed, holders, switched, kept, g, w)
     return m
 
 
@@ -206,7 +212,7 @@ def _feet(out, row, steps, kept, keepers, brackets, forced, g, w):  # type: igno
     for i in range(lefts):
         for j in range(rights):
             both = left_ways[i] | right_ways[j]
-            if left_ways[i] & right_ways[j] or (_bits(both) < most and not forced):
+            if left_ways[i] & right_ways[j] or (_bits(both) < most and not forced & _FORCED):
                 continue
             pressed[0], pressed[1] = left_ways[i] | kept & keepers[0], right_ways[j] | kept & keepers[1]
             after[LEFT_AT], after[RIGHT_AT] = left_to[i], right_to[j]
@@ -253,7 +259,7 @@ def expand_itg(key, row, forced, g, w, switches, out):  # type: ignore[no-untype
         if attempt == 1:  # overrides against the rules: they win, even over holds
             brackets, kept, before[LEFT_HELD], before[LEFT_HELD + 1] = True, np.int64(0), 0, 0
         elif attempt == 2:  # overrides nobody can follow
-            brackets, forced = switches[0], np.int64(0)
+            brackets, forced = switches[0], forced & ~_FORCED
         if m == 0:
             m = _feet(out, row, steps, kept, keepers, brackets, forced, g, w)
         if attempt == 0 and switches[1] and steps and steps & steps - 1 == 0 and not kept:

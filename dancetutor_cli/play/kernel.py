@@ -52,18 +52,18 @@ _NEVER = np.int64(1 << 60)
 
 
 @njit
-def _pattern(row, forced, patterns, numbers, counts):  # type: ignore[no-untyped-def]
-    """Number of a packed row with its overrides."""
-    at = slot_of(row ^ forced * 31, len(numbers))
+def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of a packed row, which takes two words."""
+    at = slot_of(row ^ more * 31, len(numbers))
     while numbers[at] >= 0:
         number = numbers[at]
-        if patterns[number, 0] == row and patterns[number, 1] == forced:
+        if patterns[number, 0] == row and patterns[number, 1] == more:
             return number
         at = (at + 1) & (len(numbers) - 1)
     number = counts[PATTERNS]
     counts[PATTERNS] += 1
     numbers[at] = number
-    patterns[number, 0], patterns[number, 1] = row, forced
+    patterns[number, 0], patterns[number, 1] = row, more
     return number
 
 
@@ -92,10 +92,16 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
         return False
     goes_on = _rolls_on(steps) if keep_rolls else np.zeros(n, dtype=np.int32)
-    ends = np.zeros(c, dtype=np.int64)
-    held = 0
+    ends = np.full(c, -1, dtype=np.int64)
+    held, last = 0, np.int64(-1)
     for r in range(n):
         row = np.int64(goes_on[r]) << ROLLS
+        more = forced[r] if len(forced) else np.int64(0)
+        stepped = False
+        for p in range(c):
+            if keep_rolls and last >= 0 and ends[p] == last:
+                more |= np.int64(1) << p + columns.EARLIER
+            stepped |= steps[r, p] > 0
         if held:
             for p in range(c):
                 if held >> p & 1 and ends[p] <= tick[r]:
@@ -114,7 +120,9 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
                     row |= 1 << p + (ROLL_TAPS if step == 5 and keep_rolls else columns.TAPS)
             if mines[r, p]:
                 row |= 1 << p + columns.MINES
-        pattern[r] = _pattern(row, forced[r] if len(forced) else np.int64(0), patterns, numbers, counts)
+        if stepped:
+            last = tick[r]
+        pattern[r] = _pattern(row, more, patterns, numbers, counts)
     return True
 
 
@@ -132,9 +140,9 @@ def _wait(rows):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _time_cost(facts, ms, timed_key, timed_cost, weights, times, terms):  # type: ignore[no-untyped-def]
+def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
     """What facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
-    timed_cost[ms, facts] = charge_time(timed_key[facts], ms, weights, times, terms) if facts else 0
+    timed_cost[ms, facts] = charge_time(timed_key[facts], ms, curves, terms) if facts else 0
     return timed_cost[ms, facts]
 
 
@@ -146,7 +154,7 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     """
     pattern, elapsed, slot, first, node = rows.pattern, rows.elapsed, nodes.slot, nodes.row, nodes.node
     pair, moves, timed_key, timed_cost = t.pair, t.move, t.timed_key, t.timed_cost
-    weights, times, size = rules.weights, rules.times, len(pair)
+    curves, size = rules.curves, len(pair)
     for row in range(r, len(pattern)):
         low, high = first[row, FIRST], first[row + 1, FIRST]
         used, wanted, cheapest, ms = high, DONE, np.int32(_FAR), elapsed[row]
@@ -167,7 +175,7 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
                 facts = moves[move, FACTS]
                 cost = timed_cost[ms, facts]
                 if cost == UNKNOWN:
-                    cost = _time_cost(facts, ms, timed_key, timed_cost, weights, times, scratch)
+                    cost = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
                 cost += before + moves[move, COST]
                 state = moves[move, NEXT]
                 u = slot[state]
@@ -217,13 +225,12 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
 def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term."""
     moves, wide, terms, timed_key, elapsed = t.move, t.wide, t.terms, t.timed_key, rows.elapsed
-    weights, times = rules.weights, rules.times
     for r in range(len(path)):
         number = wide[path[r], EVENTS] >> TERMS_SHIFT
         for term in range(cost.shape[1]):
             cost[r, term] = terms[number, term]
         if moves[path[r], FACTS]:
-            charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], weights, times, cost[r])
+            charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], rules.curves, cost[r])
 
 
 @njit(inline="always")

@@ -18,7 +18,10 @@ from dancetutor_cli.resources import config_path
 DEFAULT_PRESET = "itg"
 _DEFAULTS = {"pump": "pump"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000
-_KEYS = ("extends", "model", "pads", "roll-window", "switches", "weights", "times")
+MOST_MS = 2047  # longer times cost like this one
+_KEYS = ("extends", "model", "pads", "roll-window", "switches", "weights", "curves", "confidence")
+
+Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +31,10 @@ class Preset:
     name : as the user gave it, without folder and suffix
     model : which rules it is about, a key of `vocabulary.MODELS`
     roll_window : seconds a roll may go unpressed
-    switches, weights, times : (name, value) in the order of the model; costs are whole numbers, times milliseconds
+    switches, weights, curves : (name, value) in the order of the model; costs are whole numbers; a curve has knots
+        (milliseconds since the last row with steps, cost), between which it is straight and beyond which it is level
     pads : for which it was made: steps types ("pump-double") or their first words ("pump"); empty: for any
+    confidence : (margin, tenths of a per cent) of how likely people step a row this way; empty: nobody has measured it
     """
 
     name: str
@@ -37,8 +42,9 @@ class Preset:
     roll_window: float
     switches: tuple[tuple[str, bool], ...]
     weights: tuple[tuple[str, int], ...]
-    times: tuple[tuple[str, int], ...] = ()
+    curves: tuple[tuple[str, Curve], ...] = ()
     pads: tuple[str, ...] = ()
+    confidence: Curve = ()
 
     def is_for(self, steps_type: str) -> bool:
         """Whether it was made for the pads of a steps type; it works on all of them."""
@@ -53,16 +59,24 @@ class Preset:
         """A weight by name."""
         return dict(self.weights)[name]
 
+    def curve(self, name: str) -> Curve:
+        """A curve by name."""
+        return dict(self.curves)[name]
+
     def with_values(
-        self, *, weights: Mapping[str, int] | None = None, switches: Mapping[str, bool] | None = None
+        self,
+        *,
+        weights: Mapping[str, int] | None = None,
+        switches: Mapping[str, bool] | None = None,
+        curves: Mapping[str, Curve] | None = None,
     ) -> Preset:
         """The same preset with some values changed. Raises KeyError for a name the model does not have."""
-        both = ((self.weights, weights or {}), (self.switches, switches or {}))
-        for old, new in both:
+        changed: list[Any] = []
+        for old, new in ((self.switches, switches or {}), (self.weights, weights or {}), (self.curves, curves or {})):
             if unknown := set(new) - {name for name, _ in old}:
                 raise KeyError(", ".join(sorted(unknown)))
-        changed = [tuple((name, new.get(name, value)) for name, value in old) for old, new in both]
-        return replace(self, switches=changed[1], weights=changed[0])  # type: ignore[arg-type]
+            changed.append(tuple((name, new.get(name, value)) for name, value in old))
+        return replace(self, switches=changed[0], weights=changed[1], curves=changed[2])
 
 
 def preset_names() -> list[str]:
@@ -114,8 +128,9 @@ def _load(path: Path, seen: tuple[Path, ...], confined: bool) -> Preset:
         roll_window=_roll_window(source, base),
         switches=_values(source, "switches", model.switches, dict(base.switches) if base else {}),
         weights=_values(source, "weights", model.weights, dict(base.weights) if base else {}),
-        times=_values(source, "times", model.times, dict(base.times) if base else {}),
+        curves=_curves(source, model.curves, dict(base.curves) if base else {}),
         pads=_pads(source, base),
+        confidence=_confidence(source),
     )
 
 
@@ -168,6 +183,41 @@ def _pads(source: MarkedYaml, base: Preset | None) -> tuple[str, ...]:
                 source, ("pads", number), f"'{name}' is no steps type{near}; their first words are: {', '.join(words)}"
             )
     return tuple(value)
+
+
+def _curves(source: MarkedYaml, known: tuple[str, ...], base: dict[str, Curve]) -> tuple[tuple[str, Curve], ...]:
+    data = source.data.get("curves") or {}
+    if data:
+        _only(source, ("curves",), known)
+    for name in known:
+        if name not in data and name not in base:
+            raise _wrong(source, ("curves",), f"'curves' lacks '{name}'")
+    return tuple((name, _curve(source, name, data[name]) if name in data else base[name]) for name in known)
+
+
+def _curve(source: MarkedYaml, name: str, data: Any) -> Curve:
+    return _knots(source, ("curves", name), data, ("milliseconds", MOST_MS), ("costs", MAX_WEIGHT))
+
+
+def _confidence(source: MarkedYaml) -> Curve:
+    """Not taken over from the preset that is extended: other weights are right less or more often."""
+    if "confidence" not in source.data:
+        return ()
+    return _knots(source, ("confidence",), source.data["confidence"], ("margins", MAX_WEIGHT), ("tenths", 1000))
+
+
+def _knots(source: MarkedYaml, keys: tuple[str, ...], data: Any, across: tuple[str, int], up: tuple[str, int]) -> Curve:
+    """A mapping of whole numbers to whole numbers; `across`, `up` : what they are called, and the largest."""
+    name = keys[-1]
+    if not isinstance(data, dict) or not data:
+        raise _wrong(source, keys, f"'{name}' must be a mapping of {across[0]} to {up[0]}, as {{100: 500, 300: 0}}")
+    for group, (what, most) in ((data.keys(), across), (data.values(), up)):
+        for value in group:
+            if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= most:
+                raise _wrong(
+                    source, keys, f"'{name}': {what} must be whole numbers from 0 to {most}, not {value!r:.40}"
+                )
+    return tuple(sorted(data.items()))
 
 
 def _roll_window(source: MarkedYaml, base: Preset | None) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.model import Overrides
 from dancetutor_cli.pads import Pad, load_pad
+from dancetutor_cli.play.curves import cost_at
 from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.model import Play, Rows
 from dancetutor_cli.play.moves import name_moves
@@ -83,4 +84,14 @@ def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
         ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
         moves=moves,
         preset=engine.preset.name,
+        confidence=_confidence(rows, engine.preset, found.margin) if len(found.margin) else None,
     )
+
+
+def _confidence(rows: Rows, preset: Preset, margin: NDArray[np.int64]) -> NDArray[np.float64] | None:
+    """How likely people step each row this way, (n,); None if nobody has measured it for the preset."""
+    if not preset.confidence:
+        return None
+    sure = np.where(margin < 0, 1.0, cost_at(preset.confidence, np.maximum(margin, 0)) / 1000)
+    sure[~rows.steps.any(axis=1)] = np.nan
+    return np.asarray(sure)

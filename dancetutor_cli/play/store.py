@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.preset import MOST_MS as MOST_MS
 
 STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN = range(6)  # places in `counts`
 NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`
@@ -24,7 +25,6 @@ PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each co
 LIMBS = (1 << PART_SHIFT) - 1
 TERMS_SHIFT = 32  # in `EVENTS`: bits of events below, number of the costs by term from here on
 EVENT_BITS = (1 << TERMS_SHIFT) - 1
-MOST_MS = 2047  # longer times cost like this one
 GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 
 
@@ -87,10 +87,13 @@ class RowArrays(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """A preset and a pad's starting stance as arrays. weights, times : int64; switches : bool; home : int64 (2,)."""
+    """A preset and a pad's starting stance as arrays.
+
+    weights : int64; curves : int64 (, MOST_MS + 1), by milliseconds; switches : bool; home : int64 (2,)
+    """
 
     weights: NDArray[np.int64]
-    times: NDArray[np.int64]
+    curves: NDArray[np.int64]
     switches: NDArray[np.bool_]
     home: NDArray[np.int64]
 

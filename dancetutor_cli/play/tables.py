@@ -20,6 +20,9 @@ MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps,
 COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
 TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
 FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
+# the second word of a row: limb codes of overrides, 3 bits for each column, and holds that ended in the very moment of
+# the last row with steps
+FORCED, EARLIER = 0, 3 * COLUMN_BITS
 FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
 DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 

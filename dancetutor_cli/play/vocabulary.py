@@ -1,4 +1,4 @@
-"""The names of the cost models: their switches, their weights (which are also the names of cost terms), their times.
+"""The names of the cost models: their switches, and their weights and curves, which are also the names of cost terms.
 
 The order of names is the order of the kernels' arrays and of the columns of `Play.cost`.
 """
@@ -10,12 +10,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """What a preset of this model has to say; `terms` are the names of the columns of `Play.cost`."""
+    """What a preset of this model has to say. A weight is one number, a curve one for each time since the last row."""
 
     switches: tuple[str, ...]
     weights: tuple[str, ...]
-    times: tuple[str, ...]
-    terms: tuple[str, ...]
+    curves: tuple[str, ...]
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of the columns of `Play.cost`."""
+        return self.weights + self.curves
 
 
 _THESIS = (
@@ -24,21 +28,21 @@ _THESIS = (
 )  # fmt: skip
 
 _ITG = (
-    "doublestep", "fast-jack", "footswitch", "slow-footswitch", "sideswitch", "jump-footswitch", "holdswitch",
-    "bracket", "slow-bracket", "fast-jump", "crossover", "crossover-start", "crossover-back", "crossover-jump",
-    "crossover-full", "spin", "turn-135", "turn-180", "facing", "distance", "stretch", "twisted", "mine", "lifted",
-    "release", "hand", "hand-hold", "unplayable",
+    "marked-doublestep", "marked-footswitch", "sideswitch", "jump-footswitch", "holdswitch", "bracket-in-front",
+    "bracket-in-back", "bracket-out-back", "bracket-aside", "twisted", "crossover-jump", "crossover-full", "spin",
+    "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
+    "hand-hold", "unplayable",
 )  # fmt: skip
-# weights that take the place of another under some condition; they have no column of their own
-_ITG_INSTEAD = ("rested-doublestep", "marked-doublestep", "released-doublestep", "marked-footswitch")
-_ITG_TIMES = (
-    "doublestep-fast", "doublestep-rest", "doublestep-rested", "jack-fast", "footswitch-slow", "footswitch-slowest",
-    "bracket-slow", "bracket-slowest", "jump-fast", "distance-least",
+# `distance` comes last: the others happen or do not, it has a size
+_ITG_CURVES = (
+    "doublestep", "near-doublestep", "released-doublestep", "freed-doublestep", "early-freed-doublestep",
+    "forced-doublestep", "grown-bracket", "jack", "footswitch", "bracket", "held-bracket", "bracket-jump", "jump",
+    "after-jump", "crossover", "crossover-start", "distance",
 )  # fmt: skip
 
 MODELS = {
-    "thesis": Model(("allow-doublestep",), _THESIS, (), _THESIS),
-    "itg": Model(("brackets", "holdswitches"), (*_ITG, *_ITG_INSTEAD), _ITG_TIMES, _ITG),
+    "thesis": Model(("allow-doublestep",), _THESIS, ()),
+    "itg": Model(("brackets", "holdswitches"), _ITG, _ITG_CURVES),
 }
 
 # What may happen in a row, by the names players use; the number of a name is its bit in the kernels' events.

@@ -44,6 +44,11 @@ def cost_with(chart: ChartSubject, letters: dict[float, str]) -> int:
     return play.total
 
 
+def _letter(chart: ChartSubject, row: int) -> str:
+    assert chart.play is not None
+    return "LR"[int(chart.play.limb[row].max())]
+
+
 def test_another_play_costs_what_it_is_said_to() -> None:
     rows = ["1000", "0010", "0001", "0010", "0100", "1000", "0001", "0001"]
     chart = subject(rows)
@@ -53,7 +58,7 @@ def test_another_play_costs_what_it_is_said_to() -> None:
     for one in found:
         assert one.extra == sum(cost for _, cost in one.terms)
         assert [abs(cost) for _, cost in one.terms] == sorted((abs(cost) for _, cost in one.terms), reverse=True)
-        letters = {}
+        letters = {beat / 2: _letter(chart, beat) for beat in range(len(rows))}
         for run in one.runs:
             beats = [run.first_beat + n / 2 for n in range(len(run.other.split(" ")))]
             assert beats[-1] == run.last_beat and run.best != run.other

@@ -1,70 +1,122 @@
-"""tools/fit_weights.py learns what a label says, and a fit that has not seen a chart is scored on it."""
+"""The fits of tools/fit_weights.py: true gradients, weights that learn what labels say, and an author's own preset."""
 
 from __future__ import annotations
 
-import json
 import sys
-from importlib.util import module_from_spec, spec_from_file_location
+from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from play_rows import pad_of, rows_of
 
 from dancetutor_cli import play
+from dancetutor_cli.play.curves import cost_at
 
-SCRIPT = Path(__file__).parents[2] / "tools" / "fit_weights.py"
-HEADER = "#OFFSET:0;#BPMS:0=150;\n#NOTES:dance-single::Hard:5:0:\n"
+TOOLS = Path(__file__).parents[2] / "tools"
+ITG = play.load_preset("itg")
 
 
 @pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = spec_from_file_location("fit_weights", SCRIPT)
-    assert spec is not None and spec.loader is not None
-    module = module_from_spec(spec)
-    sys.modules["fit_weights"] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
+def tools() -> Iterator[SimpleNamespace]:
+    sys.path.insert(0, str(TOOLS))
+    try:
+        import feet_confidence
+        import feet_data
+        import feet_fit
+        import fit_weights
+
+        yield SimpleNamespace(confidence=feet_confidence, data=feet_data, fit=feet_fit, weights=fit_weights)
+    finally:
+        sys.path.remove(str(TOOLS))
 
 
-@pytest.fixture
-def labels(tmp_path: Path) -> Path:
-    """Somebody who rather switches feet than crosses over: left, down, down again with the other foot, right."""
-    songs = {"one": ("1000 0100 0100 0001", "LRLR"), "two": ("0001 0100 0100 1000", "RLRL")}
+@pytest.fixture(scope="module")
+def jumper(tools: SimpleNamespace):  # type: ignore[no-untyped-def]
+    """Somebody who switches feet wherever she can: left, down, down again with the other foot, right; and mirrored."""
     out = []
-    for name, (rows, feet) in songs.items():
-        (tmp_path / f"{name}.sm").write_text(HEADER + "\n".join([*rows.split(), *["0000"] * 4, ";"]))
-        entries = [
-            {"beat": number / 2, "feet": {str(word.index("1")): foot}}
-            for number, (word, foot) in enumerate(zip(rows.split(), feet, strict=True))
-        ]
-        label = {"name": name, "kind": "mine", "chart": f"{name}.sm", "rows": entries}
-        out.append({**label, "steps_type": "dance-single", "difficulty": "Hard"})
-    (tmp_path / "labels.json").write_text(json.dumps(out))
-    return tmp_path
+    for name, (picture, feet) in {
+        "one": ("1... .1.. .1.. ...1 1... ..1. ..1. ...1", "LRLRLRLR"),
+        "two": ("...1 .1.. .1.. 1... ...1 ..1. ..1. 1...", "RLRLRLRL"),
+    }.items():
+        column = np.array([word.index("1") for word in picture.split()])
+        foot = np.array(["LR".index(letter) for letter in feet])
+        pad = pad_of("dance-single")
+        rows = rows_of(picture, 48, 150.0)
+        out.append(tools.data.Labelled(name, "mine", name, rows, pad, np.arange(len(column)), column, foot))
+    return out
 
 
-def test_a_fit_takes_over_what_labels_say(script: ModuleType, labels: Path) -> None:
-    home = play.load_preset("itg")
-    known = script.load_labels(labels)
-    assert script.score(known, home) == {"mine": (4, 8)}
-    losses = script.Losses(known, home)
-    fitted = script.fit(losses, [0, 1], ["footswitch", "facing"], 2)
-    assert script.score(known, fitted) == {"mine": (8, 8)}
-    assert fitted.weight("footswitch") < home.weight("footswitch")
-    assert losses.total([0, 1], fitted) < losses.total([0, 1], home)
+def test_the_gradient_is_that_of_the_likelihood(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
+    data, at = tools.fit.shares(jumper, ITG), tools.fit.vector(ITG)
+    _, gradient = tools.fit.loss(at, data)
+    for number in np.argsort(-np.abs(gradient))[:12]:
+        step = np.zeros_like(at)
+        step[number] = 1e-5
+        slope = (tools.fit.loss(at + step, data)[0] - tools.fit.loss(at - step, data)[0]) / 2e-5
+        assert slope == pytest.approx(gradient[number], rel=1e-4, abs=1e-8)
 
 
-def test_the_result_is_a_preset(script: ModuleType, labels: Path, tmp_path: Path) -> None:
-    home = play.load_preset("itg")
+@pytest.mark.parametrize("method", ["likelihood", "perceptron"])
+def test_a_fit_takes_over_what_labels_say(tools: SimpleNamespace, jumper, method: str) -> None:  # type: ignore[no-untyped-def]
+    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    data, start = tools.fit.shares(jumper, never), tools.fit.vector(never)
+    before = np.concatenate(list(tools.fit.right(start, data).values())).mean()
+    found = (
+        tools.fit.likelihood(start, data)
+        if method == "likelihood"
+        else tools.fit.perceptron(start, data, rounds=200, rate=0.05)
+    )
+    after = np.concatenate(list(tools.fit.right(found, data).values())).mean()
+    assert before < 1.0 == after
+
+
+def test_the_fit_sees_what_the_solver_finds(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
+    """The cheapest way through the graph is the solver's play, with the preset that a vector makes."""
+    vector = tools.fit.vector(ITG)
+    preset = tools.fit.fitted(ITG, vector)
+    assert preset.weights == ITG.weights and preset.curves == ITG.curves
+    for label in jumper:
+        right, _ = tools.data.right_rows(label, preset)
+        assert (tools.fit.right(vector, tools.fit.shares([label], ITG))[label.name] == right).all()
+
+
+def test_an_authors_pins_make_a_preset(tools: SimpleNamespace, jumper, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    many = jumper * 40
     path = tmp_path / "mine.yaml"
-    path.write_text(script.written(home.with_values(weights={"footswitch": 321}), home, "itg"))
+    path.write_text(tools.weights.own_preset(many, never, "itg"), encoding="utf-8")
     mine = play.load_preset(path)
-    assert mine.weight("footswitch") == 321 and mine.weight("spin") == home.weight("spin")
+    assert mine.name == "mine" and cost_at(mine.curve("footswitch"), np.array([400]))[0] < 900
+    assert tools.weights.own_preset(jumper[:1], ITG, "itg").startswith("extends: itg\n")
 
 
-def test_charts_that_a_fit_has_not_seen(script: ModuleType, labels: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The two charts are mirror images, so what one says is right for the other."""
-    losses = script.Losses(script.load_labels(labels), play.load_preset("itg"))
-    assert script.leave_one_out(losses, ["footswitch"], 1, script.show) == {"mine": (8, 8)}
-    said = capsys.readouterr().out.splitlines()
-    assert said == [f"  without {name}: mine 4/4 = 100.00 %" for name in ("one", "two")]
+def test_numbers_of_a_preset_are_written_between_its_comments(tools: SimpleNamespace) -> None:
+    text = "weights:\n  spin: 1  # turns on\ncurves:\n  # too\n  jack: {0: 1, 9: 2}\nconfidence: {0: 500}\n"
+    preset = ITG.with_values(weights={"spin": 77}, curves={"jack": ((100, 5), (200, 0))})
+    assert tools.weights.refreshed(text, preset, {0: 510, 10: 700}) == (
+        "weights:\n  spin: 77  # turns on\ncurves:\n  # too\n  jack: {100: 5, 200: 0}\nconfidence: {0: 510, 10: 700}\n"
+    )
+
+
+def test_songs_stay_together_in_folds(tools: SimpleNamespace) -> None:
+    labels = [SimpleNamespace(group=group) for group in "aabbccddeeff"]
+    fold = tools.data.folds(labels, 3)
+    assert (fold[::2] == fold[1::2]).all() and set(fold.tolist()) == {0, 1, 2}
+
+
+def test_confidence_is_as_often_right_as_it_says(tools: SimpleNamespace) -> None:
+    """On rows whose chance is known: margins m that are right with 1 / (1 + exp(-m / 100))."""
+    rng = np.random.default_rng(3)
+    results = []
+    for number in range(20):
+        margin = rng.integers(0, 600, 2000)
+        right = rng.random(2000) < 1 / (1 + np.exp(-margin / 100))
+        results.append((SimpleNamespace(group=str(number)), right, margin))
+    curve = tuple(tools.confidence.calibrated(results).items())
+    for margin in (0, 50, 100, 200, 400):
+        said = cost_at(curve, np.array([margin]))[0] / 1000
+        assert said == pytest.approx(1 / (1 + np.exp(-margin / 100)), abs=0.03)
+    for said, right, rows in tools.confidence.reliability(results, tools.data.folds):
+        assert rows < 300 or abs(said - right) < 2

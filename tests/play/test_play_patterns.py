@@ -52,7 +52,7 @@ SINGLE = {
     "one step after a jump": ("1..1 .1.. ...1 1...", "L..R .L.. ...R L...", 24),
     "two jumps, one across": ("1..1 ..1. .1.. ...1 1...", "L..R ..R. .L.. ...R L...", 24),
     "jumps that turn": ("1.1. ..11 .1.1 11.. 1.1.", "L.R. ..LR .L.R LR.. L.R.", 24),
-    "steps to both sides after jumps": ("1.1. ..11 .1.. ...1", "L.R. ..LR .L.. ...R", 24),
+    "steps to both sides after jumps": ("1.1. ..11 .1.. ...1", "L.R. ..LR .L.. ...R", 48),
     "a mine after a jump tells who goes": ("1... .1.. 11.. M... ..1.", "L... .R.. LR.. .... ..L.", 24),
     "a mine under the other foot": ("1... .1.. 11.. .M.. ..1.", "L... .R.. LR.. .... ..R.", 24),
     "a mine in the row, jump of both sides": ("1..1 M.1. ...1", "L..R ..L. ...R", 24),
@@ -140,6 +140,6 @@ def test_a_bracket_that_takes_over_two_panels_costs_the_same_in_the_mirror() -> 
     pad = pad_of("dance-single")
     margins = [
         play.solve(rows_of(picture, 12, 150.0), pad, ITG, margins=True).margin.tolist()
-        for picture in ("1111 11MM 1..1", "1111 MM11 1..1")
+        for picture in ("1111 11MM 1..1", "1111 M1M1 1..1")
     ]
     assert margins[0] == margins[1]

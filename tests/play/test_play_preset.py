@@ -5,10 +5,12 @@ from __future__ import annotations
 import pickle
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from dancetutor_cli import play
 from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.play.curves import cost_at
 from dancetutor_cli.play.rows import roll_gap
 from dancetutor_cli.play.vocabulary import MODELS
 from dancetutor_cli.resources import config_path
@@ -35,7 +37,7 @@ def test_the_presets_that_come_along() -> None:
 def test_every_value_has_a_sentence(name: str) -> None:
     preset = play.load_preset(name)
     lines = config_path(f"presets/{name}.yaml").read_text(encoding="utf-8").splitlines()
-    for key, _ in (*preset.weights, *preset.times, *preset.switches):
+    for key, _ in (*preset.weights, *preset.curves, *preset.switches):
         number = next(i for i, line in enumerate(lines) if line.startswith(f"  {key}:"))
         assert "#" in lines[number] or lines[number - 1].strip().startswith("#"), key
 
@@ -44,6 +46,18 @@ def test_thesis_is_the_cost_model() -> None:
     thesis = play.load_preset("thesis")
     assert [value for _, value in thesis.weights] == [1, 12, 10, 3, 5, 15, 1, 5, 1, 2, 1000]
     assert thesis.roll_window == 0.35 and thesis.switch("allow-doublestep")
+
+
+def test_a_curve_is_straight_between_its_knots_and_level_beyond_them() -> None:
+    times = np.array([0, 99, 100, 101, 150, 299, 300, 2047])
+    assert cost_at(((100, 500), (300, 100)), times).tolist() == [500, 500, 500, 498, 400, 102, 100, 100]
+    assert cost_at(((300, 7),), times).tolist() == [7] * 8
+
+
+def test_confidence_belongs_to_the_weights_it_was_measured_with(tmp_path: Path) -> None:
+    assert play.load_preset("itg").confidence and play.load_preset("pump").confidence
+    path = written(tmp_path, "extends: itg\nweights:\n  spin: 50\n")
+    assert play.load_preset(path).confidence == () == play.load_preset("stamina").confidence
 
 
 def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
@@ -61,7 +75,11 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
         ("extends: thesis\nweights:\n  spinn: 5\n", 3, "unknown key 'spinn' in 'weights'; there are: crossover, doubl"),
         ("extends: thesis\nwheights: {}\n", 2, "unknown key 'wheights'; there are: extends, model"),
         ("extends: thesis\nswitches:\n  brackets: true\n", 3, "there are: allow-doublestep"),
-        ("extends: thesis\ntimes:\n  jack-fast: 100\n", 3, "there are: none"),
+        ("extends: thesis\ncurves:\n  jack: {100: 1}\n", 3, "there are: none"),
+        ("extends: itg\ncurves:\n  jack: 100\n", 3, "mapping of milliseconds to costs"),
+        ("extends: itg\ncurves:\n  jack: {-1: 100}\n", 3, "milliseconds must be whole numbers from 0 to 2047"),
+        ("extends: itg\ncurves:\n  jack: {100: 0.5}\n", 3, "costs must be whole numbers"),
+        ("extends: itg\nconfidence: {100: 1001}\n", 2, "from 0 to 1000"),
         ("extends: thesis\nweights:\n  spin: lots\n", 3, "whole number"),
         ("extends: thesis\nweights:\n  spin: -1\n", 3, "whole number"),
         ("extends: thesis\nswitches:\n  allow-doublestep: 1\n", 3, "true or false"),

@@ -1,0 +1,217 @@
+"""Fits the weights and curves of a preset to labelled feet, by two methods that look at whole plays.
+
+likelihood : plays are as likely as their costs are small, exp(-cost / 100); the weights under which the labelled feet
+    are likeliest (Lafferty et al. 2001, conditional random fields), by forward-backward sums and L-BFGS
+perceptron : weights move from the terms of the labelled play to those of the play found (Collins 2002), averaged
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from feet_data import Labelled
+from feet_lattice import BY_SIZE, CURVES, FIXED, WEIGHTS, Book, Lattice, book, flags, move_costs, sums, viterbi
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from dancetutor_cli.play import Preset
+from dancetutor_cli.play.curves import cost_at
+from dancetutor_cli.play.preset import MAX_WEIGHT, MOST_MS
+from dancetutor_cli.play.tables import DISTANCE_UNIT
+
+Floats = NDArray[np.float64]
+SCALE = 100.0  # a cost of so much makes a play e times less likely
+FORBIDDEN = 30.0  # what `FIXED` weights cost while fitting, in units of SCALE
+_AT_ONCE = 8  # charts between two steps of the perceptron
+MOST = 60.0  # of any weight, in units of SCALE
+KNOTS = np.array([50, 80, 110, 150, 200, 270, 370, 500, 700, 1000, 1500])  # of every curve, milliseconds
+SMALL, SMOOTH = 3e-6, 3e-5  # what the square of a weight costs, and of the difference of neighbouring knots, a row
+
+# a foot that goes to a panel apart within 50 ms while the other one is free: no label may make that cheap
+_LEAST = np.zeros((len(CURVES), len(KNOTS)))
+_LEAST[CURVES.index("doublestep"), 0] = FORBIDDEN
+_LEAST = np.concatenate([np.zeros(len(WEIGHTS)), _LEAST.ravel()])
+_FREE = np.array([name not in FIXED for name in WEIGHTS])
+_UNIT = np.array([DISTANCE_UNIT if name in BY_SIZE else 1 for name in WEIGHTS])
+_HAT = np.stack([np.interp(np.arange(MOST_MS + 1), KNOTS, row) for row in np.eye(len(KNOTS))], axis=1)
+
+
+@dataclass(frozen=True)
+class Share:
+    """Charts of one pad that a fit looks at, and how much each of their rows counts."""
+
+    book: Book
+    lattices: Sequence[Lattice]
+    weight: float = 1.0
+
+
+def shares(labels: Sequence[Labelled], preset: Preset) -> list[Share]:
+    """All charts, by pad."""
+    by_pad: dict[str, list[Labelled]] = defaultdict(list)
+    for label in labels:
+        by_pad[label.pad.steps_type].append(label)
+    books = [book(charts, preset) for charts in by_pad.values()]
+    return [Share(each, each.lattices) for each in books]
+
+
+def part(whole: Iterable[Share], keep: set[str], weight: float = 1.0) -> list[Share]:
+    """The charts with some names, with a weight."""
+    out = [Share(s.book, [x for x in s.lattices if x.label.name in keep], weight) for s in whole]
+    return [share for share in out if share.lattices]
+
+
+def vector(preset: Preset) -> Floats:
+    """Weights, then the curves at `KNOTS`, in units of SCALE."""
+    weights = np.array([preset.weight(name) for name in WEIGHTS]) / _UNIT
+    curves = np.array([cost_at(preset.curve(name), KNOTS) for name in CURVES])
+    return np.clip(np.concatenate([weights, curves.ravel()]) / SCALE, 0.0, MOST)
+
+
+def fitted(preset: Preset, found: Floats) -> Preset:
+    """The preset with the values of a vector, in whole numbers."""
+    weights, curves = _split(found)
+    whole = np.rint(weights * _UNIT * SCALE).astype(int).clip(max=MAX_WEIGHT)
+    knots = [
+        tuple((int(ms), round(float(cost) * SCALE)) for ms, cost in zip(KNOTS, row, strict=True)) for row in curves
+    ]
+    return preset.with_values(
+        weights={name: int(value) for name, value, free in zip(WEIGHTS, whole, _FREE, strict=True) if free},
+        curves=dict(zip(CURVES, knots, strict=True)),
+    )
+
+
+def _split(found: Floats) -> tuple[Floats, Floats]:
+    weights = np.where(_FREE, found[: len(WEIGHTS)], FORBIDDEN)
+    return weights, found[len(WEIGHTS) :].reshape(len(CURVES), len(KNOTS))
+
+
+def _priced(share: Share, found: Floats) -> tuple[Floats, Floats]:
+    """What the moves of a share cost without time, and what time adds by milliseconds and facts."""
+    weights, curves = _split(found)
+    return move_costs(share.book, weights), (_HAT @ curves.T) @ flags(share.book).T
+
+
+def _by_parameter(share: Share, moves: Floats, timed: Floats) -> Floats:
+    """Sums over moves and over (ms, facts) as sums over the parameters."""
+    b = share.book
+    rows = np.bincount(b.terms, weights=moves, minlength=len(b.counts))[: len(b.counts)]
+    return np.concatenate([np.where(_FREE, rows @ b.counts, 0.0), (_HAT.T @ (timed @ flags(b))).T.ravel()])
+
+
+def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats | None = None) -> tuple[float, Floats]:
+    """Minus the mean log-likelihood of a labelled row, and its gradient.
+
+    pull : how much it costs that weights are away from `home`, which is 0 if it is not given
+    """
+    total, gradient, rows = 0.0, np.zeros_like(found), 0.0
+    for share in data:
+        b = share.book
+        cost, timed = _priced(share, found)
+        by_move, by_time = np.zeros(len(b.terms)), np.zeros_like(timed)
+        scratch = np.zeros(max(len(x.move) for x in share.lattices))
+        for x in share.lattices:
+            total -= share.weight * sums(
+                x.first, x.move, x.source, x.target, x.width, x.elapsed, b.facts, b.action, x.mask, x.value, cost,
+                timed, by_move, by_time, scratch, x.skip,
+            )  # fmt: skip
+            rows += share.weight * int(x.labelled.sum())
+        gradient -= share.weight * _by_parameter(share, by_move, by_time)
+    curves = found[len(WEIGHTS) :].reshape(len(CURVES), len(KNOTS))
+    step = np.diff(curves, axis=1)
+    rough = np.zeros_like(curves)
+    rough[:, 1:] += 2 * step
+    rough[:, :-1] -= 2 * step
+    kept = found if home is None else found - home
+    kept = np.concatenate([kept[: len(WEIGHTS)] * _FREE, kept[len(WEIGHTS) :]])
+    value = total / rows + pull * (SMALL * float((kept**2).sum()) + SMOOTH * float((step**2).sum()))
+    pulled = 2 * SMALL * kept
+    pulled[len(WEIGHTS) :] += SMOOTH * rough.ravel()
+    return value, gradient / rows + pull * pulled
+
+
+def likelihood(
+    start: Floats, data: Sequence[Share], rounds: int = 120, pull: float = 1.0, home: Floats | None = None
+) -> Floats:
+    """The weights, none below 0, under which the labels are likeliest; see `loss`."""
+    scale = np.sqrt(_frequency(data, len(start)) + 1e-4)  # what seldom happens has a flat slope
+
+    def scaled(z: Floats) -> tuple[float, Floats]:
+        value, gradient = loss(z / scale, data, pull, home)
+        return value, gradient / scale
+
+    found = minimize(
+        scaled, np.maximum(start, _LEAST) * scale, jac=True, method="L-BFGS-B",
+        bounds=[(least * s, MOST * s) for least, s in zip(_LEAST, scale, strict=True)],
+        options={"maxiter": rounds, "maxcor": 30},
+    )  # fmt: skip
+    return np.asarray(found.x / scale)
+
+
+def _frequency(data: Sequence[Share], size: int) -> Floats:
+    """About how often each parameter is charged in a row, squared."""
+    out, rows = np.zeros(size), 0.0
+    for share in data:
+        b = share.book
+        squared = Book(b.pad, b.lattices, b.counts**2, b.terms, b.facts, b.timed, b.action)
+        by_move, by_time = np.zeros(len(b.terms)), np.zeros((MOST_MS + 1, len(b.timed)))
+        for x in share.lattices[::3]:
+            many = np.diff(x.first)
+            each = np.repeat(1.0 / np.maximum(many, 1), many)
+            np.add.at(by_move, x.move, each)
+            np.add.at(by_time, (np.repeat(x.elapsed, many), b.facts[x.move]), each)
+            rows += share.weight * len(x.elapsed)
+        out += share.weight * _by_parameter(Share(squared, ()), by_move, by_time)
+    return out / max(rows, 1.0)
+
+
+def perceptron(start: Floats, data: Sequence[Share], rounds: int = 6, rate: float = 2e-3) -> Floats:
+    """The averaged weights after passes over all charts, some at once, in an order of chance."""
+    found, mean, count = start.copy(), np.zeros_like(start), 0
+    order = np.random.default_rng(1)
+    some = [
+        Share(share.book, share.lattices[at : at + _AT_ONCE], share.weight)
+        for share in data
+        for at in range(0, len(share.lattices), _AT_ONCE)
+    ]
+    for _ in range(rounds):
+        for number in order.permutation(len(some)):
+            found = np.clip(found - rate * _mistakes(some[number], found), _LEAST, MOST)
+            mean += found
+            count += 1
+    return mean / count
+
+
+def _mistakes(share: Share, found: Floats) -> Floats:
+    """By how much the labelled plays are charged more often for each parameter than those found, a row's root."""
+    cost, timed = _priced(share, found)
+    by_move, by_time = np.zeros(len(share.book.terms)), np.zeros_like(timed)
+    for x in share.lattices:
+        each = 1.0 / np.sqrt(len(x.elapsed))
+        for bound, sign in ((False, -each), (True, each)):
+            path = _path(share.book, x, cost, timed, bound=bound)
+            np.add.at(by_move, path, sign)
+            np.add.at(by_time, (x.elapsed, share.book.facts[path]), sign)
+    return share.weight * _by_parameter(share, by_move, by_time)
+
+
+def _path(b: Book, x: Lattice, cost: Floats, timed: Floats, *, bound: bool) -> NDArray[np.int64]:
+    mask = x.mask if bound else np.zeros_like(x.mask)
+    return np.asarray(
+        viterbi(
+            x.first, x.move, x.source, x.target, x.width, x.elapsed, b.facts, b.action, mask, x.value, cost, timed
+        )
+    )  # fmt: skip
+
+
+def right(found: Floats, data: Iterable[Share]) -> dict[str, NDArray[np.bool_]]:
+    """For each chart by name, which of its labelled rows have all feet right."""
+    out = {}
+    for share in data:
+        cost, timed = _priced(share, found)
+        for x in share.lattices:
+            path = _path(share.book, x, cost, timed, bound=False)
+            out[x.label.name] = (share.book.action[path] & x.mask == x.value)[x.labelled]
+    return out
