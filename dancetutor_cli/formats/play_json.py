@@ -129,6 +129,6 @@ def _panel(path: Path, row: dict[str, Any], side: str, columns: int) -> int:
 
 def _number(path: Path, row: dict[str, Any], name: str) -> float:
     value = row.get(name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
         raise FileError(path, f"a row's {name} is {shown_key(repr(value))}, which is no number")
     return float(value)
