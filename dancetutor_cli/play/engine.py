@@ -223,7 +223,9 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
         store.fill_terms(t.terms, t.counts[store.TERMS_KNOWN], table)
         return t._replace(terms=_longer(t.terms), terms_hash=table)
     if wanted == store.MORE_FACTS:
-        return t._replace(timed_key=_longer(t.timed_key))
+        table = np.full(2 * len(t.timed_hash), -1, dtype=np.int32)
+        store.fill_states(t.timed_key, t.counts[store.FACTS_KNOWN], table)
+        return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
     if wanted == store.MORE_TIMED:
         cost = np.full((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), store.UNKNOWN, dtype=np.int32)
         cost[:, : t.timed_cost.shape[1]] = t.timed_cost
@@ -246,5 +248,6 @@ def _empty_tables(terms: int) -> Tables:
         terms=np.zeros((costs, terms), dtype=small),
         terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
+        timed_hash=np.full(1 << 15, -1, dtype=small),
         timed_cost=np.full((store.MOST_MS + 1, 64), store.UNKNOWN, dtype=small),
     )

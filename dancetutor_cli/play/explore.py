@@ -58,7 +58,7 @@ def _keep(state, count, out, t):  # type: ignore[no-untyped-def]
     for i in range(count):
         move = first + i
         moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
-        moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, counts)
+        moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, t.timed_hash, counts)
         moves[move, SOURCE] = state
         wide[move, ACTION] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT
         number = number_of_terms(given_terms[i], terms, terms_hash, counts)

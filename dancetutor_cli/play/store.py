@@ -38,7 +38,7 @@ class Tables(NamedTuple):
     move : int32 (, 4), state it leads to, cost without time, number of its facts about time, state it comes from
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, t), costs without time by term: few, which many moves share; terms_hash : int32
-    timed_key : int64, packed facts; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
+    timed_key : int64, packed facts; timed_hash : int32; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
     """
 
     counts: NDArray[np.int64]
@@ -52,6 +52,7 @@ class Tables(NamedTuple):
     terms: NDArray[np.int32]
     terms_hash: NDArray[np.int32]
     timed_key: NDArray[np.int64]
+    timed_hash: NDArray[np.int32]
     timed_cost: NDArray[np.int32]
 
 
@@ -133,13 +134,18 @@ def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
 
 
 @njit
-def number_of_facts(facts, known, counts):  # type: ignore[no-untyped-def]
-    """Number of packed facts about time; new ones are entered."""
-    for number in range(counts[FACTS_KNOWN]):
-        if known[number] == facts:
-            return np.int64(number)
+def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of packed facts about time; new ones are entered. Facts 0 are number 0."""
+    if facts == 0:
+        return np.int64(0)
+    at = slot_of(facts, len(numbers))
+    while numbers[at] >= 0:
+        if known[numbers[at]] == facts:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
     number = counts[FACTS_KNOWN]
     counts[FACTS_KNOWN] += 1
+    numbers[at] = number
     known[number] = facts
     return number
 
