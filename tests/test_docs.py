@@ -12,13 +12,26 @@ import pytest
 
 from dancetutor_cli.commands import COMMANDS
 
-README = (Path(__file__).resolve().parent.parent / "README.md").read_text(encoding="utf-8")
-EXAMPLES = [
-    line.split("#")[0].removeprefix("$ ").strip()
-    for block in re.findall(r"```(?:sh|console)\n(.*?)```", README, re.S)
-    for line in block.splitlines()
-    if line.removeprefix("$ ").startswith("dancetutor ")
-]
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = {
+    page.relative_to(ROOT).as_posix(): page.read_text(encoding="utf-8")
+    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted(ROOT.glob("docs/*.md")))
+}
+
+
+def examples_of(text: str) -> list[str]:
+    """Every call of the command in a block of shell input."""
+    return [
+        line.split("#")[0].removeprefix("$ ").strip()
+        for block in re.findall(r"```(?:sh|console)\n(.*?)```", text, re.S)
+        for line in block.splitlines()
+        if line.removeprefix("$ ").startswith("dancetutor ")
+    ]
+
+
+EXAMPLES = examples_of(README)
+ALL_EXAMPLES = sorted({example for text in PAGES.values() for example in examples_of(text)})
 
 
 def command_named(name: str) -> click.Command:
@@ -41,7 +54,7 @@ def test_every_option_says_what_it_does(name: str) -> None:
     assert silent == []
 
 
-@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.parametrize("example", ALL_EXAMPLES)
 def test_the_examples_use_options_that_exist(example: str) -> None:
     _, name, *arguments = shlex.split(example)
     command = command_named(name)
@@ -53,3 +66,16 @@ def test_the_examples_use_options_that_exist(example: str) -> None:
 def test_short_help_in_the_list_matches_the_command() -> None:
     for name, (_, text) in COMMANDS.items():
         assert command_named(name).get_short_help_str(200).split()[0] == text.split()[0], name
+
+
+def test_the_readme_is_for_a_user_in_a_hurry() -> None:
+    assert len(README.splitlines()) <= 150
+    assert "make demo" in README and "make test" in README
+
+
+@pytest.mark.parametrize("name", sorted(PAGES))
+def test_links_between_pages_lead_somewhere(name: str) -> None:
+    for target in re.findall(r"\]\(([^)\s]+)\)", PAGES[name]):
+        if "://" not in target and not target.startswith("#"):
+            there = (ROOT / name).parent / target.split("#")[0]
+            assert there.exists(), f"{name} links to {target}, which is not there"

@@ -1,4 +1,4 @@
-"""What the README says about configuring the linter is true: its files are read, its names exist."""
+"""What docs/linter.md says about configuring the linter is true: its files are read, its names exist."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from dancetutor_cli.lint.configuration import Configuration, load_configuration
 from dancetutor_cli.resources import config_path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-README = (ROOT / "README.md").read_text("utf-8")
-BLOCKS = re.findall(r"```yaml\n(.*?)```", README, re.S)
+PAGE = (ROOT / "docs" / "linter.md").read_text("utf-8")
+BLOCKS = re.findall(r"```yaml\n(.*?)```", PAGE, re.S)
 
 
 def block(key: str) -> str:
@@ -45,7 +45,7 @@ def test_the_example_file_does_what_its_comments_say(configuration: Configuratio
 
 
 def test_the_configurations_it_names_are_those_there_are() -> None:
-    named = re.search(r"one of configs/lint/: (.*)", README)
+    named = re.search(r"one of configs/lint/: (.*)", PAGE)
     assert named is not None
     there = {path.stem for path in config_path("lint").glob("*.yaml")} - {"default"}
     assert set(named[1].split(", ")) == there
