@@ -19,8 +19,9 @@ from scipy.optimize import minimize
 
 from dancetutor_cli.play import Preset
 from dancetutor_cli.play.curves import cost_at
-from dancetutor_cli.play.preset import MAX_WEIGHT, MOST_MS
+from dancetutor_cli.play.preset import MAX_WEIGHT
 from dancetutor_cli.play.tables import DISTANCE_UNIT
+from dancetutor_cli.play.vocabulary import MOST_MS
 
 Floats = NDArray[np.float64]
 SCALE = 100.0  # a cost of so much makes a play e times less likely

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.play.preset import MOST_MS, Curve, Preset
+from dancetutor_cli.play.preset import Curve, Preset
+from dancetutor_cli.play.vocabulary import MOST_MS
 
 
 def curve_table(preset: Preset) -> NDArray[np.int64]:

@@ -12,13 +12,12 @@ from dancetutor_cli.bounded import is_regular, leads_out
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
-from dancetutor_cli.play.vocabulary import MODELS, Model
+from dancetutor_cli.play.vocabulary import MODELS, MOST_MS, Model
 from dancetutor_cli.resources import config_path
 
 DEFAULT_PRESET = "itg"
 _DEFAULTS = {"pump": "pump"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000
-MOST_MS = 2047  # longer times cost like this one
 _KEYS = ("extends", "model", "pads", "roll-window", "switches", "weights", "curves", "confidence")
 
 Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds

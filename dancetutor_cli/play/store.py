@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.play.jit import njit
-from dancetutor_cli.play.preset import MOST_MS as MOST_MS
+from dancetutor_cli.play.vocabulary import MOST_MS as MOST_MS
 
 STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN = range(6)  # places in `counts`
 NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`
@@ -38,7 +38,8 @@ class Tables(NamedTuple):
     move : int32 (, 4), state it leads to, cost without time, number of its facts about time, state it comes from
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, t), costs without time by term: few, which many moves share; terms_hash : int32
-    timed_key : int64, packed facts; timed_hash : int32; timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
+    timed_key : int64, packed facts; timed_hash : int32
+    timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
     """
 
     counts: NDArray[np.int64]

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+MOST_MS = 2047  # since the last row with steps; longer times cost like this one
+
 
 @dataclass(frozen=True, slots=True)
 class Model:
