@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.video.scroll import ScrollSegments
 
+_FOR_AUTHORS = ("unsure-feet",)  # nothing that a dancer does
 _ORDER = ("move", "info", "warning", "error")
 
 
@@ -64,5 +65,8 @@ def _findings(subject: ChartSubject) -> list[tuple[int, str, int]]:
     return [
         (round(finding.beat * TICKS_PER_BEAT), finding.name.replace("-", " "), _ORDER.index(finding.severity))
         for finding in findings_of(subject)
-        if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER
+        if finding.beat is not None
+        and finding.note_column is not None
+        and finding.severity in _ORDER
+        and finding.name not in _FOR_AUTHORS
     ]
