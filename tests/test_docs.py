@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import re
 import shlex
 from pathlib import Path
@@ -79,3 +80,11 @@ def test_links_between_pages_lead_somewhere(name: str) -> None:
         if "://" not in target and not target.startswith("#"):
             there = (ROOT / name).parent / target.split("#")[0]
             assert there.exists(), f"{name} links to {target}, which is not there"
+
+
+def test_the_tables_of_costs_are_those_of_the_presets() -> None:
+    spec = importlib.util.spec_from_file_location("cost_tables", ROOT / "tools" / "cost_tables.py")
+    assert spec is not None and spec.loader is not None
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    assert tool.tables() in PAGES["docs/cost-model.md"], "run tools/cost_tables.py"
