@@ -66,7 +66,9 @@ def at_ticks(segments: Pairs) -> Segments:
 
 def lengths_at_ticks(segments: Pairs) -> Segments:
     """The same for warps and fakes, whose values are lengths: whole ticks too."""
-    found = {tick_of(at): tick_of(length) for at, length in segments}
+    found = {
+        tick_of(at): tick_of(min(length, Fraction(2 * MAX_BEAT))) for at, length in segments
+    }  # to the end of every song
     return tuple((at, Fraction(length)) for at, length in sorted(found.items()) if length > 0)
 
 
