@@ -48,6 +48,8 @@ function place(pose, joint, beside) {
   ];
 }
 
+/** Who asks for reduced motion sees panels light up softly in place of a flash. */
+const BRIGHTEST = globalThis.matchMedia?.("(prefers-reduced-motion: reduce)").matches ? 0.4 : 1;
 const HELD = 0.62; // brightness of a held panel after the flash (video/lights.py)
 
 /**
@@ -77,5 +79,5 @@ export function lightOf(chart, column, second, fade) {
   const level = second < end
     ? Math.max(HELD, fresh)
     : Math.max(0, 1 - (second - end) / fade) ** 1.5 * (end === start ? 1 : HELD);
-  return { level: Math.min(1, level), limb: chart.given.get(n) ?? chart.limb[n] };
+  return { level: Math.min(BRIGHTEST, level), limb: chart.given.get(n) ?? chart.limb[n] };
 }

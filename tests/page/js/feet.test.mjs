@@ -1,0 +1,29 @@
+// Lit panels: a flash that fades, and only a soft light for who asks for reduced motion.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+const chart = {
+  second: [10], end: [10], limb: [1], given: new Map(),
+  lastPress: (/** @type {number} */ _column, /** @type {number} */ second) => (second >= 10 ? 0 : -1),
+};
+
+/** The module anew, in a browser with or without the wish for reduced motion. */
+async function light(reduce) {
+  globalThis.matchMedia = () => ({ matches: reduce });
+  const { lightOf } = await import(`../../../dancetutor_cli/page/js/feet.js?reduce=${reduce}`);
+  return (second) => lightOf(chart, 0, second, 0.4).level;
+}
+
+test("a press is a flash that fades", async () => {
+  const at = await light(false);
+  assert.equal(at(9.9), 0);
+  assert.equal(at(10), 1);
+  assert.ok(at(10.2) < 0.5 && at(10.2) > 0 && at(10.5) === 0);
+});
+
+test("reduced motion has no flash", async () => {
+  const at = await light(true);
+  assert.equal(at(10), 0.4);
+  for (let t = 10; t < 10.5; t += 0.01) assert.ok(at(t) <= 0.4);
+  assert.equal(at(10.5), 0);
+});
