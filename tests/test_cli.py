@@ -125,11 +125,16 @@ class TestBadOutput:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="sends SIGINT to one process, which Windows cannot")
+def hears_ctrl_c() -> None:
+    """A shell starts what runs in its background deaf to Ctrl-C, and these tests with it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_ends_a_render_and_leaves_nothing(tmp_path: Path) -> None:
     command = [str(DANCETUTOR), "render", str(SONG), "--steps-type", "dance-single", "--difficulty", "hard"]
     process = subprocess.Popen(
         [*command, "-o", str(tmp_path / "out.mp4")], cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
-        text=True, start_new_session=True,
+        text=True, start_new_session=True, preexec_fn=hears_ctrl_c,
     )  # fmt: skip
     time.sleep(6)  # somewhere between start and end; the song takes longer than this to render
     process.send_signal(signal.SIGINT)

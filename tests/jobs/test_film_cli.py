@@ -106,13 +106,20 @@ def test_one_picture_for_each_row(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT to send to one process")
+def _hears_ctrl_c() -> None:
+    """A shell starts what runs in its background deaf to Ctrl-C, and these tests with it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_is_one_line_and_leaves_nothing(tmp_path: Path) -> None:
     song = tmp_path / "song.sm"
     song.write_text(SONG + ",\n".join(["1000\n0100\n0010\n0001\n"] * 200) + ";\n")
     out = tmp_path / "out"
     out.mkdir()
     command = [sys.executable, "-m", "dancetutor_cli", "render", str(song), "-o", str(out / "film.mp4"), "--jobs", "2"]
-    process = subprocess.Popen([*command, *TINY], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*command, *TINY], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=_hears_ctrl_c
+    )
     deadline = time.monotonic() + 60
     while not list(out.glob(".film*/segment_*")) and time.monotonic() < deadline:
         time.sleep(0.05)
