@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from play_rows import pad_of, rows_of
 
 from dancetutor_cli import play
 from dancetutor_cli.errors import DancetutorError, UsageError
@@ -156,3 +157,20 @@ def test_an_unknown_preset_names_those_that_exist(tmp_path: Path) -> None:
 def test_gap_of_a_roll(bpm: float, window: float, ticks: int) -> None:
     """The longest of 1, 1/2, 1/3 ... 1/16 beat that the window allows, 1/16 if none does."""
     assert roll_gap(bpm, window) == ticks
+
+
+def test_confidence_follows_the_margin() -> None:
+    """Between 0 and 1 by the preset's curve; sure where there is no other way, unknown where nothing is stepped."""
+    rows = rows_of("1... ..1. .M.. ...1 .1.1 ..1. 1111", 24, 150.0)
+    pad, preset = pad_of("dance-single"), play.load_preset("itg").with_values()
+    found = play.solve(rows, pad, preset)
+    assert found.confidence is not None and found.margin is not None
+    known = {margin: tenths / 1000 for margin, tenths in preset.confidence}
+    stepped = rows.steps.any(axis=1)
+    assert np.isnan(found.confidence[~stepped]).all() and stepped.sum() == 6
+    for sure, margin in zip(found.confidence[stepped], found.margin[stepped], strict=True):
+        below = max((knot for knot in known if knot <= margin), default=0)
+        above = min((knot for knot in known if knot >= margin), default=max(known))
+        assert margin < 0 or known[below] - 0.001 <= sure <= known[above]
+    assert play.solve(rows, pad, preset, margins=False).confidence is None
+    assert play.solve(rows, pad, play.load_preset("thesis")).confidence is None
