@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -89,6 +90,9 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
         return stamp_of(self._source)
 
 
+_KERNEL = re.compile(rb"njit|@kernel\b")  # the second is `video.scene.cpu.kernel`
+
+
 @cache
 def stamp_of(source: Path) -> str:
     """A digest of a module with kernels and of what else in its folder they may be made of."""
@@ -96,7 +100,7 @@ def stamp_of(source: Path) -> str:
         from dancetutor_cli.play.compiled import source_stamp
 
         return source_stamp()
-    beside = (path for path in sorted(source.parent.glob("*.py")) if b"njit" in path.read_bytes())
+    beside = (path for path in sorted(source.parent.glob("*.py")) if _KERNEL.search(path.read_bytes()))
     files = [source, *beside]
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,10 +13,11 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli import kernel_folder
+from dancetutor_cli import kernel_folder, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.doctor import _cache
 from dancetutor_cli.jobs.presets import PresetChoice
+from dancetutor_cli.video.scene import cpu
 
 MODULE = """
 from dancetutor_cli.kernels import njit
@@ -143,3 +145,12 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
     )
     ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, "8 False\n", "")
+
+
+def test_a_kernel_is_compiled_again_when_one_beside_it_changes(tmp_path: Path) -> None:
+    """Those of the software renderer have a decorator of their own, and go into each other."""
+    shutil.copytree(Path(cpu.__file__).parent, tmp_path / "cpu", ignore=shutil.ignore_patterns("__pycache__"))
+    ground, surfaces = tmp_path / "cpu" / "ground.py", tmp_path / "cpu" / "surfaces.py"
+    before = kernels.stamp_of.__wrapped__(ground)
+    surfaces.write_text(surfaces.read_text("utf-8").replace("return", "return 1 *", 1), "utf-8")
+    assert kernels.stamp_of.__wrapped__(ground) != before

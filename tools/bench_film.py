@@ -47,9 +47,9 @@ def child(output: str, kind: str) -> None:
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.jobs.selection import Selection
-    from dancetutor_cli.video.encoder import Encoding
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.video.media.encoder import Encoding
 
     renderer = "gl" if kind == "gl" else "cpu"
     look = FilmLook(load_layout("side-by-side"), (1280, 720), "draft" if kind == "draft" else "good", renderer)
@@ -107,7 +107,7 @@ def film(kind: str) -> list[Row]:
 def gl() -> list[Row]:
     """Rows of the OpenGL renderer, none where there is no OpenGL."""
     from dancetutor_cli.errors import UnavailableError
-    from dancetutor_cli.video.gl.probe import require_gl
+    from dancetutor_cli.video.scene.gl.probe import require_gl
 
     try:
         require_gl()
@@ -148,9 +148,9 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
     from dancetutor_cli.jobs.selection import Selection
-    from dancetutor_cli.video.encoder import Encoding
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.video.media.encoder import Encoding
 
     class Watched(ProcessWorkers):
         """Adds up the time of all workers in which they had work."""

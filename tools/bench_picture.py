@@ -16,8 +16,9 @@ from dancetutor_cli.character import load_dancer
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.pads.pad import load_pad
 from dancetutor_cli.rig.kinematics import joint_matrices
-from dancetutor_cli.video.renderer import QUALITIES, Quality, RendererKind, create
-from dancetutor_cli.video.scene import FrameState, Scene
+from dancetutor_cli.video.choices import QUALITIES, Quality, RendererKind
+from dancetutor_cli.video.scene.renderer import create
+from dancetutor_cli.video.scene.scene import FrameState, Scene
 
 Row = tuple[str, float, str, str, str]
 SIZE = (1280, 720)

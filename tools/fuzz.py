@@ -138,7 +138,7 @@ def _character(path: Path) -> object:
 
 
 def _font(path: Path) -> object:
-    from dancetutor_cli.video.text import Typeface
+    from dancetutor_cli.video.overlay.text import Typeface
 
     face = Typeface(path)
     return face.sprite(face.fit("Ag é日 1", 20, 60), 20, (255, 255, 255))

@@ -17,14 +17,13 @@ from dancetutor_cli.commands.selection import (
     number,
     section_option,
 )
-from dancetutor_cli.video.sides import LEAST_SIDE, MOST_SIDE
+from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Practice, Request
-    from dancetutor_cli.video.encoder import Target
     from dancetutor_cli.video.layout import Layout
+    from dancetutor_cli.video.media.encoder import Target
 
-QUALITIES = ("draft", "good", "best")
 RENDERERS = ("auto", "cpu", "gl")
 GIF_FPS, GIF_SIDE = 25, 480  # of GIF and WebP, where nothing else is asked for
 MOST_LATE = 60_000.0  # milliseconds that the music may be moved
@@ -117,14 +116,14 @@ def film_options(command: _Command) -> _Command:
 def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
     from dancetutor_cli.character import check_character
     from dancetutor_cli.jobs.film_request import Request
-    from dancetutor_cli.video.encoder import even_size
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.video.media.encoder import even_size
     from dancetutor_cli.video.scroll import parse_scroll
 
     layout = load_layout(options["layout"])
     if options["font"] is not None:
-        from dancetutor_cli.video.fonts import font
+        from dancetutor_cli.video.overlay.fonts import font
 
         font(str(options["font"]), 24)  # refused before the work begins
     wanted = options["size"] or _default_size(layout.size, kind)

@@ -20,7 +20,7 @@ from dancetutor_cli.targets import check_file, check_folder, make_folder
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.film_request import Request, Subject
-    from dancetutor_cli.video.encoder import Target
+    from dancetutor_cli.video.media.encoder import Target
 
 LONG_GIF = 20.0  # seconds; a megabyte takes about four
 
@@ -102,7 +102,7 @@ def _render_one(
 ) -> None:
     from dancetutor_cli.jobs.film_request import look_up
     from dancetutor_cli.jobs.presets import choice_for
-    from dancetutor_cli.video.encoder import target_of
+    from dancetutor_cli.video.media.encoder import target_of
 
     kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
     for file in (output, options["poster"]):
@@ -154,8 +154,8 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.reports.progress import FilmProgress
-    from dancetutor_cli.video.encoder import Encoding
-    from dancetutor_cli.video.probe import choose
+    from dancetutor_cli.video.media.encoder import Encoding
+    from dancetutor_cli.video.media.probe import choose
 
     def prepared() -> Prepared:
         film = prepare(request, subject)

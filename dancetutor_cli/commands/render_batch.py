@@ -64,8 +64,8 @@ def _batch(
     path: Path, output: Path | None, frames: Path | None, longest: float | None, options: dict[str, Any]
 ) -> BatchRequest:
     from dancetutor_cli.jobs.film_list import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
-    from dancetutor_cli.video.encoder import Encoding
-    from dancetutor_cli.video.probe import choose
+    from dancetutor_cli.video.media.encoder import Encoding
+    from dancetutor_cli.video.media.probe import choose
 
     request = film_request(path, options, "png" if frames else "mp4")
     look = request.look

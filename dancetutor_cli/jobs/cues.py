@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.play.model import Limb
+from dancetutor_cli.video.media.subtitles import HOLD
 from dancetutor_cli.video.notes import Cue
-from dancetutor_cli.video.subtitles import HOLD
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing

@@ -62,7 +62,7 @@ def _cpu() -> Check:
 
 def _gl() -> Check:
     from dancetutor_cli.errors import UnavailableError
-    from dancetutor_cli.video.gl.probe import gpu_device, require_gl
+    from dancetutor_cli.video.scene.gl.probe import gpu_device, require_gl
 
     try:
         require_gl()
@@ -78,7 +78,7 @@ def _gl() -> Check:
 def _ffmpeg() -> Check:
     import subprocess
 
-    from dancetutor_cli.video.ffmpeg import executable
+    from dancetutor_cli.video.media.ffmpeg import executable
 
     path = executable()
     said = subprocess.run([path, "-version"], capture_output=True, text=True, check=True, timeout=20).stdout
@@ -87,7 +87,7 @@ def _ffmpeg() -> Check:
 
 
 def _encoder(name: str) -> Check:
-    from dancetutor_cli.video.probe import works
+    from dancetutor_cli.video.media.probe import works
 
     label = f"encoder {name}"
     failure = works(ENCODERS[name])
@@ -101,7 +101,7 @@ def _encoder(name: str) -> Check:
 def _rubberband() -> Check:
     import numpy as np
 
-    from dancetutor_cli.video.sound import RATE, stretch
+    from dancetutor_cli.video.media.sound import RATE, stretch
 
     stretch(np.zeros((RATE // 4, 2), dtype=np.float32), 0.5)
     return Check("speed change", "ok", "rubberband changes the speed and keeps the pitch")
@@ -123,8 +123,8 @@ def _cache() -> Check:
 
 
 def _font() -> Check:
-    from dancetutor_cli.video.fonts import system_fonts
-    from dancetutor_cli.video.text import Typeface
+    from dancetutor_cli.video.overlay.fonts import system_fonts
+    from dancetutor_cli.video.overlay.text import Typeface
 
     missing = Typeface().missing("".join(SCRIPTS.values()))
     if not missing:

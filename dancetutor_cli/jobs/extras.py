@@ -75,7 +75,7 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
 
 def write_subtitles(path: Path, plan: FilmPlan) -> str | None:
     """Subtitles that name the moves, beside the film. Returns a warning if there is nothing to name, so no file."""
-    from dancetutor_cli.video.subtitles import subtitle_style, subtitles
+    from dancetutor_cli.video.media.subtitles import subtitle_style, subtitles
 
     text = subtitles(plan.cues, plan.clock, subtitle_style())
     if not text:

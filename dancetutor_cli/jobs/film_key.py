@@ -17,7 +17,7 @@ from dancetutor_cli.resources import PACKAGE, config_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Request, Subject
-    from dancetutor_cli.video.encoder import Encoding
+    from dancetutor_cli.video.media.encoder import Encoding
 
 _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")
 

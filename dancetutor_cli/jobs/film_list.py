@@ -13,7 +13,7 @@ from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.jobs.film_request import Request
 from dancetutor_cli.jobs.film_work import FilmJob
 from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.media.encoder import Encoding
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song

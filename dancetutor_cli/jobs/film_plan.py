@@ -15,16 +15,16 @@ from dancetutor_cli.jobs.cues import cues_of
 from dancetutor_cli.jobs.film_request import Request, Subject, whole_song
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import StepKind
-from dancetutor_cli.video.diagram import StepRows
 from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.media.sound import Click, SoundPlan
+from dancetutor_cli.video.media.subtitles import subtitle_style
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
-from dancetutor_cli.video.overlay import SongShape, Words
+from dancetutor_cli.video.overlay.captions import SongShape, Words
+from dancetutor_cli.video.overlay.diagram import StepRows
+from dancetutor_cli.video.overlay.sprites import highway_style, quantisation
+from dancetutor_cli.video.overlay.text import Typeface, clean
 from dancetutor_cli.video.scroll import ScrollSegments, parse_segments, parse_speeds
-from dancetutor_cli.video.sound import Click, SoundPlan
-from dancetutor_cli.video.sprites import highway_style, quantisation
-from dancetutor_cli.video.subtitles import subtitle_style
-from dancetutor_cli.video.text import Typeface, clean
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

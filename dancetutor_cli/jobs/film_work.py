@@ -20,13 +20,13 @@ from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.pool import Report, Task
-from dancetutor_cli.video.encoder import Encoding, join
+from dancetutor_cli.video.media.encoder import Encoding, join
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
-    from dancetutor_cli.video.blit import Frame
+    from dancetutor_cli.video.choices import Quality, RendererKind
     from dancetutor_cli.video.film import Film, FilmPlan
-    from dancetutor_cli.video.film_look import Quality, RendererKind
+    from dancetutor_cli.video.picture import Frame
 
 SEGMENT_SECONDS = 4.0  # of film; the same whatever the number of workers, so that the files are the same too
 STATE = ".dancetutor"  # folder beside the films of a batch: what is done, and what is in work
@@ -205,8 +205,10 @@ def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
     """
     from dancetutor_cli.character import load_dancer
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.video import dancer, film, renderer, yuv  # noqa: F401
-    from dancetutor_cli.video.scene import FrameState, Scene
+    from dancetutor_cli.video import film  # noqa: F401
+    from dancetutor_cli.video.media import yuv  # noqa: F401
+    from dancetutor_cli.video.scene import dancer, renderer  # noqa: F401
+    from dancetutor_cli.video.scene.scene import FrameState, Scene
 
     pad = load_pad("dance-single")
     if pad is None or renderer.chosen(kind) != "cpu":
@@ -219,7 +221,7 @@ def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
 
 def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encoding) -> int:
     """Draw and encode one segment; returns its number. The segment's file appears whole or not at all."""
-    from dancetutor_cli.video.encoder import encode_segment
+    from dancetutor_cli.video.media.encoder import encode_segment
 
     film = _film(plan)
     part = segment.path
@@ -262,7 +264,7 @@ def _counted(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator
 
 def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | None:
     """The sound track as a WAV file in `folder`; None for a silent film."""
-    from dancetutor_cli.video import sound
+    from dancetutor_cli.video.media import sound
 
     if encoding.target != "mp4" or prepared.sound is None:
         return None

@@ -140,7 +140,7 @@ def _content(
 
 def _words(song: Song, chart: Chart, preset: str) -> dict[str, str]:
     from dancetutor_cli.jobs.film_plan import bpm_text
-    from dancetutor_cli.video.text import clean
+    from dancetutor_cli.video.overlay.text import clean
 
     return {
         "title": clean(" ".join(part for part in (song.title or song.path.stem, song.subtitle) if part)),

@@ -41,7 +41,7 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
     from dancetutor_cli import chart as charts
     from dancetutor_cli.jobs.film_list import DEFAULT_NAME, chart_files, file_name
     from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.video.text import clean
+    from dancetutor_cli.video.overlay.text import clean
 
     jobs: list[PageJob] = []
     bad: list[tuple[Path, str]] = []

@@ -14,9 +14,9 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.pool import Task, Workers, open_workers
-from dancetutor_cli.video.encoder import Encoding
-from dancetutor_cli.video.ffmpeg import EncoderError
-from dancetutor_cli.video.film_look import RendererKind
+from dancetutor_cli.video.choices import RendererKind
+from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.media.ffmpeg import EncoderError
 
 
 class Progress(Protocol):

@@ -10,7 +10,8 @@ import numpy as np
 from dancetutor_cli.jobs.film_request import Practice, Request, look_up
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.resources import charts_path
-from dancetutor_cli.video.film_look import QUALITIES, FilmLook, Quality
+from dancetutor_cli.video.choices import QUALITIES, Quality
+from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def _draw(prepared: Prepared, quality: Quality) -> None:
     from dataclasses import replace
 
     from dancetutor_cli.video.film import Film
-    from dancetutor_cli.video.yuv import yuv420
+    from dancetutor_cli.video.media.yuv import yuv420
 
     look = replace(prepared.plan.look, quality=quality)
     film = Film(replace(prepared.plan, look=look))

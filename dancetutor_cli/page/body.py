@@ -13,8 +13,8 @@ from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import palm_points
-from dancetutor_cli.video.geometry import Packed, pack
-from dancetutor_cli.video.props import JOINT, bar_matrix, with_bar
+from dancetutor_cli.video.scene.geometry import Packed, pack
+from dancetutor_cli.video.scene.props import JOINT, bar_matrix, with_bar
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.model import Character
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 TICK = 1e-5  # seconds and metres of the smallest step of a time and of a place
 QUALITY = 86  # of the texture as WebP
 STILL = -2  # "parent" of a joint that no bone carries: the bar's
-_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # beyond ankle and ball, as in `video.scene`
+_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # beyond ankle and ball, as in `video.scene.scene`
 
 
 def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float) -> dict[str, Any]:

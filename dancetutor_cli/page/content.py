@@ -11,9 +11,9 @@ import numpy as np
 from dancetutor_cli.colours import hex_colour, limb_colours
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.body import pack_body, pack_motion
-from dancetutor_cli.video.scene import SOLE_RADIUS, Scene
-from dancetutor_cli.video.sprites import highway_style
-from dancetutor_cli.video.stage import PANEL
+from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.scene.scene import SOLE_RADIUS, Scene
+from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.model import Character

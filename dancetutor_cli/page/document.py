@@ -16,7 +16,7 @@ from typing import Any
 
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.bundle import bundle
-from dancetutor_cli.video.gl.sources import SHADERS, web_source
+from dancetutor_cli.video.scene.gl.sources import SHADERS, web_source
 
 HERE = Path(__file__).resolve().parent
 LANGUAGES = ("en", "de")  # the first one holds where a label is missing in another

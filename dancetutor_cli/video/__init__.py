@@ -1,0 +1,7 @@
+"""Films, parted by what is drawn. No part imports another one; `film` puts them into one picture.
+
+overlay   flat, on top: highway, captions, pad diagram, words, and the sprites and letters they are made of
+scene     in space: camera, stage, the dancer's meshes, and the renderers `cpu` and `gl` that draw her
+media     outside of the picture: ffmpeg, encoder, sound, subtitles
+film      one frame of all these; beside it what more than one part needs: clock, layout, notes, lights, scroll
+"""

@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.video import overlay
-from dancetutor_cli.video.announce import Calls, Runs
-from dancetutor_cli.video.blit import Frame
 from dancetutor_cli.video.clock import Clock
-from dancetutor_cli.video.diagram import FeetDiagram, NextRows, PadMap, StepRows
 from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.highway import Highway, HighwayGeometry
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
+from dancetutor_cli.video.overlay import captions
+from dancetutor_cli.video.overlay.announce import Calls, Runs
+from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, StepRows
+from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry
+from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Frame
+from dancetutor_cli.video.scene.television import Television
 from dancetutor_cli.video.scroll import parse_scroll
-from dancetutor_cli.video.sprites import highway_style
-from dancetutor_cli.video.television import Television
-from dancetutor_cli.video.text import Typeface
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.model import Character
     from dancetutor_cli.motion.model import Motion
-    from dancetutor_cli.video.dancer import Dancer
-    from dancetutor_cli.video.stage import PadLike
+    from dancetutor_cli.video.picture import PadLike
+    from dancetutor_cli.video.scene.dancer import Dancer
 
 BACKGROUND = (11, 12, 22)
 LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
@@ -51,8 +51,8 @@ class FilmPlan:
 
     look: FilmLook
     clock: Clock
-    words: overlay.Words
-    song: overlay.SongShape
+    words: captions.Words
+    song: captions.SongShape
     notes: NoteTrack
     presses: Presses
     lines: BeatLines
@@ -108,24 +108,24 @@ class Film:
         return self.layout.box(name, self.size, self.columns)
 
     @cached_property
-    def _header(self) -> overlay.Header | None:
+    def _header(self) -> captions.Header | None:
         if (part := self.layout.header) is None:
             return None
         scale = self.scale * part.text
-        return overlay.Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
+        return captions.Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
 
     @cached_property
-    def _legend(self) -> overlay.Legend | None:
+    def _legend(self) -> captions.Legend | None:
         if (part := self.layout.legend) is None:
             return None
         limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
-        return overlay.Legend(limbs, self._box("legend"), self.scale * part.text, self.face)
+        return captions.Legend(limbs, self._box("legend"), self.scale * part.text, self.face)
 
     @cached_property
-    def _progress(self) -> overlay.Progress | None:
+    def _progress(self) -> captions.Progress | None:
         if (part := self.layout.progress) is None:
             return None
-        return overlay.Progress(self.plan.song, self._box("progress"), self.scale * part.text, self.face, self.style)
+        return captions.Progress(self.plan.song, self._box("progress"), self.scale * part.text, self.face, self.style)
 
     @cached_property
     def _runs(self) -> Runs:
@@ -156,7 +156,7 @@ class Film:
     @cached_property
     def _dancer(self) -> Dancer:
         """The renderer of the dancer's box; made in the process that draws."""
-        from dancetutor_cli.video import dancer
+        from dancetutor_cli.video.scene import dancer
 
         plan, look = self.plan, self.plan.look
         left, top, right, bottom = self._box("dancer")

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
+from dancetutor_cli.video.choices import Quality, RendererKind
 from dancetutor_cli.video.layout import Layout
 from dancetutor_cli.video.scroll import Scroll
-
-Quality = Literal["draft", "good", "best"]
-RendererKind = Literal["auto", "cpu", "gl"]
-QUALITIES: tuple[Quality, ...] = ("draft", "good", "best")
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,11 +23,11 @@ from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.rig.skeleton import Skeleton
-from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.renderer import MOST_JOINTS, create
-from dancetutor_cli.video.scene import Scene
+from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.scene.renderer import MOST_JOINTS, create
+from dancetutor_cli.video.scene.scene import Scene
 
 SONG = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0:\n"
 
@@ -115,7 +115,7 @@ def test_the_camera_shows_all_of_a_tall_character(shared_data: Path) -> None:
 
 def test_a_character_with_many_joints_is_drawn_without_gl(monkeypatch: pytest.MonkeyPatch) -> None:
     """An avatar's hair may have hundreds of bones, more than the shaders hold: auto does not fail for it."""
-    monkeypatch.setattr("dancetutor_cli.video.renderer._gpu", lambda: True)
+    monkeypatch.setattr("dancetutor_cli.video.scene.renderer._gpu", lambda: True)
     mannequin = load_character("mannequin")
     old, more = mannequin.skeleton, MOST_JOINTS
     skeleton = Skeleton(

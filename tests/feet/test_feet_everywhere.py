@@ -50,7 +50,7 @@ def test_render(song: Path) -> None:
     from dancetutor_cli.jobs import film_plan
     from dancetutor_cli.jobs.film_request import Request as FilmRequest
     from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.video.film import FilmLook
+    from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
 
     request = FilmRequest(song, Selection(), FilmLook(load_layout("highway"), (64, 48)), fps=12, mute=True)

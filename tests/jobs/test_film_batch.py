@@ -18,9 +18,9 @@ from dancetutor_cli.jobs.film_request import Request
 from dancetutor_cli.jobs.film_work import STATE, FilmJob, Outcome
 from dancetutor_cli.jobs.pool import Done, SerialWorkers
 from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.media.encoder import Encoding
 
 SIZE = (64, 64)
 NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
@@ -197,7 +197,7 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
         raise FileError(path, "No space left on device")
 
     monkeypatch.setattr(film_work, "_film", lambda plan: Pictures())
-    monkeypatch.setattr("dancetutor_cli.video.encoder.encode_segment", full)
+    monkeypatch.setattr("dancetutor_cli.video.media.encoder.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]
         segment = film_work.Segment(0, 0, 4, tmp_path / name)

@@ -11,8 +11,8 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.jobs.cues import cues_of
 from dancetutor_cli.jobs.feet import solve_with_feet
 from dancetutor_cli.play import load_preset
+from dancetutor_cli.video.media.subtitles import subtitle_style
 from dancetutor_cli.video.notes import Cue
-from dancetutor_cli.video.subtitles import subtitle_style
 
 HEAD = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
 LEFT, RIGHT = ("left foot",), ("right foot",)

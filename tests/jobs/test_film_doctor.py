@@ -11,8 +11,9 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.jobs import doctor
 from dancetutor_cli.jobs.doctor import Check, examine
-from dancetutor_cli.video import probe, text
-from dancetutor_cli.video.gl import probe as gl_probe
+from dancetutor_cli.video.media import probe
+from dancetutor_cli.video.overlay import text
+from dancetutor_cli.video.scene.gl import probe as gl_probe
 
 
 def by_name() -> dict[str, Check]:

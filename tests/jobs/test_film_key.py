@@ -17,9 +17,9 @@ from dancetutor_cli.jobs.lint_run import LintRun
 from dancetutor_cli.jobs.lint_run import Request as LintRequest
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.library.feet_files import places_of_feet
-from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.scroll import parse_scroll
 
 ENCODING = Encoding("mp4", (64, 64), 12)

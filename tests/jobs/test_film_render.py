@@ -18,11 +18,11 @@ from PIL import Image
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.render import make_film
-from dancetutor_cli.video import ffmpeg
 from dancetutor_cli.video.clock import Clock, Pass
-from dancetutor_cli.video.encoder import Encoding
+from dancetutor_cli.video.media import ffmpeg
+from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.media.sound import SoundPlan
 from dancetutor_cli.video.notes import NoteTrack
-from dancetutor_cli.video.sound import SoundPlan
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "video"))
 from film_plans import film_plan

@@ -29,9 +29,9 @@ from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.jobs.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.play import Preset, load_preset, preset_names
-from dancetutor_cli.video.encoder import Encoding
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.media.encoder import Encoding
 
 CHART = "#NOTES:\n {}:\n :\n {}:\n {}:\n :\n{}\n;\n"
 DANCE, PUMP = "1000\n0001\n1000\n0001", "10000\n00001\n10000\n00001"

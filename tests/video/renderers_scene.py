@@ -11,7 +11,7 @@ from dancetutor_cli.character.model import Character, Material, Mesh
 from dancetutor_cli.pads.pad import load_pad
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.rig.skeleton import dancer_skeleton
-from dancetutor_cli.video.scene import FrameState, Scene
+from dancetutor_cli.video.scene.scene import FrameState, Scene
 
 GOLDEN = Path(__file__).resolve().parent.parent / "data" / "golden"
 SIZE = (160, 90)
@@ -155,7 +155,7 @@ GOLDENS = {  # name: (steps type, quality, pose, camera, lit, by)
 
 def golden_frame(name: str):
     """The frame of one golden file, uint8 (90, 160, 3)."""
-    from dancetutor_cli.video.renderer import create
+    from dancetutor_cli.video.scene.renderer import create
 
     steps_type, quality, kind, camera, lit, by = GOLDENS[name]
     the_scene = scene(steps_type)

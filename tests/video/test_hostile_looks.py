@@ -13,8 +13,8 @@ from PIL import ImageFont
 from dancetutor_cli.commands import cli
 from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.resources import charts_path
-from dancetutor_cli.video.fonts import font, has_glyph
 from dancetutor_cli.video.layout import layout_names, load_layout
+from dancetutor_cli.video.overlay.fonts import font, has_glyph
 
 NOTES = "size: [640, 360]\nhighway: {box: [0, 0, 1, 1], lane: 64}\n"
 SONG = charts_path() / "two_left_feet" / "two_left_feet.ssc"

@@ -1,0 +1,1 @@
+"""What a film is besides its pictures: encoded files, sound, subtitles; all calls of ffmpeg."""

@@ -1,0 +1,105 @@
+"""Words that come and go: which run of a practice film this is, the count-in, and the moves called out."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from dancetutor_cli.video.clock import Clock
+from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle
+from dancetutor_cli.video.overlay.captions import WHITE, pill
+from dancetutor_cli.video.overlay.sprites import HighwayStyle
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Frame
+
+CALL_STAYS = 0.35  # seconds that a call stays after its note
+
+
+class Runs:
+    """Which run of a practice film this is and how fast; and the count-in.
+
+    box : what the label stands in, in its middle; or only its top left corner, (left, top)
+    count : what the numbers of the count-in stand in
+    """
+
+    def __init__(self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface) -> None:
+        self.clock, self.box, self.count = clock, box, count
+        several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
+        texts = [self._text(number) for number in range(len(clock.passes))] if several else []
+        self.labels = [pill(text, 20 * scale, WHITE, face) for text in texts]
+        counts = range(1, max(one.count for one in clock.passes) + 1)
+        big = min(150 * scale, 0.8 * (count[3] - count[1]))
+        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
+
+    def _text(self, number: int) -> str:
+        one, count = self.clock.passes[number], len(self.clock.passes)
+        speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
+        return f"{speed} · {number + 1} of {count}" if count > 1 else speed
+
+    def draw(self, frame: Frame, second: float, run: int) -> None:
+        """Draw at `second` of the music in pass `run`."""
+        if self.labels:
+            label = self.labels[run]
+            x, y = (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
+            blit(frame, label, x, round(y))
+        one = self.clock.passes[run]
+        if one.count and second < one.sound_from - 1e-6:
+            left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
+            number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
+            fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
+            x, y = _middle(number, self.count)
+            blit(frame, number, x, round(y), fade)
+
+
+def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
+    left, top, right, bottom = box
+    return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
+
+
+class Calls:
+    """Moves called out before they come, at the top right of `box`, with the time left as a bar.
+
+    The same words stand there once: for the move that comes next, and until a moment after it.
+    """
+
+    SHOWN = 2  # at a time, the nearest on top
+
+    def __init__(
+        self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
+    ) -> None:
+        self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
+        self.seconds = np.array([one.second for one in callouts])
+        self._sprite = lru_cache(maxsize=32)(self._pill)
+
+    def _pill(self, text: str, severity: str) -> Sprite:
+        size = 24 * self.scale
+        text, size = self.face.shrink(text, size, self.box[2] - self.box[0] - 0.8 * size)
+        return pill(text, size, self.style.callout[severity], self.face)
+
+    def _shown(self, second: float) -> list[Callout]:
+        first, last = np.searchsorted(self.seconds, (second - CALL_STAYS, second + self.style.callout_seconds))
+        by_text: dict[str, Callout] = {}
+        for one in self.callouts[int(first) : int(last)]:
+            if one.text not in by_text or by_text[one.text].second < second:
+                by_text[one.text] = one
+        return sorted(by_text.values(), key=lambda one: one.second)[: self.SHOWN]
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw what comes within the next `callout_seconds` after `second`."""
+        y = float(self.box[1])
+        for one in self._shown(second):
+            left = one.second - second
+            label = self._sprite(one.text, one.severity)
+            x = self.box[2] - label.shape[1]
+            fade = min(1.0, (self.style.callout_seconds - left) / 0.15, 1.0 + left / CALL_STAYS)
+            blit(frame, label, x, round(y), fade)
+            y += label.shape[0] + 4 * self.scale
+            share = min(1.0, max(0.0, left / self.style.callout_seconds))
+            bar = (label.shape[1] - 8 * self.scale) * share
+            edge = x + 4 * self.scale
+            rectangle(frame, edge, y, edge + bar, y + 4 * self.scale, self.style.callout[one.severity], 0.9 * fade)
+            y += 14 * self.scale

@@ -1,0 +1,152 @@
+"""Drawing on a frame: premultiplied sprites at sub-pixel places, tiled strips and filled rectangles.
+
+A frame is uint8 (h, w, 3) sRGB. A sprite is uint8 (h, w, 4), its colours multiplied by its alpha. Blending happens on
+the sRGB values, as image editors do; everything is integer arithmetic, so that frames are the same on every machine.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.picture import Frame
+
+Sprite = NDArray[np.uint8]
+
+
+@njit(cache=True)
+def _blit(
+    frame: Any, sprite: Any, x: int, y: int, fraction: int, opacity: int, low: int, high: int, gain: int
+) -> None:  # pragma: no cover
+    """Sprite row i covers frame rows y + i and, by `fraction` of 256, y + i + 1. Rows low..high of the frame only."""
+    height, width = frame.shape[0], frame.shape[1]
+    rows, columns = sprite.shape[0], sprite.shape[1]
+    first = max(0, -x)
+    last = min(columns, width - x)
+    for r in range(rows + 1):
+        fy = y + r
+        if fy < max(low, 0) or fy >= min(high, height):
+            continue
+        for c in range(first, last):
+            a0 = sprite[r, c, 3] if r < rows else 0
+            a1 = sprite[r - 1, c, 3] if r > 0 else 0
+            alpha = a0 * (256 - fraction) + a1 * fraction  # 0..255 * 256
+            if alpha == 0:
+                continue
+            keep = 255 * 65536 - alpha * opacity
+            for k in range(3):
+                s0 = sprite[r, c, k] if r < rows else 0
+                s1 = sprite[r - 1, c, k] if r > 0 else 0
+                colour = (s0 * (256 - fraction) + s1 * fraction) * opacity
+                value = (frame[fy, x + c, k] * keep + colour * gain // 256 * 255 + 255 * 32768) // (255 * 65536)
+                frame[fy, x + c, k] = min(255, value)
+
+
+@njit(cache=True)
+def _strip(
+    frame: Any, tile: Any, x: int, top: int, bottom: int, phase: int, opacity: int, low: int, high: int
+) -> None:  # pragma: no cover
+    """Repeat `tile` downwards; top, bottom and phase in 1/256 pixels. End rows are covered by their share."""
+    height, width = frame.shape[0], frame.shape[1]
+    rows, columns = tile.shape[0], tile.shape[1]
+    first = max(0, -x)
+    last = min(columns, width - x)
+    start = max(top >> 8, low, 0)
+    end = min((bottom + 255) >> 8, high, height)
+    for fy in range(start, end):
+        cover = min(bottom, (fy + 1) << 8) - max(top, fy << 8)
+        if cover <= 0:
+            continue
+        offset = (fy << 8) - phase
+        fraction = offset & 255
+        r0 = (offset >> 8) % rows
+        r1 = (r0 + 1) % rows
+        weight = opacity * cover // 256
+        for c in range(first, last):
+            alpha = tile[r0, c, 3] * (256 - fraction) + tile[r1, c, 3] * fraction
+            if alpha == 0:
+                continue
+            keep = 255 * 65536 - alpha * weight
+            for k in range(3):
+                colour = tile[r0, c, k] * (256 - fraction) + tile[r1, c, k] * fraction
+                frame[fy, x + c, k] = (frame[fy, x + c, k] * keep + colour * weight * 255 + 255 * 32768) // (
+                    255 * 65536
+                )
+
+
+@njit(cache=True)
+def _rectangle(frame: Any, left: int, top: int, right: int, bottom: int, colour: Any, opacity: int) -> None:
+    """Edges in 1/256 pixels; border pixels are covered by their share."""  # pragma: no cover
+    height, width = frame.shape[0], frame.shape[1]
+    for y in range(max(0, top >> 8), min(height, (bottom + 255) >> 8)):
+        vertical = min(bottom, (y + 1) << 8) - max(top, y << 8)
+        for x in range(max(0, left >> 8), min(width, (right + 255) >> 8)):
+            horizontal = min(right, (x + 1) << 8) - max(left, x << 8)
+            weight = vertical * horizontal * opacity // 65536  # 0..256
+            for k in range(3):
+                frame[y, x, k] = (frame[y, x, k] * (256 - weight) + colour[k] * weight + 128) // 256
+
+
+def blit(
+    frame: Frame,
+    sprite: Sprite,
+    x: float,
+    y: float,
+    opacity: float = 1.0,
+    rows: tuple[int, int] | None = None,
+    gain: float = 1.0,
+) -> None:
+    """Draw `sprite` with its top left at (x, y), y with sub-pixel accuracy, x rounded.
+
+    opacity : 0..1; rows : draw only on these frame rows [low, high); gain : brightens (1 leaves colours as they are)
+    """
+    level = round(256 * min(1.0, opacity))
+    if level <= 0:
+        return
+    whole = math.floor(y)
+    fraction = round(256 * (y - whole))
+    low, high = rows if rows is not None else (0, frame.shape[0])
+    _blit(frame, sprite, round(x), whole, fraction, level, low, high, round(256 * gain))
+
+
+def strip(
+    frame: Frame,
+    tile: Sprite,
+    x: float,
+    top: float,
+    bottom: float,
+    phase: float,
+    opacity: float = 1.0,
+    rows: tuple[int, int] | None = None,
+) -> None:
+    """Fill [top, bottom) with `tile` repeated downwards, its first row at `phase`; all with sub-pixel accuracy."""
+    low, high = rows if rows is not None else (0, frame.shape[0])
+    if bottom <= low or top >= high:
+        return
+    top, bottom = max(top, low - 1.0), min(bottom, high + 1.0)  # also keeps absurdly long holds inside integers
+    phase = math.fmod(phase, tile.shape[0])
+    args = (round(256 * top), round(256 * bottom), round(256 * phase))
+    _strip(frame, tile, round(x), *args, round(256 * min(1.0, opacity)), low, high)
+
+
+def rectangle(
+    frame: Frame,
+    left: float,
+    top: float,
+    right: float,
+    bottom: float,
+    colour: tuple[int, int, int],
+    opacity: float = 1.0,
+) -> None:
+    """Fill a rectangle, edges with sub-pixel accuracy."""
+    height, width = frame.shape[:2]
+    left, right = max(left, 0.0), min(right, float(width))
+    top, bottom = max(top, 0.0), min(bottom, float(height))
+    if right <= left or bottom <= top:
+        return
+    edges = (round(256 * left), round(256 * top), round(256 * right), round(256 * bottom))
+    _rectangle(frame, *edges, np.array(colour, dtype=np.int64), round(256 * min(1.0, opacity)))

@@ -1,0 +1,221 @@
+"""The standing words of the picture: title, artist, difficulty, legend; the strip with density, position and time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.overlay import shapes, sprites
+from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle
+from dancetutor_cli.video.overlay.sprites import HighwayStyle
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Frame
+
+WHITE = (255, 255, 255)
+SOFT = (196, 202, 222)
+INK = (12, 13, 22)
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it."""
+
+    title: str
+    artist: str
+    badge: str
+    difficulty: str
+    detail: str
+    credit: str = ""
+
+
+class Header:
+    """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
+
+    room : share of the box's width for the lines below the title; longer ones are written smaller, then cut off
+    """
+
+    def __init__(
+        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: float = 1.0
+    ) -> None:
+        self.lines: list[tuple[Sprite, float, float]] = []
+        self._scale, self._face = scale, face
+        self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
+        title_size, small = 33 * scale, 19 * scale
+        title = face.fit(words.title, title_size, 0.97 * (box[2] - box[0]))
+        self.bottom = float(box[1])
+        self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], 0)
+        if words.artist:
+            self._line(words.artist, small, box[0], 1 * scale, weight=0.25)
+        badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
+        top = self.bottom + 6 * scale
+        self._add(badge, box[0] + 2 * scale, 6 * scale)
+        if words.detail:
+            x = box[0] + badge.shape[1] + 10 * scale
+            self.lines.append(self._beside(words.detail, small * 0.85, x, top + badge.shape[0] / 2))
+        if words.credit:
+            self._line(words.credit, small * 0.85, box[0], 3 * scale)
+
+    def _add(self, sprite: Sprite, x: float, gap: float) -> None:
+        self.lines.append((sprite, x, self.bottom + gap))
+        self.bottom += gap + sprite.shape[0]
+
+    def _line(self, text: str, size: float, x: float, gap: float, weight: float = 0.0) -> None:
+        text, size = self._face.shrink(text, size, self._right - x)
+        self._add(self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale), x, gap)
+
+    def _beside(self, text: str, size: float, x: float, middle: float) -> tuple[Sprite, float, float]:
+        text, size = self._face.shrink(text, size, self._right - x)
+        sprite = self._face.sprite(text, size, SOFT, shadow=1.5 * self._scale)
+        return sprite, x, middle - sprite.shape[0] / 2
+
+    def draw(self, frame: Frame) -> None:
+        """Lay the words over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y))
+
+
+def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
+    """Dark words on a coloured lozenge."""
+    words = face.sprite(text, size, INK, weight=size / 62)
+    height = max(8, round(1.55 * size))
+    width = max(words.shape[1] + height // 2 + 2, height)
+    return lozenge(height, width, height / 2 - 1, colour, words)
+
+
+def lozenge(
+    height: int,
+    width: int,
+    radius: float,
+    colour: tuple[int, int, int],
+    words: Sprite | None = None,
+    opacity: float = 1,
+) -> Sprite:
+    """A box with round corners, words in its middle."""
+    painter = shapes.Painter(height, width)
+    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
+    painter.paint(shapes.cover(d), colour, opacity)
+    out = painter.sprite()
+    if words is not None:
+        sprites.centre(out, words)
+    return out
+
+
+class Legend:
+    """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them.
+
+    A dark plate below keeps them readable over a panel of the pad.
+    """
+
+    def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface) -> None:
+        names = ("left foot", "right foot", "left hand", "right hand")
+        shown = sorted({0, 1} | limbs)
+        step, edge = 31 * scale, 8 * scale
+        top = box[3] - step * len(shown)
+        lines: list[tuple[Sprite, float, float]] = []
+        right = float(box[0])
+        for row, limb in enumerate(shown):
+            middle = top + (row + 0.5) * step
+            mark = sprites.marker(max(8, round(24 * scale)), limb, face)
+            text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale)
+            x = box[0] + mark.shape[1] + 5 * scale
+            lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
+            right = max(right, x + text.shape[1])
+        size = round(box[3] - top + 1.2 * edge), round(right - box[0] + 2 * edge)
+        plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
+        self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
+
+    def draw(self, frame: Frame) -> None:
+        """Lay the legend over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y))
+
+
+@dataclass(frozen=True, slots=True)
+class SongShape:
+    """The whole song for the strip. steps : float64 (n,), seconds of its steps, sorted; start, end : shown range;
+
+    section : the rendered part, (start, end) seconds
+    """
+
+    steps: NDArray[np.float64]
+    start: float
+    end: float
+    section: tuple[float, float]
+
+
+class Progress:
+    """The strip with the density of the whole song, the position, and the time."""
+
+    def __init__(self, song: SongShape, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
+        self.song, self.box, self.scale, self.face = song, box, scale, face
+        left, _, right, _ = box
+        self.text = 17 * scale
+        total = clock_text(song.end)
+        room = face.width(f"{total} / {total}", self.text) + 34 * scale
+        self.graph = (round(left + room), right - round(20 * scale))
+        self.ahead = self._paint(style, bright=False)
+        self.played = self._paint(style, bright=True)
+        self._sprite = lru_cache(maxsize=16)(self._time_sprite)
+
+    def _paint(self, style: HighwayStyle, bright: bool) -> Frame:
+        left, top, right, bottom = self.box
+        picture = np.empty((bottom - top, right - left, 3), dtype=np.uint8)
+        picture[...] = (9, 10, 19)
+        picture[: max(1, round(1.2 * self.scale))] = (44, 48, 70)
+        a, b = self.graph[0] - left, self.graph[1] - left
+        if b <= a:
+            return picture
+        heights = density(self.song, b - a, max(2.0, 2.0 * self.scale))
+        floor = bottom - top - 7 * self.scale
+        room = floor - 7 * self.scale
+        colour = style.accent if bright else (92, 98, 128)
+        for x, height in enumerate(heights):
+            base = 1.5 * self.scale
+            rectangle(picture, a + x, floor - base - (room - base) * height, a + x + 1, floor, colour, 0.88)
+        for edge in self.song.section:
+            at = a + self._position(edge) * (b - a)
+            if a < at < b:
+                rectangle(picture, at - self.scale, 0, at + self.scale, bottom - top, style.difficulty["Medium"], 0.8)
+        return picture
+
+    def _position(self, second: float) -> float:
+        return min(1.0, max(0.0, (second - self.song.start) / max(1e-9, self.song.end - self.song.start)))
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw the strip at `second` of the music."""
+        left, top, right, bottom = self.box
+        a, b = self.graph
+        x = a + self._position(second) * (b - a)
+        split = max(0, min(right - left, int(x) - left))
+        frame[top:bottom, left:right] = self.ahead
+        frame[top:bottom, left : left + split] = self.played[:, :split]
+        rectangle(
+            frame, x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale, WHITE
+        )
+        words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
+        blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
+
+    def _time_sprite(self, text: str) -> Sprite:
+        return self.face.sprite(text, self.text, WHITE, weight=0.2 * self.scale)
+
+
+def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
+    """Steps per second along the song, `bins` values, the highest 1."""
+    counts, _ = np.histogram(song.steps, bins=bins, range=(song.start, max(song.end, song.start + 1e-6)))
+    width = max(1, round(max(smooth, bins * 1.2 / max(song.end - song.start, 1.0))))
+    kernel = np.hanning(width + 2)[1:-1]
+    values = np.convolve(counts, kernel / kernel.sum(), mode="same")
+    peak = values.max(initial=0.0)
+    result: NDArray[np.float64] = values / peak if peak > 0 else values.astype(np.float64)
+    return result
+
+
+def clock_text(second: float) -> str:
+    """ "1:05", with hours where there are any; before the music it stands at 0:00."""
+    whole = int(max(0.0, second))
+    hours, rest = divmod(whole, 3600)
+    return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"

@@ -1,0 +1,183 @@
+"""The pad seen from above: where both feet stand now, and small pads with the next rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.lights import EPSILON, PanelLights
+from dancetutor_cli.video.overlay import shapes, sprites
+from dancetutor_cli.video.overlay.blit import Sprite, blit
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Foot, Frame
+
+if TYPE_CHECKING:
+    from dancetutor_cli.video.picture import PadLike
+
+PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
+
+
+@dataclass(frozen=True, slots=True)
+class StepRows:
+    """The rows with steps of a play; r rows, c columns.
+
+    second : float64 (r,), of the music; limb : int8 (r, c), `play.model.Limb`, NONE where nothing is stepped
+    feet : int16 (r, 2), column that each foot stands on after the row, -1 at home
+    """
+
+    second: NDArray[np.float64]
+    limb: NDArray[np.int8]
+    feet: NDArray[np.int16]
+
+
+class PadMap:
+    """A pad from above in a box: maps panel widths to pixels and draws its panels."""
+
+    def __init__(self, pad: PadLike, directions: tuple[float | None, ...], box: PixelBox) -> None:
+        self.panels = np.asarray(pad.panels, dtype=np.float64)
+        self.directions = directions
+        low, high = self.panels.min(0) - 0.5, self.panels.max(0) + 0.5
+        room = (box[2] - box[0], box[3] - box[1])
+        self.unit = 0.98 * min(room[0] / (high[0] - low[0]), room[1] / (high[1] - low[1]))
+        middle = (low + high) / 2
+        self.origin = ((box[0] + box[2]) / 2 - middle[0] * self.unit, (box[1] + box[3]) / 2 + middle[1] * self.unit)
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Pixels of a place in panel widths."""
+        return self.origin[0] + x * self.unit, self.origin[1] - y * self.unit
+
+    def nearness(self, x: float, y: float) -> float:
+        """1 for a place on the pad, 0 for one more than half a panel beside it."""
+        low, high = self.panels.min(0) - 0.5, self.panels.max(0) + 0.5
+        beside = max(low[0] - x, x - high[0], low[1] - y, y - high[1], 0.0)
+        return float(max(0.0, 1.0 - 2.0 * beside))
+
+    def draw(self, frame: Frame, lit: list[tuple[float, int]]) -> None:
+        """Draw the panels; `lit` gives brightness and limb of each."""
+        size = max(4, round(0.95 * self.unit))
+        for (x, y), direction, (level, limb) in zip(self.panels, self.directions, lit, strict=True):
+            px, py = self.place(x, y)
+            at = (round(px - size / 2), round(py - size / 2))
+            blit(frame, panel_sprite(size, direction, None), *at)
+            if level > 0 and limb >= 0:
+                blit(frame, panel_sprite(size, direction, limb), *at, level)
+
+
+@lru_cache(maxsize=128)
+def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite:
+    """A panel with its arrow; lit in the colour of `limb`."""
+    p = shapes.Painter(size, size)
+    d = shapes.rounded_box(p.x, p.y, size / 2 - 1, size / 2 - 1, 0.09 * size)
+    colour = None if limb is None else np.array(limb_colours().by_limb[limb], dtype=np.float64)
+    p.paint(shapes.cover(d), PANEL_EDGE if colour is None else np.clip(colour * 1.1, 0, 255))
+    p.paint(shapes.cover(d + 0.025 * size), PANEL if colour is None else colour * 0.75)
+    arrow = sprites.distance(size, size * 0.62, direction)
+    p.paint(shapes.cover(arrow), (120, 128, 168) if colour is None else (255, 255, 255), 0.55)
+    return p.sprite()
+
+
+@lru_cache(maxsize=512)
+def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool) -> Sprite:
+    """A sole from above, its toe turned `degrees` clockwise from the screen, with its letter."""
+    p = shapes.Painter(size, size)
+    a = np.radians(degrees)
+    x, y = p.x * np.cos(a) + p.y * np.sin(a), -p.x * np.sin(a) + p.y * np.cos(a)
+    mirror = 1 if limb == 0 else -1
+    along = np.clip((y / size) / 0.3, -1, 1)
+    width = 0.15 - 0.022 * along  # wider at the toes than at the heel
+    bend = 0.02 * mirror * (along**2 - 0.3)
+    capsule = np.hypot(x / size - bend, np.maximum(np.abs(y / size) - 0.26, 0)) - width
+    d = capsule * size
+    colour = np.array(limb_colours().by_limb[limb], dtype=np.float64)
+    p.paint(shapes.cover(d - 0.012 * size), (8, 9, 16), 0.85 if not ghost else 0.4)
+    p.paint(shapes.cover(d + 0.005 * size), (255, 255, 255), 0.95 if not ghost else 0.5)
+    p.paint(shapes.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
+    out = p.sprite()
+    sprites.centre(out, face.sprite("LR"[limb], 0.3 * size, (10, 11, 20), weight=0.012 * size))
+    return out
+
+
+class FeetDiagram:
+    """The large pad with both feet on it, at any second."""
+
+    def __init__(self, pads: PadMap, lights: PanelLights, face: Typeface) -> None:
+        self.pads, self.lights, self.face = pads, lights, face
+
+    def draw(self, frame: Frame, second: float, feet: tuple[Foot | None, Foot | None]) -> None:
+        """Draw pad and feet; a lifted foot is larger and lighter."""
+        self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))])
+        for limb, foot in enumerate(feet):
+            if foot is None:
+                continue
+            dx, dy = foot.toe[0] - foot.heel[0], foot.toe[1] - foot.heel[1]
+            degrees = round(np.degrees(np.arctan2(dx, dy)) / 3) * 3 % 360
+            size = max(8, 2 * round(0.5 * self.pads.unit * (1.12 + 0.6 * min(foot.height, 0.3))))
+            shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035)
+            middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
+            x, y = self.pads.place(*middle)
+            if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
+                blit(frame, shoe, round(x - size / 2), y - size / 2, seen)
+
+
+def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
+    """A box in `count` equal parts with gaps: beside each other for axis 0, below each other for axis 1."""
+    low, high = box[axis], box[axis + 2]
+    gap = round((0.04 if axis == 0 else 0.06) * (high - low))
+    length = (high - low - (count - 1) * gap) // count
+    parts = []
+    for number in range(count):
+        start = low + number * (length + gap)
+        part = list(box)
+        part[axis], part[axis + 2] = start, start + length
+        parts.append((part[0], part[1], part[2], part[3]))
+    return parts
+
+
+class NextRows:
+    """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
+
+    They lie beside or below each other, whichever makes them larger.
+    """
+
+    def __init__(
+        self,
+        rows: StepRows,
+        pad: PadLike,
+        directions: tuple[float | None, ...],
+        box: PixelBox,
+        count: int,
+        face: Typeface,
+    ) -> None:
+        self.rows, self.face = rows, face
+        beside = [PadMap(pad, directions, one) for one in cut(box, count, 0)]
+        below = [PadMap(pad, directions, one) for one in cut(box, count, 1)]
+        self.pads = max(beside, below, key=lambda pads: pads[0].unit)
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw the rows that come after `second`."""
+        first = int(np.searchsorted(self.rows.second, second + EPSILON, side="right"))
+        for place, pads in enumerate(self.pads):
+            row = first + place
+            if row >= len(self.rows.second):
+                continue
+            limbs = self.rows.limb[row]
+            pads.draw(frame, [(1.0 if limb >= 0 else 0.0, int(limb)) for limb in limbs])
+            size = max(8, 2 * round(0.5 * pads.unit))
+            for foot, column in enumerate(self.rows.feet[row]):
+                if column >= 0:
+                    self._shoe(frame, pads, size, int(column), foot, int(limbs[column]) != foot)
+            for column in np.flatnonzero(limbs >= 2):
+                mark = sprites.marker(max(8, round(0.5 * pads.unit)), int(limbs[column]), self.face)
+                x, y = pads.place(*pads.panels[column])
+                blit(frame, mark, round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
+
+    def _shoe(self, frame: Frame, pads: PadMap, size: int, column: int, foot: int, resting: bool) -> None:
+        shoe = shoe_sprite(size, 0, foot, self.face, resting)
+        x, y = pads.place(*pads.panels[column])
+        blit(frame, shoe, round(x - size / 2), round(y - size / 2), 0.75 if resting else 1.0)

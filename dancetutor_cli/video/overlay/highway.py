@@ -1,0 +1,265 @@
+"""The highway: notes scrolling to their receptors, with L/R markers, holds, mines, beat lines and flashes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
+from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle, strip
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Frame
+from dancetutor_cli.video.scroll import Scroll
+
+BEATS_PER_MEASURE = 4
+FLAG_LEAST = 0.7  # of its size a label may shrink to before its words are cut off
+
+
+def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
+    """Words in lines of at most `width` pixels where a word is not wider itself; three lines at most."""
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]} {word}"
+        if len(lines) == 3 or face.width(longer, size) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayGeometry:
+    """Where the highway lies, in pixels: box (left, top, right, bottom); lane width; y of the receptors' middle.
+
+    directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
+    """
+
+    box: tuple[int, int, int, int]
+    lane: float
+    receptor: float
+    directions: tuple[float | None, ...]
+    down: bool = False
+
+    @property
+    def left(self) -> float:
+        """x of the first lane; more room is left on the right, where words stand, than for the measure numbers."""
+        spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
+        return self.box[0] + 0.3 * spare
+
+
+@dataclass(frozen=True, slots=True)
+class _Now:
+    """A moment. second : of the music; beat : as drawn; spacing : pixels per beat, or per second with C mods."""
+
+    second: float
+    beat: float
+    spacing: float
+
+
+class Highway:
+    """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
+
+    def __init__(
+        self,
+        notes: NoteTrack,
+        presses: Presses,
+        lines: BeatLines,
+        geometry: HighwayGeometry,
+        scroll: Scroll,
+        fastest_bpm: float,
+        face: Typeface,
+        callouts: tuple[Callout, ...] = (),
+    ) -> None:
+        self.notes, self.presses, self.lines = notes, presses, lines
+        self.geometry, self.face, self.callouts = geometry, face, callouts
+        self._callout_seconds = np.array([c.second for c in callouts])
+        self._callout_beats = np.array([c.beat for c in callouts])
+        self.by_time = scroll.mode == "C"
+        self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
+        self.style = sprites.highway_style()
+        self.size = max(8, round(geometry.lane * self.style.arrow))
+        self.limb_colours = limb_colours().by_limb
+        self.lights = PanelLights(presses, len(geometry.directions), self.style.flash_seconds)
+        self._number = lru_cache(maxsize=256)(self._draw_number)
+        self._flag = lru_cache(maxsize=64)(self._draw_flag)
+        self._make_sprites()
+
+    def _make_sprites(self) -> None:
+        style, size, directions = self.style, self.size, self.geometry.directions
+        kinds = set(directions)
+        is_lift = self.notes.kind == Kind.LIFT
+        self.arrows, self.lifts = self._arrows(~is_lift, hollow=False), self._arrows(is_lift, hollow=True)
+        self.fakes = {d: sprites.arrow(size, d, style.fake) for d in kinds}
+        self.receptors = {d: sprites.receptor(size, d, style.receptor) for d in kinds}
+        glows = dict(enumerate((*self.limb_colours, style.receptor)))
+        used = {int(limb) for limb in np.unique(self.presses.limb)}
+        self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in glows.items() if i in used or i == 4}
+        self.mine = sprites.mine(size, style.mine)
+        body = max(4, round(0.62 * size))
+        self.bodies = {k: sprites.hold_body(body, c, k == Kind.ROLL) for k, c in self._hold_colours()}
+        self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
+        mark = max(6, round(style.mark * self.geometry.lane))
+        self.marks = [sprites.marker(mark, limb, self.face) for limb in range(4)]
+        self.mark_shade = sprites.shade(round(1.35 * mark))
+
+    def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
+        """Sprites of the notes `which`, by direction and quantisation; only what the chart has."""
+        pairs = {
+            (int(c), int(q)) for c, q in zip(self.notes.column[which], self.notes.quantisation[which], strict=True)
+        }
+        wanted = {(self.geometry.directions[c], q) for c, q in pairs}
+        colour = self.style.quantisation
+        return {(d, q): sprites.arrow(self.size, d, colour[sprites.QUANTISATIONS[q]], hollow) for d, q in wanted}
+
+    def _hold_colours(self) -> list[tuple[Kind, tuple[int, int, int]]]:
+        return [(Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)]
+
+    def background(self, frame: Frame) -> None:
+        """The still part, drawn once: panel and lanes."""
+        left, top, right, bottom = self.geometry.box
+        rectangle(frame, left, top, right, bottom, self.style.background, 0.82)
+        lane, x0 = self.geometry.lane, self.geometry.left
+        edge = 0.14 * lane
+        x1 = x0 + lane * len(self.geometry.directions)
+        rectangle(frame, x0 - edge, top, x1 + edge, bottom, (0, 0, 0), 0.35)
+        for x in (x0 - edge, x1 + edge):
+            rectangle(frame, x - 1, top, x + 1, bottom, self.style.lane_line, 0.3)
+        for i in range(1, len(self.geometry.directions)):
+            rectangle(frame, x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom, self.style.lane_line, 0.08)
+
+    def draw(self, frame: Frame, second: float, beat: float, speed: float = 1.0) -> None:
+        """Draw everything that moves at `second` of the music.
+
+        beat : as drawn (scroll segments applied); speed : of the chart's speed segments, which C mods leave out
+        """
+        now = _Now(second, beat, self.spacing * (1.0 if self.by_time else speed))
+        self._draw_lines(frame, now)
+        self._draw_receptors(frame, second, beat)
+        self._draw_notes(frame, now)
+        self._draw_callouts(frame, now)
+
+    def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], now: _Now) -> NDArray[np.float64]:
+        """Middle of things at `seconds`/`beats` on the screen, pixels."""
+        away = seconds - now.second if self.by_time else beats - now.beat
+        result: NDArray[np.float64] = self.geometry.receptor + away * now.spacing
+        return result
+
+    def _visible(self, y: NDArray[np.float64], margin: float) -> NDArray[np.bool_]:
+        _, top, _, bottom = self.geometry.box
+        return (y > top - margin) & (y < bottom + margin)
+
+    def _draw_lines(self, frame: Frame, now: _Now) -> None:
+        y = self._y(self.lines.second, self.lines.beat, now)
+        lane = self.geometry.lane
+        shown = np.flatnonzero(self._visible(y, 2))
+        if len(shown) > 400:  # so dense that lines would be a wall
+            shown = shown[shown % BEATS_PER_MEASURE == 0][:400]
+        x0 = self.geometry.left - 0.14 * lane
+        x1 = self.geometry.left + lane * (len(self.geometry.directions) + 0.14)
+        last_label = -1e9
+        for i in shown:
+            strong = i % BEATS_PER_MEASURE == 0
+            half = (1.25 if strong else 0.6) * lane / 84
+            rectangle(frame, x0, y[i] - half, x1, y[i] + half, self.style.lane_line, 0.42 if strong else 0.13)
+            if strong and abs(y[i] - last_label) > 0.3 * lane:
+                last_label = y[i]
+                number = self._number(int(i) // BEATS_PER_MEASURE)
+                x = x0 - number.shape[1] - 0.06 * lane
+                blit(frame, number, x, y[i] - number.shape[0] / 2, 0.75, self._rows)
+
+    @property
+    def _rows(self) -> tuple[int, int]:
+        return self.geometry.box[1], self.geometry.box[3]
+
+    def _draw_number(self, measure: int) -> Sprite:
+        return self.face.sprite(str(measure), 0.21 * self.geometry.lane, (190, 196, 220))
+
+    def _draw_callouts(self, frame: Frame, now: _Now) -> None:
+        """Words beside the rows they are about, on the right of the lanes."""
+        y = self._y(self._callout_seconds, self._callout_beats, now)
+        x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
+        for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):
+            flag = self._flag(self.callouts[i].text, self.callouts[i].severity)
+            blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
+
+    def _draw_flag(self, text: str, severity: str) -> Sprite:
+        geometry = self.geometry
+        room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
+        size = 0.24 * geometry.lane
+        room -= 0.8 * size + 5  # what the label adds to its words
+        whole, low = self.face.shrink(text, size, room, FLAG_LEAST)
+        words = text.split()
+        if len(words) == 1 or (whole == text and low > 0.95 * size):
+            return sprites.flag([whole], low, self.style.callout[severity], self.face)
+        lines = wrapped(words, size, room, self.face)
+        fitted = [self.face.shrink(line, size, room, FLAG_LEAST) for line in lines]
+        size = min(size for _, size in fitted)
+        return sprites.flag([line for line, _ in fitted], size, self.style.callout[severity], self.face)
+
+    def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
+        pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
+        for column, direction in enumerate(self.geometry.directions):
+            x, y = self._corner(column, self.geometry.receptor, self.size)
+            blit(frame, self.receptors[direction], x, y, 0.95, self._rows, pulse)
+            light, limb = self.lights.at(column, second)
+            if light > 0:
+                glow = self.glows[direction, limb if limb >= 0 else 4]
+                gx, gy = self._corner(column, self.geometry.receptor, glow.shape[0])
+                blit(frame, glow, gx, gy, light, self._rows)
+
+    def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
+        return self.geometry.left + (column + 0.5) * self.geometry.lane - size / 2, y - size / 2
+
+    def _draw_notes(self, frame: Frame, now: _Now) -> None:
+        notes, second = self.notes, now.second
+        y = self._y(notes.second, notes.beat, now)
+        tail = self._y(notes.end_second, notes.end_beat, now)
+        gone = (notes.end_second <= second + 1e-6) & notes.judged & (notes.kind != Kind.MINE)
+        low, high = np.minimum(y, tail), np.maximum(y, tail)
+        _, top, _, bottom = self.geometry.box
+        shown = np.flatnonzero(~gone & (high > top - self.size) & (low < bottom + self.size))
+        if len(shown) > 3000:
+            shown = shown[:3000]  # beyond any readable density; keeps hostile charts bounded
+        held = (notes.second <= second + 1e-6) & notes.judged
+        holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
+        for i in shown[holds]:
+            self._draw_hold(frame, int(i), self.geometry.receptor if held[i] else y[i], y[i], tail[i], bool(held[i]))
+        for i in shown[::-1]:  # the nearest note on top
+            self._draw_head(frame, int(i), self.geometry.receptor if held[i] and notes.kind[i] != Kind.MINE else y[i])
+
+    def _draw_hold(self, frame: Frame, i: int, head: float, phase: float, tail: float, active: bool) -> None:
+        kind = Kind(int(self.notes.kind[i]))
+        tile, end = self.bodies[kind], self.tails[kind]
+        x, _ = self._corner(int(self.notes.column[i]), 0, tile.shape[1])
+        opacity = 1.0 if active else 0.78
+        upper, lower = min(head, tail), max(head, tail)
+        strip(frame, tile, x, upper, lower, phase, opacity, self._rows)
+        if tail >= head:
+            blit(frame, end, x, tail, opacity, self._rows)
+        else:
+            blit(frame, np.ascontiguousarray(end[::-1]), x, tail - end.shape[0], opacity, self._rows)
+
+    def _draw_head(self, frame: Frame, i: int, y: float) -> None:
+        notes = self.notes
+        column, kind = int(notes.column[i]), Kind(int(notes.kind[i]))
+        direction, q = self.geometry.directions[column], int(notes.quantisation[i])
+        if kind == Kind.MINE:
+            sprite = self.mine
+        elif kind == Kind.FAKE or not notes.judged[i]:
+            sprite = self.fakes[direction]
+        else:
+            sprite = (self.lifts if kind == Kind.LIFT else self.arrows)[direction, q]
+        x, top = self._corner(column, y, self.size)
+        blit(frame, sprite, x, top, 1.0 if notes.judged[i] else 0.55, self._rows)
+        limb = int(notes.limb[i])
+        if limb >= 0 and notes.judged[i] and kind != Kind.MINE:
+            for mark in (self.mark_shade, self.marks[limb]):
+                mx, my = self._corner(column, y, mark.shape[0])
+                blit(frame, mark, mx, my, 1.0, self._rows)

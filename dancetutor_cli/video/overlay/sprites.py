@@ -1,0 +1,219 @@
+"""The pictures of the highway, made once for a lane width: arrows, receptors, flashes, mines, holds and L/R markers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.overlay import shapes
+from dancetutor_cli.video.overlay.blit import Sprite
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.settings import RGB, load
+
+QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)
+CENTRE = None  # the direction of a panel in the middle of the pad
+
+# Corners of an arrow that points up, in halves of its size.
+_ARROW = np.array([
+    (0.0, -0.94), (0.94, 0.0), (0.62, 0.32), (0.36, 0.06), (0.36, 0.88),
+    (-0.36, 0.88), (-0.36, 0.06), (-0.62, 0.32), (-0.94, 0.0),
+])  # fmt: skip
+_SQUARE = np.array([(-0.7, -0.7), (0.7, -0.7), (0.7, 0.7), (-0.7, 0.7)])
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayStyle:
+    """configs/highway.yaml: colours sRGB 0..255; sizes in lane widths; times in seconds."""
+
+    quantisation: dict[int, RGB]
+    hold: RGB
+    roll: RGB
+    mine: RGB
+    fake: RGB
+    receptor: RGB
+    background: RGB
+    lane_line: RGB
+    arrow: float
+    mark: float
+    flash_seconds: float
+    panel_seconds: float
+    callouts: dict[str, str]
+    callout_seconds: float
+    callout: dict[str, RGB]
+    difficulty: dict[str, RGB]
+    accent: RGB
+
+
+def highway_style() -> HighwayStyle:
+    """The style of configs/highway.yaml."""
+    return load(config_path("highway.yaml"), HighwayStyle)
+
+
+def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
+    out = np.full(len(tick), len(QUANTISATIONS) - 1)
+    for i in reversed(range(len(QUANTISATIONS) - 1)):
+        out[tick % (192 // QUANTISATIONS[i]) == 0] = i
+    return out
+
+
+def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
+    """Corners of the note shape; direction in degrees clockwise from up."""
+    if direction is None:
+        return np.asarray(_SQUARE * size / 2)
+    a = np.radians(direction)
+    turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
+    return np.asarray(_ARROW @ turn * size / 2)
+
+
+@lru_cache(maxsize=64)
+def distance(canvas: int, size: float, direction: float | None) -> shapes.Field:
+    """Distance to the note shape on a square canvas; the slow part of a sprite, shared by all its colours."""
+    x, y = shapes.grid(canvas, canvas)
+    return shapes.polygon(x, y, _outline(size * 0.96, direction)) - 0.02 * size
+
+
+def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
+    """A note: white rim, body in `colour` lit from above, dark edge. `hollow`: a lift, only its rim in colour."""
+    p = shapes.Painter(size, size)
+    d = distance(size, size * 0.95, direction)
+    unit = size / 64
+    base = np.array(colour, dtype=np.float64)
+    p.paint(shapes.cover(d - 1.6 * unit), (8, 9, 16), 0.9)
+    p.paint(shapes.cover(d), (255, 255, 255) if not hollow else base)
+    height = (p.y / size + 0.5)[..., None]
+    body = base * (1.12 - 0.42 * height) + 26 * (1 - height)
+    inner = shapes.cover(d + (3.2 if not hollow else 4.5) * unit)
+    p.paint(inner, np.clip(body, 0, 255) if not hollow else base * 0.22)
+    facet = np.clip((d + 9 * unit) / (6 * unit), 0, 1)  # a darker bevel towards the rim
+    p.paint(inner * facet, (0, 0, 0), 0.2)
+    return p.sprite()
+
+
+def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
+    """The still target of a lane: a dark body with a bright rim."""
+    p = shapes.Painter(size, size)
+    d = distance(size, size * 0.95, direction)
+    unit = size / 64
+    p.paint(shapes.cover(d - 1.6 * unit), (6, 7, 14), 0.85)
+    p.paint(shapes.cover(d), colour, 0.9)
+    p.paint(shapes.cover(d + 3.4 * unit), (30, 33, 50))
+    return p.sprite()
+
+
+def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
+    """Light around and on a receptor while its panel is pressed; 1.5 times as large as the arrow."""
+    full = size * 3 // 2
+    p = shapes.Painter(full, full)
+    d = distance(full, size * 0.95, direction)
+    halo = np.exp(-np.maximum(d, 0) / (0.085 * size))
+    edge = np.clip((full / 2 - np.hypot(p.x, p.y)) / (0.12 * full), 0, 1)
+    p.paint(halo * edge, colour, 0.85)
+    p.paint(shapes.cover(d + 0.08 * size, 0.12 * size * shapes.SAMPLES), (255, 255, 255), 0.75)
+    return p.sprite()
+
+
+def mine(size: int, colour: RGB) -> Sprite:
+    """A round mine: dark ball, spikes, a burning middle. Its shape is unlike any arrow's."""
+    p = shapes.Painter(size, size)
+    angle = np.arctan2(p.y, p.x)
+    spikes = 0.035 * size * np.cos(8 * angle)
+    d = shapes.disc(p.x, p.y, 0.33 * size) - spikes
+    unit = size / 64
+    p.paint(shapes.cover(d - 2 * unit), (255, 255, 255), 0.85)
+    p.paint(shapes.cover(d), (26, 26, 34))
+    p.paint(shapes.cover(np.abs(shapes.disc(p.x, p.y, 0.235 * size)) - 2.4 * unit), colour)
+    cross = np.minimum(np.abs(p.x - p.y), np.abs(p.x + p.y)) / np.sqrt(2) - 2.4 * unit
+    p.paint(shapes.cover(np.maximum(cross, shapes.disc(p.x, p.y, 0.15 * size))), colour)
+    return p.sprite()
+
+
+def hold_body(width: int, colour: RGB, roll: bool) -> Sprite:
+    """A tile of a hold's body: a band; a roll's has a saw-tooth of light so that it differs without colour."""
+    height = 2 * (width // 2)
+    p = shapes.Painter(height, width)
+    half = 0.5 * width
+    edge = half - np.abs(p.x) - 1
+    base = np.array(colour, dtype=np.float64)
+    p.paint(np.clip(edge, 0, 1), (255, 255, 255), 0.85)
+    shade = 1.0 - 0.25 * np.abs(p.x / half)[..., None]
+    p.paint(np.clip(edge - 0.05 * width, 0, 1), np.clip(base * shade, 0, 255))
+    if roll:
+        saw = (p.y - 0.5 * np.abs(p.x) * height / half) % height / height
+        p.paint(np.clip(edge - 0.05 * width, 0, 1) * (saw < 0.5), np.clip(base * 1.5 + 40, 0, 255), 0.75)
+    return p.sprite()
+
+
+def hold_tail(width: int, colour: RGB) -> Sprite:
+    """The lower end of a hold: a half disc of the body's width."""
+    height = width // 2 + 1
+    p = shapes.Painter(2 * height, width)
+    d = shapes.disc(p.x, p.y, 0.5 * width - 1)
+    p.paint(shapes.cover(d), (255, 255, 255), 0.85)
+    p.paint(shapes.cover(d + 0.05 * width), np.clip(np.array(colour) * 0.8, 0, 255))
+    return p.sprite()[height:]
+
+
+def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> Sprite:
+    """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
+
+    limb : value of `play.model.Limb`, 0..3
+    """
+    p = shapes.Painter(size, size)
+    paint = limb_colours().by_limb[limb] if colour is None else colour
+    unit = size / 32
+    radius = 0.5 * size - 1
+    right = limb in (1, 3)
+    d = (
+        shapes.rounded_box(p.x, p.y, 0.93 * radius, 0.93 * radius, 0.3 * radius)
+        if right
+        else shapes.disc(p.x, p.y, radius)
+    )
+    p.paint(shapes.cover(d), (10, 11, 20))
+    p.paint(shapes.cover(d + 2.2 * unit), paint)
+    if limb >= 2:
+        p.paint(shapes.cover(np.abs(d + 5.2 * unit) - 0.9 * unit), (10, 11, 20))
+    out = p.sprite()
+    letter = face.sprite("R" if right else "L", (0.66 if limb < 2 else 0.52) * size, (10, 11, 20), weight=0.035 * size)
+    centre(out, letter)
+    return out
+
+
+def centre(target: Sprite, ink: Sprite) -> None:
+    """Lay `ink` over the middle of `target`, by its visible pixels."""
+    ys, xs = np.nonzero(ink[..., 3] > 8)
+    ink = ink[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]
+    top, left = ((t - i + 1) // 2 for t, i in zip(target.shape[:2], ink.shape[:2], strict=True))
+    place = target[top : top + ink.shape[0], left : left + ink.shape[1]]
+    keep = 255 - ink[..., 3:].astype(np.int64)
+    place[...] = (place * keep + 127) // 255 + ink
+
+
+def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface) -> Sprite:
+    """Lines of words on a dark label that stands beside the row they are about."""
+    words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
+    one, step = max(6, round(1.5 * size)), round(1.15 * size)
+    height = one + step * (len(lines) - 1)
+    width = max(line.shape[1] for line in words) + one // 2
+    p = shapes.Painter(height, width)
+    d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)
+    p.paint(shapes.cover(d), colour, 0.9)
+    p.paint(shapes.cover(d + 0.07 * size), (16, 18, 32))
+    out = p.sprite()
+    for number, line in enumerate(words):
+        centre(out[number * step : number * step + one], line)
+    return out
+
+
+@lru_cache(maxsize=8)
+def shade(size: int) -> Sprite:
+    """A soft dark disc that lifts a marker off its arrow."""
+    p = shapes.Painter(size, size)
+    p.paint(np.clip(1 - np.hypot(p.x, p.y) / (0.5 * size), 0, 1), (0, 0, 0), 0.6)
+    return p.sprite()

@@ -1,0 +1,139 @@
+"""Text as sprites: in the built-in font, a file of the user's, or the system's fonts where those lack a letter."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from dancetutor_cli.video.overlay.blit import Sprite
+from dancetutor_cli.video.overlay.fonts import font, has_all, has_glyph, system_fonts
+
+RGB = tuple[int, int, int]
+FINE = 4  # text is drawn so many times larger and made smaller: letters need not stand on whole pixels then
+LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
+_FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
+         "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
+
+
+@lru_cache(maxsize=4096)
+def _font_of(main: str | None, character: str) -> str | None:
+    """The first font that has a character; the main one if none has."""
+    for path in (main, None, *system_fonts()):
+        if has_glyph(path, character):
+            return path
+    return main
+
+
+def _can(main: str | None, character: str) -> bool:
+    return has_glyph(main, character) or has_glyph(_font_of(main, character), character)
+
+
+@lru_cache(maxsize=1024)
+def _runs(main: str | None, text: str) -> tuple[tuple[str | None, str], ...]:
+    """A text cut into (font, part): one font for all of it if there is one, since a letter from elsewhere is ugly."""
+    if has_all(main, text):
+        return ((main, text),)
+    for path in (None, *system_fonts()):
+        if has_all(path, text):
+            return ((path, text),)
+    parts = groupby(text, lambda c: _font_of(main, c))
+    return tuple((path, "".join(part)) for path, part in parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Typeface:
+    """Draws text as premultiplied sprites. path : a font file, or None for the built-in one."""
+
+    path: Path | None = None
+
+    @property
+    def _key(self) -> str | None:
+        return None if self.path is None else str(self.path)
+
+    def missing(self, text: str) -> str:
+        """The characters of `text` that neither this font nor the system's can draw, each once."""
+        return "".join(c for c in dict.fromkeys(text) if not _can(self._key, c))
+
+    def drawable(self, text: str) -> str:
+        """`text` without control characters; what no font has is folded to a base letter, or becomes "?"."""
+        return "".join(self._drawable(clean(text)))
+
+    def _drawable(self, text: str) -> Iterator[str]:
+        for c in text:
+            if _can(self._key, c):
+                yield c
+                continue
+            plain = "".join(d for d in unicodedata.normalize("NFKD", c) if not unicodedata.combining(d))
+            folded = _FOLD.get(c) or plain
+            yield folded if folded and not self.missing(folded) else "?"
+
+    def width(self, text: str, size: float) -> float:
+        """Advance width in pixels."""
+        return sum(float(font(path, FINE * size).getlength(part)) for path, part in _runs(self._key, text)) / FINE
+
+    def fit(self, text: str, size: float, width: float) -> str:
+        """`text`, shortened with an ellipsis until it is at most `width` pixels wide."""
+        if len(text) <= LONGEST and self.width(text, size) <= width:
+            return text
+        low, high = 0, min(len(text), LONGEST)
+        while low < high:
+            middle = (low + high + 1) // 2
+            if self.width(text[:middle].rstrip() + "…", size) <= width:
+                low = middle
+            else:
+                high = middle - 1
+        return text[:low].rstrip() + "…"
+
+    def shrink(self, text: str, size: float, width: float, least: float = 0.8) -> tuple[str, float]:
+        """Text and size with which it is at most `width` wide: smaller, down to `least` of the size, then cut off."""
+        low = least * size
+        while size > low and self.width(text[:LONGEST], size) > width:
+            size = max(low, 0.98 * size)
+        return self.fit(text, size, width), size
+
+    def sprite(
+        self, text: str, size: float, colour: RGB, weight: float = 0.0, shadow: float = 0.0, opacity: float = 1.0
+    ) -> Sprite:
+        """One line of text. The sprite's height depends on `size` alone, so that baselines line up.
+
+        weight : extra stroke in pixels (0 regular, size/25 bold); shadow : width of a dark halo in pixels
+        """
+        ascent, descent = (part / FINE for part in font(self._key, FINE * size).getmetrics())
+        pad = int(np.ceil(weight + shadow)) + 1
+        box = (int(np.ceil(self.width(text, size))) + 2 * pad + 2, int(np.ceil(ascent + descent)) + 2 * pad)
+        ink = self._ink(text, size, box, (pad, pad + ascent), weight)
+        out = np.zeros((box[1], box[0], 4))
+        if shadow > 0:
+            out[..., 3] = 0.62 * self._ink(text, size, box, (pad, pad + ascent), weight + shadow)
+        out *= 1 - ink[..., None]
+        out[..., :3] += ink[..., None] * np.array(colour) / 255
+        out[..., 3] += ink
+        return np.rint(out * opacity * 255).astype(np.uint8)
+
+    def _ink(
+        self, text: str, size: float, box: tuple[int, int], at: tuple[float, float], weight: float
+    ) -> NDArray[np.float64]:
+        """How much of each pixel of `box` (width, height) is covered; `at`: where the baseline begins, pixels."""
+        image = Image.new("L", (FINE * box[0], FINE * box[1]), 0)
+        draw = ImageDraw.Draw(image)
+        x, y = FINE * at[0], round(FINE * at[1])
+        for path, part in _runs(self._key, text):
+            one = font(path, FINE * size)
+            draw.text((x, y), part, fill=255, font=one, anchor="ls", stroke_width=FINE * weight)
+            x += float(one.getlength(part))
+        fine = np.asarray(image, dtype=np.float64).reshape(box[1], FINE, box[0], FINE)
+        return np.asarray(fine.mean(axis=(1, 3)) / 255)
+
+
+def clean(text: str) -> str:
+    """Without control characters and escapes, which metadata of hostile files carries; whitespace runs become one."""
+    kept = "".join(c if unicodedata.category(c)[0] != "C" else (" " if c in "\t\r\n" else "") for c in text)
+    return " ".join(kept.split())

@@ -1,0 +1,36 @@
+"""What the parts of a picture hand to each other: the frame they draw on, the pad, and a foot seen from above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Frame = NDArray[np.uint8]
+
+
+class PadLike(Protocol):
+    """What the picture needs of a `pads.Pad`, in panel widths, x to the right, y to the screen."""
+
+    @property
+    def panels(self) -> NDArray[np.float64]:
+        """Centre of each panel, (c, 2), in column order."""
+
+    @property
+    def arrows(self) -> NDArray[np.float64]:
+        """Where the arrow on each panel points, (c, 2); (0, 0): it has none."""
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Where the dancer stands at the start."""
+
+
+@dataclass(frozen=True, slots=True)
+class Foot:
+    """A foot from above. heel, toe : (x, y) in panel widths, x to the right, y to the screen; height : metres."""
+
+    heel: tuple[float, float]
+    toe: tuple[float, float]
+    height: float

@@ -1,0 +1,143 @@
+"""The live part of the floor: shadow, contact shadows, lit panels and the marks under the feet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.scene.cpu.background import quantise
+from dancetutor_cli.video.scene.cpu.kernel import kernel
+from dancetutor_cli.video.scene.cpu.surfaces import smooth
+
+
+@njit(cache=True)
+def blur(mask: Any, radius: int, spare: Any) -> None:  # pragma: no cover
+    """Box blur of a picture in place, both ways; `spare` has its shape. Beyond its borders it counts as 0."""
+    height, width = mask.shape
+    share = 1.0 / (2 * radius + 1)
+    for row in range(height):
+        total = 0.0
+        for c in range(min(radius, width)):
+            total += mask[row, c]
+        for c in range(width):
+            if c + radius < width:
+                total += mask[row, c + radius]
+            if c - radius - 1 >= 0:
+                total -= mask[row, c - radius - 1]
+            spare[row, c] = total * share
+    column = np.zeros(width)
+    for row in range(min(radius, height)):
+        for c in range(width):
+            column[c] += spare[row, c]
+    for row in range(height):
+        ahead, behind = row + radius, row - radius - 1
+        for c in range(width):
+            if ahead < height:
+                column[c] += spare[ahead, c]
+            if behind >= 0:
+                column[c] -= spare[behind, c]
+            mask[row, c] = column[c] * share
+
+
+@njit(cache=True)
+def occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
+    """1 where a shadow map has something, else 0; returns x0, y0, x1, y1 around it."""
+    left, top, right, bottom = depth.shape[1], depth.shape[0], 0, 0
+    for row in range(depth.shape[0]):
+        some = False
+        for c in range(depth.shape[1]):
+            full = depth[row, c] > 0.0
+            mask[row, c] = 1.0 if full else 0.0
+            if full:
+                some = True
+                left, right = min(left, c), max(right, c + 1)
+        if some:
+            top, bottom = min(top, row), row + 1
+    return left, top, right, bottom
+
+
+@njit(cache=True, inline="always")
+def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
+    x -= 0.5
+    y -= 0.5
+    i, j = int(np.floor(x)), int(np.floor(y))
+    if i < 0 or j < 0 or i >= picture.shape[1] - 1 or j >= picture.shape[0] - 1:
+        return 0.0
+    fx, fy = x - i, y - j
+    top = picture[j, i] + (picture[j, i + 1] - picture[j, i]) * fx
+    bottom = picture[j + 1, i] + (picture[j + 1, i + 1] - picture[j + 1, i]) * fx
+    return float(top + (bottom - top) * fy)
+
+
+@njit(cache=True, inline="always")
+def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no cover
+    """Distance from the line between heel and toe of foot f, columns 0 to 3."""
+    dx, dz = feet[f, 2] - feet[f, 0], feet[f, 3] - feet[f, 1]
+    length = dx * dx + dz * dz
+    t = 0.0
+    if length > 0.0:
+        t = min(1.0, max(0.0, ((x - feet[f, 0]) * dx + (z - feet[f, 1]) * dz) / length))
+    ax, az = x - feet[f, 0] - t * dx, z - feet[f, 1] - t * dz
+    return float(np.sqrt(ax * ax + az * az))
+
+
+@kernel
+def draw_ground(
+    out: Any, box: Any, shift: int, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any, foot: Any,
+    shadow: Any, axes: Any, origin: Any, scale: float, dark: float, lit: Any, lit_colour: Any, feet: Any, numbers: Any,
+) -> None:  # fmt: skip  # pragma: no cover
+    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on.
+
+    shift : columns that the standing picture is ahead; shadow with axes, origin and scale : how much of the light is
+    taken, `prepare.Cast`; dark : darkness of the shadow; lit, lit_colour : `prepare.panel_lights`;
+    feet : `prepare.feet_on_floor`; numbers : contact darkness, its softness, strength of lit panels, sole radius
+    """
+    radius = numbers[3]
+    far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
+    for row in range(box[1], box[3]):
+        for column in range(box[0], box[2]):
+            c = column + shift
+            take = takes[row, c]
+            p = panel[row, c]
+            shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+            if take <= 0.0:
+                continue
+            x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
+            keep = 1.0
+            if dark > 0.0:
+                u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+                v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+                keep = 1.0 - dark * _bilinear(shadow, u, v)
+            ring, owner = 0.0, 0
+            for f in range(feet.shape[0]):
+                if (
+                    feet[f, 5] < 0.0
+                    or abs(y - feet[f, 4]) > 0.03
+                    or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
+                    or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
+                ):
+                    continue
+                d = _from_foot(x, z, feet, f) - radius
+                near = feet[f, 5]
+                reach = numbers[1] * (1.6 - 0.6 * near)
+                if d < reach:
+                    keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                soft = 0.5 * foot[row, c]
+                band = min(1.0, max(0.0, (0.0085 - abs(d - 0.020)) / (2.0 * soft) + 0.5))
+                band *= feet[f, 9]
+                if band > ring:
+                    ring, owner = band, f
+            if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
+                continue
+            keep = 1.0 - (1.0 - keep) * take
+            hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+            for k in range(3):
+                value = colour[row, c, k] * keep
+                if shine > 0.0:
+                    bright = lit_colour[p, k] * (0.35 + 0.65 * keep)
+                    value += (bright - value) * shine
+                    value += (255.0 - value) * hot
+                value += (feet[owner, 6 + k] - value) * ring * take
+                out[row, column, k] = quantise(value, row, c)

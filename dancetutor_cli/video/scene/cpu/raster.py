@@ -1,0 +1,245 @@
+"""Vertices and triangles: skinning, projection, and filling depth and triangle numbers.
+
+Places on the picture are snapped to 1/16 sample, so that edge functions are exact in double precision: two triangles
+that share an edge leave no gap, and every machine finds the same samples covered.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.scene.cpu.kernel import kernel
+
+SNAP = 16.0
+DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m
+FRONT, BACK = 1, -1
+_AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
+
+
+@njit(cache=True)
+def skin(
+    positions: Any, normals: Any, hull: Any, joints: Any, weights: Any, matrices: Any, world: Any
+) -> None:  # pragma: no cover
+    """Vertices in the world. matrices (j, 3, 4): binding pose to world; world (v, 9): place, normal, hull direction.
+
+    Both directions get length 1.
+    """
+    m = np.empty(12)
+    for v in range(positions.shape[0]):
+        for k in range(12):
+            m[k] = 0.0
+        for i in range(4):
+            w = weights[v, i]
+            if w > 0.0:
+                j = joints[v, i]
+                for r in range(3):
+                    for c in range(4):
+                        m[4 * r + c] += w * matrices[j, r, c]
+        x, y, z = positions[v, 0], positions[v, 1], positions[v, 2]
+        nx, ny, nz = normals[v, 0], normals[v, 1], normals[v, 2]
+        hx, hy, hz = hull[v, 0], hull[v, 1], hull[v, 2]
+        n, h = 0.0, 0.0
+        for r in range(3):
+            a, b, c = m[4 * r], m[4 * r + 1], m[4 * r + 2]
+            world[v, r] = a * x + b * y + c * z + m[4 * r + 3]
+            p = a * nx + b * ny + c * nz
+            q = a * hx + b * hy + c * hz
+            n += p * p
+            h += q * q
+            world[v, 3 + r] = p
+            world[v, 6 + r] = q
+        n, h = 1.0 / np.sqrt(max(n, 1e-12)), 1.0 / np.sqrt(max(h, 1e-12))
+        for r in range(3, 6):
+            world[v, r] *= n
+            world[v, r + 3] *= h
+
+
+@njit(cache=True)
+def extent(world: Any) -> Any:  # pragma: no cover
+    """Least and greatest place of the vertices, (3,) each."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for v in range(world.shape[0]):
+        for k in range(3):
+            low[k] = min(low[k], world[v, k])
+            high[k] = max(high[k], world[v, k])
+    return low, high
+
+
+@njit(cache=True)
+def project(world: Any, camera: Any, samples: float, near: float, points: Any) -> None:  # pragma: no cover
+    """Places in samples and 1 / depth, points (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
+    for v in range(world.shape[0]):
+        x, y, z = world[v, 0], world[v, 1], world[v, 2]
+        w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]
+        if w < near:
+            points[v, 2] = 0.0
+            continue
+        px = (camera[0, 0] * x + camera[0, 1] * y + camera[0, 2] * z + camera[0, 3]) / w
+        py = (camera[1, 0] * x + camera[1, 1] * y + camera[1, 2] * z + camera[1, 3]) / w
+        points[v, 0] = np.floor(px * samples * SNAP + 0.5) / SNAP
+        points[v, 1] = np.floor(py * samples * SNAP + 0.5) / SNAP
+        points[v, 2] = 1.0 / w
+
+
+@njit(cache=True)
+def project_hull(
+    world: Any, camera: Any, eye: Any, samples: float, near: float, width: float, focal: float, out: Any
+) -> None:  # pragma: no cover
+    """As `project`, but moved outward on the picture by `width` pixels, and a centimetre away from the camera.
+
+    out (v, 4): the last column is the cosine between normal and the direction to the eye
+    """
+    for v in range(world.shape[0]):
+        x, y, z = world[v, 0], world[v, 1], world[v, 2]
+        w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]
+        if w < near:
+            out[v, 2] = 0.0
+            continue
+        px = (camera[0, 0] * x + camera[0, 1] * y + camera[0, 2] * z + camera[0, 3]) / w
+        py = (camera[1, 0] * x + camera[1, 1] * y + camera[1, 2] * z + camera[1, 3]) / w
+        nx, ny, nz = world[v, 6], world[v, 7], world[v, 8]
+        nw = camera[2, 0] * nx + camera[2, 1] * ny + camera[2, 2] * nz
+        # The normal on the picture, as a part of the length it has when it points sideways.
+        dx = (camera[0, 0] * nx + camera[0, 1] * ny + camera[0, 2] * nz - px * nw) / focal
+        dy = (camera[1, 0] * nx + camera[1, 1] * ny + camera[1, 2] * nz - py * nw) / focal
+        grow = width / (np.sqrt(dx * dx + dy * dy) + 0.12)
+        out[v, 0] = np.floor((px + dx * grow) * samples * SNAP + 0.5) / SNAP
+        out[v, 1] = np.floor((py + dy * grow) * samples * SNAP + 0.5) / SNAP
+        out[v, 2] = 1.0 / (w + 0.01)
+        vx, vy, vz = eye[0] - x, eye[1] - y, eye[2] - z
+        out[v, 3] = (nx * vx + ny * vy + nz * vz) / np.sqrt(vx * vx + vy * vy + vz * vz)
+
+
+@njit(cache=True)
+def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) -> None:  # pragma: no cover
+    """Places on the shadow map in texels, and height towards the light in metres. axes (3, 3): u, v, to the light."""
+    for v in range(world.shape[0]):
+        x, y, z = world[v, 0], world[v, 1], world[v, 2]
+        a = axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z
+        b = axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z
+        out[v, 0] = np.floor((a - origin[0]) * scale * SNAP + 0.5) / SNAP
+        out[v, 1] = np.floor((b - origin[1]) * scale * SNAP + 0.5) / SNAP
+        # Any positive number that grows towards the light serves as depth; 0 means nothing is there.
+        out[v, 2] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z + 100.0
+
+
+@njit(cache=True, inline="always")
+def _within(edge: float, step: float, low: float, high: float) -> Any:  # pragma: no cover
+    """The part of low..high in which ``edge + k * step`` is not negative; an empty one has high < low.
+
+    Both are multiples of 1 / SNAP**2 and far below 2**26, so that a rounded division cannot pass a whole number.
+    """
+    if step > 0.0:
+        return max(low, -edge / step), high
+    if step < 0.0:
+        return low, min(high, -edge / step)
+    return low, high if edge >= 0.0 else -1.0
+
+
+@kernel
+def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, spans: Any) -> None:  # pragma: no cover
+    """Draw triangles into `nearest`, int64: the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and
+    the number + `offset` + 1 of that triangle in its lower half; 0 where there is nothing.
+
+    points (v, 3): x, y in samples, 1 / depth; a triangle with a 0 there is left out. keep: FRONT or BACK; for backs
+    points (v, 4) has a column from `project_hull`, and those that only the front could hide are left out.
+    spans (rows, 2): grown to the first column drawn on and the one after the last, in each row
+    """
+    height, width = nearest.shape
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
+        x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
+        x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
+        area = (x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0)  # positive: counter-clockwise, y being downwards
+        if area * keep <= 0.0:
+            continue
+        if z0 == 0.0 or z1 == 0.0 or z2 == 0.0:
+            continue
+        if keep == BACK and points[a, 3] < _AWAY and points[b, 3] < _AWAY and points[c, 3] < _AWAY:
+            continue
+        left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
+        right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
+        top = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0)
+        bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
+        if left > right or top > bottom:
+            continue
+        sign = 1.0 if area > 0.0 else -1.0
+        # Edge functions: how far a sample is inside of each edge; steps for one sample right and one down.
+        sx0, sy0 = sign * (y2 - y1), -sign * (x2 - x1)
+        sx1, sy1 = sign * (y0 - y2), -sign * (x0 - x2)
+        sx2, sy2 = sign * (y1 - y0), -sign * (x1 - x0)
+        px, py = left + 0.5, top + 0.5
+        e0 = (px - x1) * sx0 + (py - y1) * sy0
+        e1 = (px - x2) * sx1 + (py - y2) * sy1
+        e2 = (px - x0) * sx2 + (py - y0) * sy2
+        unit = DEPTH_UNIT / -area
+        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) * unit
+        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) * unit
+        zrow = z0 * DEPTH_UNIT + (px - x0) * zx + (py - y0) * zy
+        number = t + offset + 1
+        for y in range(top, bottom + 1):
+            spans[y, 0] = min(spans[y, 0], left)
+            spans[y, 1] = max(spans[y, 1], right + 1)
+            low, high = _within(e0, sx0, 0.0, float(right - left))
+            low, high = _within(e1, sx1, low, high)
+            low, high = _within(e2, sx2, low, high)
+            first = int(np.ceil(low))
+            z = zrow + first * zx
+            for x in range(left + first, left + int(np.floor(high)) + 1):
+                key = (int(z) << 32) | number
+                if key > nearest[y, x]:
+                    nearest[y, x] = key
+                z += zx
+            e0 += sy0
+            e1 += sy1
+            e2 += sy2
+            zrow += zy
+
+
+@kernel
+def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
+    """As `fill`, what is turned to the light and only its depth: for the shadow map."""
+    height, width = depth.shape
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
+        x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
+        x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
+        area = (x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0)
+        if area <= 0.0:
+            continue  # what is turned to the light is enough: meshes are closed
+        left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
+        right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
+        top = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0)
+        bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
+        if left > right or top > bottom:
+            continue
+        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / -area
+        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / -area
+        px = left + 0.5
+        for y in range(top, bottom + 1):
+            py = y + 0.5
+            low, high = _within((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1), y2 - y1, 0.0, float(right - left))
+            low, high = _within((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2), y0 - y2, low, high)
+            low, high = _within((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), y1 - y0, low, high)
+            first = int(np.ceil(low))
+            z = z0 + (px + first - x0) * zx + (py - y0) * zy
+            for x in range(left + first, left + int(np.floor(high)) + 1):
+                if z > depth[y, x]:
+                    depth[y, x] = z
+                z += zx
+
+
+@njit(cache=True)
+def clear(nearest: Any, spans: Any) -> None:  # pragma: no cover
+    """Forget what `fill` has drawn: the rows of `spans`, and the spans."""
+    height, width = nearest.shape
+    for y in range(height):
+        for x in range(spans[y, 0], spans[y, 1]):
+            nearest[y, x] = 0
+        spans[y, 0] = width
+        spans[y, 1] = 0

@@ -1,0 +1,149 @@
+"""The software renderer: one frame from the cached stage, the live floor and the dancer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.video.choices import Quality
+from dancetutor_cli.video.scene.camera import NEAR, Camera
+from dancetutor_cli.video.scene.cpu.background import Background, draw_background
+from dancetutor_cli.video.scene.cpu.ground import blur, draw_ground, occupied
+from dancetutor_cli.video.scene.cpu.raster import (
+    BACK,
+    FRONT,
+    clear,
+    extent,
+    fill,
+    fill_depth,
+    project,
+    project_hull,
+    project_light,
+    skin,
+)
+from dancetutor_cli.video.scene.cpu.shade import PER_METRE, light_vertices, resolve, toon_numbers
+from dancetutor_cli.video.scene.geometry import pack
+from dancetutor_cli.video.scene.prepare import (
+    SAMPLES,
+    SHADOW_MAP,
+    Cast,
+    Shown,
+    feet_on_floor,
+    ground_box,
+    joints_of,
+    panel_lights,
+    pixels_per_metre,
+    place_cast,
+    shown,
+    skin_matrices,
+)
+from dancetutor_cli.video.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
+
+Array = NDArray[np.float64]
+
+
+class CpuRenderer:
+    """Draws with numba kernels on one core. See `video.scene.renderer.Renderer`."""
+
+    name = "cpu"
+
+    def __init__(self, scene: Scene, size: tuple[int, int], quality: Quality) -> None:
+        self._scene, self._size = scene, size
+        self._samples = SAMPLES[quality]
+        self._map = SHADOW_MAP[quality]
+        self._mesh = pack(scene.character)
+        self._skins = self._mesh.skins.flat()
+        self._toon = toon_numbers(scene.look.toon, self._map > 0)
+        count = len(self._mesh.positions)
+        self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)
+        self._points, self._light_points, self._hull = (np.empty((count, n)) for n in (3, 3, 4))
+        width, height = size
+        shape = (height * self._samples, width * self._samples)
+        self._nearest = np.zeros(shape, np.int64)
+        self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
+        self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
+        self._samples_seen = np.empty(self._samples**2, np.int64), np.empty(self._samples**2)
+        self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
+        self._out = np.empty((height, width, 3), np.uint8)
+        self._background: tuple[Camera, Background] | None = None
+        self.description = f"cpu: numba rasteriser, {self._samples}x{self._samples} samples, one core"
+
+    def frame(self, state: FrameState) -> NDArray[np.uint8]:
+        """See `video.scene.renderer.Renderer.frame`."""
+        check_state(self._scene, state)
+        camera = state.camera
+        background = self._standing(camera)
+        shift = background.left - camera.pan_pixels(self._size[0])
+        np.copyto(self._out, background.picture[:, shift : shift + self._size[0]])
+        mesh = self._mesh
+        joints = joints_of(self._scene, state)
+        matrices = skin_matrices(self._scene, joints)
+        skin(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights, matrices, self._world)
+        cast = place_cast(self._scene, camera, joints, self._map)
+        count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
+        triangles = mesh.triangles[:count]
+        self._draw_shadow(triangles, cast)
+        self._draw_ground(state, background, shift, cast)
+        self._draw_dancer(triangles, joints, camera, cast)
+        return self._out
+
+    def close(self) -> None:
+        """Nothing to give back."""
+
+    def _standing(self, camera: Camera) -> Background:
+        key = replace(camera, pan=0.0)
+        if self._background is None or self._background[0] != key:
+            self._background = None  # free the old one first
+            drawn = draw_background(self._scene.stage, self._scene.look, key, self._size, max(2, self._samples))
+            self._background = (key, drawn)
+        return self._background[1]
+
+    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast) -> None:
+        if not self._map:
+            return
+        self._shadow[:] = 0.0
+        project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
+        fill_depth(self._light_points, triangles, self._shadow)
+        left, top, right, bottom = occupied(self._shadow, self._mask)
+        radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
+        reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
+        part = slice(max(0, top - reach), bottom + reach), slice(max(0, left - reach), right + reach)
+        for _ in range(2):
+            blur(self._mask[part], radius, self._spare[part])
+
+    def _draw_ground(self, state: FrameState, background: Background, shift: int, cast: Cast) -> None:
+        look = self._scene.look
+        bounds = extent(self._world)
+        box = ground_box(self._scene, state.camera, self._size, bounds, cast)
+        lit, lit_colour = panel_lights(self._scene, state)
+        numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.glow, SOLE_RADIUS])
+        draw_ground(
+            self._out, box, shift, background.colour, background.ground, background.takes, background.panel,
+            background.glow, background.white, background.footprint, self._mask, cast.axes, cast.origin, cast.scale,
+            look.light.shadow if cast.scale else 0.0, lit, lit_colour, feet_on_floor(self._scene, state), numbers,
+        )  # fmt: skip
+
+    def _draw_dancer(self, triangles: NDArray[np.int32], joints: Array, camera: Camera, cast: Cast) -> None:
+        samples, mesh = self._samples, self._mesh
+        matrix = camera.matrix(self._size)
+        focal = camera.focal * self._size[1]
+        per_metre = pixels_per_metre(camera, joints, self._size)
+        outline = self._scene.look.toon.outline_width * per_metre
+        eye = np.array(camera.position)
+        project(self._world, matrix, float(samples), NEAR, self._points)
+        project_hull(self._world, matrix, eye, float(samples), NEAR, outline, focal, self._hull)
+        clear(self._nearest, self._spans)
+        count = len(triangles)
+        fill(self._points, triangles, FRONT, 0, self._nearest, self._spans)
+        fill(self._hull, triangles, BACK, count, self._nearest, self._spans)
+        light_vertices(
+            self._world, self._points, mesh.uv, mesh.material, eye, cast.axes, cast.origin,
+            cast.scale, self._vertex,
+        )  # fmt: skip
+        self._toon[PER_METRE] = per_metre
+        resolve(
+            self._out, samples, self._nearest, self._spans, count, triangles, mesh.patch, mesh.density,
+            self._vertex, *self._skins, self._shadow, self._toon, *self._samples_seen,
+        )  # fmt: skip

@@ -1,0 +1,222 @@
+"""The dancer's pixels: toon light, self shadow, rim and outline, averaged over the samples of a pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.scene.cpu.kernel import kernel
+from dancetutor_cli.video.scene.look import ToonLook
+from dancetutor_cli.video.scene.textures import LEVELS
+
+Array = NDArray[np.float64]
+
+
+# Places in the rows that `light_vertices` writes, one row of 64 bytes for each vertex.
+_X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = range(12)
+# Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
+_BANDS, _STEEP, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
+_RIM_WIDTH = 0.2
+OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
+
+
+def toon_numbers(toon: ToonLook, cast: bool) -> Array:
+    """The numbers of the shading in one row; cast : is there a shadow map?
+
+    The last, `PER_METRE`, is for the pixels that a metre of the dancer has, which changes with the camera.
+    """
+    shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
+    starts = [edge - toon.soft for edge in toon.bands]  # each edge is a step from here, 1 / steepness wide
+    numbers = [*starts, 0.5 / toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast), 0.0]
+    return np.array(numbers, dtype=np.float64)
+
+
+@njit(cache=True)
+def light_vertices(
+    world: Any, points: Any, uv: Any, material: Any, eye: Any, axes: Any, origin: Any, scale: float, out: Any
+) -> None:  # pragma: no cover
+    """What is interpolated over a triangle, out float32 (v, 16).
+
+    world (v, 9), points (v, 3) from `raster`; axes (3, 3), origin (2,), scale: of the shadow map
+    """
+    for v in range(world.shape[0]):
+        x, y, z = world[v, 0], world[v, 1], world[v, 2]
+        nx, ny, nz = world[v, 3], world[v, 4], world[v, 5]
+        vx, vy, vz = eye[0] - x, eye[1] - y, eye[2] - z
+        out[v, _X], out[v, _Y], out[v, _W] = points[v, 0], points[v, 1], points[v, 2]
+        out[v, _TO_LIGHT] = nx * axes[2, 0] + ny * axes[2, 1] + nz * axes[2, 2]
+        out[v, _FACING] = (nx * vx + ny * vy + nz * vz) / np.sqrt(vx * vx + vy * vy + vz * vz)
+        out[v, _UP] = ny
+        x += nx * OFF_SURFACE[0] + axes[2, 0] * OFF_SURFACE[1]
+        y += ny * OFF_SURFACE[0] + axes[2, 1] * OFF_SURFACE[1]
+        z += nz * OFF_SURFACE[0] + axes[2, 2] * OFF_SURFACE[1]
+        out[v, _SU] = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+        out[v, _SV] = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+        out[v, _HEIGHT] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
+        out[v, _U], out[v, _V], out[v, _MATERIAL] = uv[v, 0], uv[v, 1], material[v]
+
+
+@njit(cache=True, inline="always")
+def _step(t: float) -> float:  # pragma: no cover
+    """0 below 0, 1 above 1, a cubic between."""
+    t = min(1.0, max(0.0, t))
+    return t * t * (3.0 - 2.0 * t)
+
+
+@njit(cache=True, inline="always")
+def _texel(texels: Any, first: int, width: int, height: int, u: float, v: float) -> Any:  # pragma: no cover
+    """Bilinear, repeating."""
+    x, y = (u - np.floor(u)) * width - 0.5, (v - np.floor(v)) * height - 0.5
+    i0, j0 = int(np.floor(x)), int(np.floor(y))
+    fx, fy = x - i0, y - j0
+    i1, j1 = i0 + 1, j0 + 1
+    if i0 < 0:
+        i0 = width - 1
+    if j0 < 0:
+        j0 = height - 1
+    if i1 >= width:
+        i1 = 0
+    if j1 >= height:
+        j1 = 0
+    a, b = first + j0 * width + i0, first + j0 * width + i1
+    c, d = first + j1 * width + i0, first + j1 * width + i1
+    wa, wb, wc, wd = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
+    return (
+        texels[a, 0] * wa + texels[b, 0] * wb + texels[c, 0] * wc + texels[d, 0] * wd,
+        texels[a, 1] * wa + texels[b, 1] * wb + texels[c, 1] * wc + texels[d, 1] * wd,
+        texels[a, 2] * wa + texels[b, 2] * wb + texels[c, 2] * wc + texels[d, 2] * wd,
+    )
+
+
+@njit(cache=True, inline="always")
+def _sunlit(shadow: Any, u: float, v: float, height: float) -> float:  # pragma: no cover
+    """Part of the light that reaches a place: nine comparisons, the mean over two by two texels. 1 outside of the map.
+
+    The same as four taps of a graphics card, half a texel away from the place in both directions.
+    """
+    x, y = u - 1.0, v - 1.0
+    i, j = int(np.floor(x)), int(np.floor(y))
+    if i < 0 or j < 0 or i >= shadow.shape[1] - 2 or j >= shadow.shape[0] - 2:
+        return 1.0
+    fx, fy = x - i, y - j
+    light = 0.0
+    for row in range(3):
+        here = 0.0
+        if shadow[j + row, i] <= height:
+            here = 1.0 - fx
+        if shadow[j + row, i + 1] <= height:
+            here += 1.0
+        if shadow[j + row, i + 2] <= height:
+            here += fx
+        light += here * (1.0 - fy if row == 0 else (1.0 if row == 1 else fy))
+    return 0.25 * light
+
+
+@njit(cache=True, inline="always")
+def _colour(
+    a: int, b: int, c: int, px: float, py: float, dense: float, vertex: Any, texels: Any, textures: Any, meshes: Any,
+    shadow: Any, toon: Any,
+) -> Any:  # fmt: skip  # pragma: no cover
+    """Colour 0..1 of the triangle of vertices a, b, c at a place in samples; dense : texels a metre, a little less."""
+    x0, y0, x1, y1 = vertex[a, _X], vertex[a, _Y], vertex[b, _X], vertex[b, _Y]
+    x2, y2 = vertex[c, _X], vertex[c, _Y]
+    # Weights on the picture, kept inside of the triangle (a pixel's middle may lie just outside), then in space.
+    w0 = max((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1), 0.0) * vertex[a, _W]
+    w1 = max((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2), 0.0) * vertex[b, _W]
+    w2 = max((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), 0.0) * vertex[c, _W]
+    total = 1.0 / (w0 + w1 + w2)
+    w0, w1, w2 = w0 * total, w1 * total, w2 * total
+    to_light = vertex[a, _TO_LIGHT] * w0 + vertex[b, _TO_LIGHT] * w1 + vertex[c, _TO_LIGHT] * w2
+    facing = vertex[a, _FACING] * w0 + vertex[b, _FACING] * w1 + vertex[c, _FACING] * w2
+    up = vertex[a, _UP] * w0 + vertex[b, _UP] * w1 + vertex[c, _UP] * w2
+    sun = 1.0
+    if toon[_CAST] > 0.0 and to_light > toon[_BANDS]:
+        su = vertex[a, _SU] * w0 + vertex[b, _SU] * w1 + vertex[c, _SU] * w2
+        sv = vertex[a, _SV] * w0 + vertex[b, _SV] * w1 + vertex[c, _SV] * w2
+        height = vertex[a, _HEIGHT] * w0 + vertex[b, _HEIGHT] * w1 + vertex[c, _HEIGHT] * w2
+        sun = _sunlit(shadow, su, sv, height + 100.0)
+    half = _step((to_light - toon[_BANDS]) * toon[_STEEP]) * sun
+    full = _step((to_light - toon[_BANDS + 1]) * toon[_STEEP]) * sun
+    level = toon[_LEVELS] + (toon[_LEVELS + 1] - toon[_LEVELS]) * half
+    level = (level + (toon[_LEVELS + 2] - toon[_LEVELS + 1]) * full) * (0.95 + 0.05 * up)
+    rim = 1.0 - facing - toon[_RIM + 1]
+    rim = toon[_RIM] * _step(rim * (1.0 / _RIM_WIDTH)) * (0.6 + 0.4 * up) if rim > 0.0 else 0.0
+    m = int(vertex[a, _MATERIAL])
+    u = vertex[a, _U] * w0 + vertex[b, _U] * w1 + vertex[c, _U] * w2
+    v = vertex[a, _V] * w0 + vertex[b, _V] * w1 + vertex[c, _V] * w2
+    # The image of the texture in which a texel is about a pixel.
+    image, smallest = int(meshes[m, 3]), int(meshes[m, 3]) + LEVELS - 1
+    while image < smallest and dense > toon[PER_METRE]:
+        image += 1
+        dense *= 0.5
+    red, green, blue = _texel(texels, textures[image, 0], textures[image, 1], textures[image, 2], u, v)
+    red *= meshes[m, 0] * level * (toon[_SHADE] + (1.0 - toon[_SHADE]) * half)
+    green *= meshes[m, 1] * level * (toon[_SHADE + 1] + (1.0 - toon[_SHADE + 1]) * half)
+    blue *= meshes[m, 2] * level * (toon[_SHADE + 2] + (1.0 - toon[_SHADE + 2]) * half)
+    return min(red + (1.0 - red) * rim, 1.0), min(green + (1.0 - green) * rim, 1.0), min(blue + (1.0 - blue) * rim, 1.0)
+
+
+@kernel
+def resolve(
+    out: Any, samples: int, nearest: Any, spans: Any, count: int, triangles: Any, patch: Any,
+    density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any, seen: Any, depths: Any,
+) -> None:  # fmt: skip  # pragma: no cover
+    """Put the samples on the picture.
+
+    nearest, spans : what `raster.fill` has drawn; triangles from `count` on are outline.
+    seen, depths : room for one number a sample: its triangle, -1 once it is coloured, int64, and its depth, float64
+    One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
+    """
+    total = samples * samples
+    share = 1.0 / total
+    for row in range(out.shape[0]):
+        first, last = spans[row * samples, 0], spans[row * samples, 1]
+        for j in range(1, samples):
+            first, last = min(first, spans[row * samples + j, 0]), max(last, spans[row * samples + j, 1])
+        for column in range(first // samples, (last + samples - 1) // samples):
+            covered = 0
+            k = 0
+            for j in range(samples):
+                for i in range(samples):
+                    key = nearest[row * samples + j, column * samples + i]
+                    seen[k] = (key & 0xFFFFFFFF) - 1
+                    depths[k] = key >> 32
+                    covered += key != 0
+                    k += 1
+            if covered == 0:
+                continue
+            r, g, b = 0.0, 0.0, 0.0
+            for k in range(total):
+                t = seen[k]
+                if t < 0:
+                    continue
+                if t >= count:
+                    r += share * toon[_OUTLINE]
+                    g += share * toon[_OUTLINE + 1]
+                    b += share * toon[_OUTLINE + 2]
+                    continue
+                piece, close, weight = patch[t], 0.006 * depths[k], share
+                for m in range(k + 1, total):
+                    other = seen[m]
+                    if other == t or (
+                        0 <= other < count and patch[other] == piece and abs(depths[m] - depths[k]) < close
+                    ):
+                        seen[m] = -1
+                        weight += share
+                px, py = (column + 0.5) * samples, (row + 0.5) * samples
+                if weight < 0.5:
+                    px, py = column * samples + k % samples + 0.5, row * samples + k // samples + 0.5
+                cr, cg, cb = _colour(
+                    triangles[t, 0], triangles[t, 1], triangles[t, 2], px, py, 0.7 * density[t], vertex, texels,
+                    textures, meshes, shadow, toon,
+                )  # fmt: skip
+                r += weight * cr
+                g += weight * cg
+                b += weight * cb
+            rest = 1.0 - covered * share
+            out[row, column, 0] = int(255.0 * r + out[row, column, 0] * rest + 0.5)
+            out[row, column, 1] = int(255.0 * g + out[row, column, 1] * rest + 0.5)
+            out[row, column, 2] = int(255.0 * b + out[row, column, 2] * rest + 0.5)

@@ -1,0 +1,131 @@
+"""The dancer's part of the picture: from her motions and a moment of the music to a state for the renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.rig.kinematics import joint_matrices
+from dancetutor_cli.video.clock import Moment
+from dancetutor_cli.video.picture import Foot, Frame
+from dancetutor_cli.video.scene import renderer
+from dancetutor_cli.video.scene.camera import WHOLE, Region, with_pan_range
+from dancetutor_cli.video.scene.follow import Follow, is_wide
+from dancetutor_cli.video.scene.look import default_look
+from dancetutor_cli.video.scene.props import JOINT, bar_matrix, with_bar
+from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.video.scene.stage import PANEL
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.video.choices import Quality, RendererKind
+    from dancetutor_cli.video.lights import PanelLights
+    from dancetutor_cli.video.picture import PadLike
+    from dancetutor_cli.video.scene.camera import Camera
+
+
+class Dancer:
+    """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
+
+    motions : hers at each rate, in seconds of the music as it is heard at that rate
+    region : share of the picture that she fills
+    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    """
+
+    def __init__(
+        self,
+        motions: Mapping[float, Motion],
+        pad: PadLike,
+        lights: PanelLights,
+        size: tuple[int, int],
+        camera: str,
+        quality: Quality,
+        kind: RendererKind,
+        character: Character | None = None,
+        region: Region = WHOLE,
+        stands: bool = False,
+    ) -> None:
+        self.motions, self.lights = motions, lights
+        self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
+        floor = -default_look().stage.pad_height
+        self.scene = Scene(with_bar(character or load_dancer(), self._bar, floor), pad)
+        self.camera: Camera = self.scene.camera(camera, size, region)
+        self._follow = {} if stands else self._followers(camera, size, region)
+        self.renderer = renderer.create(self.scene, size, quality, kind)
+        skeleton = self.scene.character.skeleton
+        self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
+        self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])
+
+    def frame(self, moment: Moment, joints: NDArray[np.float64]) -> Frame:
+        """The picture at a moment of the music, uint8 (h, w, 3); overwritten by the next call."""
+        lit, by = self._lit(moment.second)
+        return self.renderer.frame(FrameState(joints, self.view(moment), lit, by))
+
+    def view(self, moment: Moment) -> Camera:
+        """The camera at a moment: the standing one, or the one that follows her across a wide pad."""
+        return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
+
+    def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
+        """The camera that goes with her across a wide pad, for each rate, if it looks along the pad's short side.
+
+        It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
+        """
+        look = self.scene.look
+        along = abs(float(self.camera.axes()[0][0])) > look.follow.along
+        named = camera in look.cameras
+        if not (named and along and is_wide(self.scene)) or self.camera.feet_only:
+            return {}
+        if region == WHOLE:
+            region = look.follow.region
+        found = {r: Follow(self.scene, camera, size, m.times, m.root, region) for r, m in self.motions.items()}
+        low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
+        for follow in found.values():  # what stands is drawn once for all of them
+            follow.camera = with_pan_range(follow.camera, min(low), max(high))
+        return found
+
+    def still(self) -> Frame:
+        """The room without the dancer."""
+        joints = self.joints([Moment(0.0, next(iter(self.motions)))])[0]
+        joints[:, 1, 3] += 1000.0
+        nobody = np.zeros(self.scene.panels)
+        return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
+
+    def feet(self, joints: NDArray[np.float64]) -> tuple[Foot | None, Foot | None]:
+        """Both feet from above, in panel widths of the pad."""
+        left, right = foot_marks(self.scene, joints)
+        return self._foot(left), self._foot(right)
+
+    def _foot(self, mark: FootMark | None) -> Foot | None:
+        if mark is None:
+            return None
+        cx, cy = self.scene.pad.centre
+        heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
+        return Foot(heel, toe, mark.height)
+
+    def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        """World matrices (f, j, 4, 4) of the character's joints at f moments.
+
+        Joints go by name: a character's file may order them its own way.
+        """
+        skeleton = self.scene.character.skeleton
+        rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
+        rotations[..., 0] = 1.0
+        rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
+        for one in np.unique(rate):
+            here = np.flatnonzero(rate == one)
+            sampled, root[here] = sample(self.motions[float(one)], heard[here])
+            rotations[here[:, None], self._ours] = sampled[:, self._theirs]
+        out = joint_matrices(skeleton, rotations, root)
+        if self._bar is not None:
+            out[:, skeleton.index(JOINT)] = bar_matrix(self._bar)
+        return out
+
+    def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        levels = [self.lights.at(column, second) for column in range(self.scene.panels)]
+        return np.array([level for level, _ in levels]), np.array([max(0, limb) for _, limb in levels])

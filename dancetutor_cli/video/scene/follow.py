@@ -1,0 +1,78 @@
+"""A camera that slowly follows the dancer across a wide pad.
+
+It does not turn or travel: the picture pans (see `Camera.pan`), by whole pixels, so that the standing part of the
+picture needs to be drawn only once. The whole song is known, so the pan has no lag: it is her place, smoothed over a
+window that is symmetric in time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.video.scene.camera import WHOLE, Camera, Region, preset, with_pan_range
+from dancetutor_cli.video.scene.scene import Scene
+from dancetutor_cli.video.scene.stage import PANEL
+
+Array = NDArray[np.float64]
+_STEP = 1.0 / 30.0  # seconds between the places that are smoothed
+
+
+def is_wide(scene: Scene) -> bool:
+    """Is the pad wider than one square of 3 by 3 panels, so that following her shows more?"""
+    low, high = scene.extent
+    return bool(high[0] - low[0] > 3.5 * PANEL)
+
+
+class Follow:
+    """The camera at every second of a song.
+
+    scene : with its pad; name : a preset camera; size : (width, height) of the picture; region : the part she fills
+    seconds : float64 (f,), increasing; roots : float64 (f, 3), where the dancer's root is then, metres
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        name: str,
+        size: tuple[int, int],
+        seconds: Array,
+        roots: Array,
+        region: Region = WHOLE,
+    ) -> None:
+        look = scene.look
+        low, high = scene.extent
+        middle, half = (low + high) / 2, 1.5 * PANEL
+        square = low.copy(), high.copy()
+        square[0][0], square[1][0] = middle[0] - half, middle[0] + half
+        camera = preset(name, square, size, look, region, scene.tall)
+        self._start = float(seconds[0])
+        count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
+        regular = self._start + _STEP * np.arange(count)
+        places = np.column_stack([np.interp(regular, seconds, roots[:, k]) for k in range(3)])
+        reach = (high[0] - low[0]) / 2 - half
+        # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
+        places[:, 0] = _smooth(np.clip(places[:, 0], middle[0] - reach, middle[0] + reach), look.follow.seconds)
+        # Her height and depth do not move the camera: the pan is that of a point at waist height over the pad's middle.
+        points = np.column_stack([places[:, 0], np.full(count, 0.9), np.full(count, middle[2])])
+        centre = np.array([[middle[0], 0.9, middle[2]]])
+        self._pans = (camera.project(centre, size)[0, 0] - camera.project(points, size)[:, 0]) / size[0]
+        self.camera = with_pan_range(camera, float(self._pans.min()), float(self._pans.max()))
+
+    def at(self, second: float) -> Camera:
+        """The camera at `second`; before the first and after the last it stands."""
+        place = min(max((second - self._start) / _STEP, 0.0), len(self._pans) - 1.0)
+        pan = float(np.interp(place, np.arange(len(self._pans)), self._pans))
+        return replace(self.camera, pan=pan)
+
+
+def _smooth(values: Array, seconds: float) -> Array:
+    """Two running means over `seconds` each: as slow as it must be, and no corner in its path. Ends count on."""
+    half = max(1, round(seconds / _STEP / 2))
+    for _ in range(2):
+        padded = np.concatenate([np.full(half, values[0]), values, np.full(half, values[-1])])
+        total = np.cumsum(np.concatenate([[0.0], padded]))
+        values = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
+    return values

@@ -1,0 +1,108 @@
+"""A character's meshes as flat arrays, as both renderers draw them in one go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.model import Character
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.video.scene.textures import Skins, density, skins_of
+
+F32 = NDArray[np.float32]
+FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """All meshes of a character in one. v vertices, t triangles, m materials.
+
+    positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
+    outline, drawn by moving vertices along it, has no gaps where a texture is cut
+    uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
+    triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
+    material : int32 (v,), number of the mesh, whose texture is in `skins`
+    density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
+    patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
+    """
+
+    positions: F32
+    normals: F32
+    hull: F32
+    uv: F32
+    joints: NDArray[np.int32]
+    weights: F32
+    triangles: NDArray[np.int32]
+    feet: int
+    material: NDArray[np.int32]
+    patch: NDArray[np.int32]
+    density: F32
+    skins: Skins
+
+
+def pack(character: Character) -> Packed:
+    """Put the meshes of a character together; UsageError if there is nothing to draw."""
+    meshes = [m for m in character.meshes if len(m.triangles)]
+    if not meshes:
+        raise UsageError(f"character '{character.name}' has no triangles to draw")
+    first = np.cumsum([0, *(len(m.positions) for m in meshes)])
+    skins = skins_of(meshes)
+    positions = np.concatenate([m.positions for m in meshes]).astype(np.float32)
+    normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
+    material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
+    triangles = np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32)
+    joints = np.concatenate([m.joints for m in meshes]).astype(np.int32)
+    weights = np.concatenate([m.weights for m in meshes]).astype(np.float32)
+    of_feet = _feet(character, joints, weights)[triangles].all(axis=1)
+    triangles = np.concatenate([triangles[of_feet], triangles[~of_feet]])
+    uv = np.concatenate([m.uv for m in meshes]).astype(np.float32)
+    sizes = [skins.pyramids[k][0].shape for k in skins.of_mesh]
+    side = np.sqrt([h * w for h, w, _ in sizes]).astype(np.float32)
+    return Packed(
+        positions=positions,
+        normals=normals,
+        hull=_welded(positions, normals, material),
+        uv=uv,
+        joints=joints,
+        weights=weights,
+        triangles=triangles,
+        feet=int(of_feet.sum()),
+        material=material,
+        patch=_patches(triangles, len(positions)),
+        density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
+        skins=skins,
+    )
+
+
+def _feet(character: Character, joints: NDArray[np.int32], weights: F32) -> NDArray[np.bool_]:
+    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes."""
+    names = character.skeleton.names
+    ours = [names.index(name) for side in "lr" for part in FOOT if (name := f"{side}_{part}") in names]
+    return np.asarray((weights * np.isin(joints, ours)).sum(axis=1) > 0.5)
+
+
+def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:
+    """Normals averaged over the vertices of a mesh that lie in one place."""
+    keys = np.column_stack([np.round(positions * 1e5).astype(np.int64), material])
+    _, place = np.unique(keys, axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    total = np.zeros((int(place.max()) + 1, 3))
+    np.add.at(total, place, normals.astype(np.float64))
+    out = total[place]
+    length = np.sqrt((out * out).sum(axis=1, keepdims=True))
+    return np.where(length > 1e-6, out / np.maximum(length, 1e-6), normals).astype(np.float32)
+
+
+def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
+    """Number of the piece of surface of each triangle: triangles that share vertices are of one piece."""
+    label = np.arange(vertices)
+    while True:
+        lowest = label[triangles].min(axis=1)
+        before = label.copy()
+        for corner in range(3):
+            np.minimum.at(label, triangles[:, corner], lowest)
+        label = label[label]  # go to the lowest vertex known so far: few rounds even for long pieces
+        if (label == before).all():
+            return label[triangles[:, 0]].astype(np.int32)

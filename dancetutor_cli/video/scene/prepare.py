@@ -1,0 +1,132 @@
+"""What both renderers work out alike before they draw a frame: matrices, the shadow map's place, feet, regions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.video.choices import Quality
+from dancetutor_cli.video.scene.camera import NEAR, Camera
+from dancetutor_cli.video.scene.scene import FrameState, Scene, foot_marks, hand_marks, light_direction, shadow_axes
+
+Array = NDArray[np.float64]
+SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
+SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texels across, 0: no cast shadow
+SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
+_MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
+_MARK_HEIGHT = 1.0  # a foot higher than this has no mark
+NO_FOOT = -1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Cast:
+    """Where the shadow map is. axes : (3, 3), rows u, v and the direction to the light; origin : (2,), u and v of its
+    corner, metres; scale : texels a metre, 0 if there is none."""
+
+    axes: Array
+    origin: Array
+    scale: float
+
+
+class Shown(Enum):
+    """How much of the dancer a frame shows."""
+
+    NOTHING = 0
+    FEET = 1
+    ALL = 2
+
+
+def shown(state: FrameState) -> Shown:
+    """How much of the dancer this frame shows."""
+    if state.joints is None:
+        return Shown.NOTHING
+    return Shown.FEET if state.camera.feet_only else Shown.ALL
+
+
+def joints_of(scene: Scene, state: FrameState) -> Array:
+    """The joints' world matrices; those of the binding pose where the dancer is not shown."""
+    if state.joints is not None:
+        return state.joints
+    return np.asarray(np.linalg.inv(scene.character.inverse_bind), dtype=np.float64)
+
+
+def skin_matrices(scene: Scene, joints: Array) -> Array:
+    """Binding pose to world, (j, 3, 4), in a fixed order of additions: matrix libraries differ in the last bit."""
+    inverse = scene.character.inverse_bind
+    out = joints[:, :3, 0, None] * inverse[:, None, 0, :]
+    for k in (1, 2, 3):
+        out = out + joints[:, :3, k, None] * inverse[:, None, k, :]
+    return np.ascontiguousarray(out)
+
+
+def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast:
+    """The shadow map around the dancer, on the texel grid of the world: its edge must not crawl as she moves."""
+    axes = shadow_axes(light_direction(scene.look, camera))
+    if texels == 0:
+        return Cast(axes, np.zeros(2), 0.0)
+    scale = texels / SHADOW_REACH
+    root = joints[0, :3, 3]
+    corner = [np.floor((axes[k] * root).sum() * scale) / scale - SHADOW_REACH / 2 for k in (0, 1)]
+    return Cast(axes, np.array(corner), scale)
+
+
+def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> float:
+    """How large a metre is on the picture where the dancer's root is."""
+    forward = camera.axes()[2]
+    depth = float(((joints[0, :3, 3] - camera.position) * forward).sum())
+    return camera.focal * size[1] / max(depth, NEAR)
+
+
+def feet_on_floor(scene: Scene, state: FrameState) -> Array:
+    """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
+    strength of the mark 0..1), (4, 10). A hand that is not near the floor leaves nothing on it."""
+    out = np.zeros((4, 10))
+    out[:, 5] = NO_FOOT
+    if state.joints is None:
+        return out
+    low = scene.look.light.contact_height
+    marks = (*foot_marks(scene, state.joints), *hand_marks(scene, state.joints))
+    for limb, (mark, colour) in enumerate(zip(marks, scene.colours.by_limb, strict=True)):
+        foot = limb < 2
+        if mark is not None and mark.height < (_MARK_HEIGHT if foot else low):
+            near = max(0.0, 1.0 - mark.height / low)
+            strength = scene.look.stage.mark * (0.25 + 0.75 * near if foot else near)
+            out[limb] = (*mark.heel, *mark.toe, mark.ground, near, *colour, strength)
+    return out
+
+
+def panel_lights(scene: Scene, state: FrameState) -> tuple[Array, Array]:
+    """How lit each panel is, (panels,) 0..1, and its colour, (panels, 3) 0..255."""
+    colours = np.array(scene.colours.by_limb, dtype=np.float64)
+    lit = np.clip(np.asarray(state.lit, dtype=np.float64), 0.0, 1.0)
+    return lit, colours[np.clip(np.asarray(state.lit_by, dtype=np.int64), 0, len(colours) - 1)]
+
+
+def ground_box(scene: Scene, camera: Camera, size: tuple[int, int], bounds: tuple[Array, Array], cast: Cast) -> Array:
+    """The part of the picture, x0, y0, x1, y1 in pixels, that holds the pad and all that falls on the floor.
+
+    bounds : least and greatest corner (3,) of the dancer
+    """
+    low, high = scene.extent
+    ground = -scene.look.stage.pad_height
+    points = [(x, y, z) for x in (low[0], high[0]) for y in (0.0, ground) for z in (low[2], high[2])]
+    least, most = bounds[0] - _MARK_REACH, bounds[1] + _MARK_REACH
+    under = [(x, ground, z) for x in (least[0], most[0]) for z in (least[2], most[2])]
+    if cast.scale > 0:  # the corners of her box, cast on the floor
+        slope = cast.axes[2] / cast.axes[2][1]
+        for x, _, z in tuple(under):
+            for y in (least[1] - ground, most[1] - ground):
+                under.append((x - slope[0] * y, ground, z - slope[2] * y))
+    return pixel_box(camera, np.array(points + under, dtype=np.float64), size)
+
+
+def pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> Array:
+    """Bounds of world points on the picture, int64 x0, y0, x1, y1; everything if one of them is behind the camera."""
+    places = camera.project(points, size)
+    if (places[:, 2] < NEAR).any():
+        return np.array([0, 0, *size], dtype=np.int64)
+    low, high = np.floor(places[:, :2].min(0)) - 2, np.ceil(places[:, :2].max(0)) + 3
+    return np.concatenate([np.clip(low, 0, size), np.clip(high, 0, size)]).astype(np.int64)

@@ -1,0 +1,79 @@
+"""Rooms import only from rooms above them, as docs/architecture.md lists them; parts of `video` not each other."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "dancetutor_cli"
+TABLE = re.compile(r"^\| `(\w+)` \| [^|]+ \| ([^|]*?) ?\|$", re.M)
+LISTED = dict(TABLE.findall((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")))
+ORDER = list(LISTED)
+FRONT = "most above"  # of a room that orders the others
+VIDEO_PARTS = ("overlay", "scene", "media")
+
+
+@cache
+def imported(path: Path) -> frozenset[str]:
+    """Everything of the package that a file imports, also inside of functions and for types only."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import"
+            found |= {str(node.module), *(f"{node.module}.{name.name}" for name in node.names)}
+        elif isinstance(node, ast.Import):
+            found |= {name.name for name in node.names}
+    return frozenset(found)
+
+
+def beginning(path: Path, start: str) -> Iterator[str]:
+    """The word after `start.` in each import of a file."""
+    for name in imported(path):
+        if name.startswith(start + "."):
+            yield name.removeprefix(start + ".").split(".")[0]
+
+
+def rooms_of(folder: Path) -> set[str]:
+    """The rooms that the files below a folder import."""
+    names = {name for path in folder.rglob("*.py") for name in beginning(path, "dancetutor_cli")}
+    return {name for name in names if (PACKAGE / name).is_dir()} - {folder.name}
+
+
+def test_every_room_is_in_the_table() -> None:
+    assert set(ORDER) == {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+
+
+@pytest.mark.parametrize("room", ORDER)
+def test_a_room_imports_from_rooms_above_only(room: str) -> None:
+    used = rooms_of(PACKAGE / room)
+    assert used <= set(ORDER[: ORDER.index(room)])
+    if not LISTED[room].startswith(FRONT):
+        assert used == set(LISTED[room].split(", ")) - {""}, "docs/architecture.md names other imports"
+
+
+def test_only_commands_know_click_and_only_they_and_reports_know_rich() -> None:
+    knows: dict[str, set[str]] = {"click": set(), "rich": set()}
+    for path in PACKAGE.rglob("*.py"):
+        for name in {name.split(".")[0] for name in imported(path)} & set(knows):
+            knows[name].add(path.relative_to(PACKAGE).parts[0])
+    assert knows == {"click": {"commands", "__main__.py"}, "rich": {"commands", "reports"}}
+
+
+@pytest.mark.parametrize("part", VIDEO_PARTS)
+def test_the_parts_of_a_film_know_nothing_of_each_other(part: str) -> None:
+    for path in (PACKAGE / "video" / part).rglob("*.py"):
+        used = set(beginning(path, "dancetutor_cli.video"))
+        assert not used & (set(VIDEO_PARTS) - {part}), path
+        assert "film" not in used, f"{path}: `film` puts the parts together"
+
+
+def test_what_the_parts_share_knows_none_of_them() -> None:
+    for path in (PACKAGE / "video").glob("*.py"):
+        if path.name != "film.py":
+            assert not set(beginning(path, "dancetutor_cli.video")) & set(VIDEO_PARTS), path

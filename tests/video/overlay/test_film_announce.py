@@ -1,0 +1,93 @@
+"""Words that come and go: the count-in stands beside what it counts in, and a move is called once at a time."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.layout import PixelBox, layout_names, load_layout
+from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.overlay.announce import CALL_STAYS, Calls, Runs
+from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.picture import Frame
+
+SIZE = (640, 360)
+FACE = Typeface()
+
+
+def black() -> Frame:
+    return np.zeros((SIZE[1], SIZE[0], 3), dtype=np.uint8)
+
+
+def drawn(frame: Frame) -> PixelBox:
+    """The box of what is not black."""
+    y, x = np.nonzero(frame.any(axis=2))
+    return int(x.min()), int(y.min()), int(x.max()) + 1, int(y.max()) + 1
+
+
+def apart(a: PixelBox, b: PixelBox) -> bool:
+    return a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
+
+
+@pytest.mark.parametrize(("name", "columns"), [*product(layout_names(), (4, 8))])
+def test_the_count_in_covers_nothing_that_is_taught(name: str, columns: int) -> None:
+    layout = load_layout(name)
+    count = layout.box("count", layout.size, columns)
+    others = ["feet", "next", "runs", "legend", "calls", "header"]
+    if layout.screen is None and layout.dancer is not None:
+        others.append("highway")
+    for other in others:
+        if getattr(layout, other) is not None and (name, other) != ("highway", "header"):
+            assert apart(count, layout.box(other, layout.size, columns)), other
+    if layout.dancer is not None and layout.feet is None:
+        left, top, right, bottom = layout.box("dancer", layout.size, columns)
+        middle = (left + right) / 2
+        assert count[0] > middle or count[2] < middle, "she stands there"
+        assert count[3] < top + 0.75 * (bottom - top), "the pad lies there"
+
+
+def test_numbers_are_counted_down_inside_their_box() -> None:
+    box = (400, 20, 520, 100)
+    clock = Clock((Pass(8.0, 12.0, 1.0, sound_from=10.0, count=4),), 30)
+    runs = Runs(clock, (0, 300), box, 1.0, FACE)
+    seen = []
+    for beat in range(4):
+        frame = black()
+        runs.draw(frame, 8.0 + beat * 0.5, 0)
+        left, top, right, bottom = drawn(frame)
+        assert box[0] <= left < right <= box[2] and box[1] <= top < bottom <= box[3]
+        assert bottom - top > 0.4 * (box[3] - box[1]), "large enough to be seen"
+        seen.append(frame.tobytes())
+    assert len(set(seen)) == 4
+    frame = black()
+    runs.draw(frame, 10.0, 0)
+    assert not frame.any(), "counted in"
+
+
+def calls(*moments: tuple[float, str]) -> Calls:
+    found = tuple(Callout(second, second * 2, text, "move") for second, text in moments)
+    return Calls(found, (300, 10, 630, 350), 1.0, FACE, highway_style())
+
+
+def test_the_same_words_stand_once() -> None:
+    twice = calls((5.0, "crossover"), (5.4, "crossover"))
+    for second in (4.0, 4.9, 5.1, 5.3, 5.6):
+        frame, alone = black(), black()
+        twice.draw(frame, second)
+        calls((5.0 if second <= 5.0 else 5.4, "crossover")).draw(alone, second)
+        assert alone.any() and (frame == alone).all(), second
+
+
+def test_two_moves_stand_below_each_other_and_end_after_their_notes() -> None:
+    both = calls((5.0, "crossover"), (5.4, "spin"), (5.5, "crossover"), (5.6, "bracket"))
+    frame, one = black(), black()
+    both.draw(frame, 4.0)
+    calls((5.0, "crossover")).draw(one, 4.0)
+    assert drawn(frame)[3] > drawn(one)[3] + 20
+    late = black()
+    both.draw(late, 5.6 + CALL_STAYS + 0.01)
+    assert not late.any()

@@ -1,0 +1,82 @@
+"""Words in the picture: letters of every script, lines that fit, and parts that do not cover each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.video.layout import layout_names, load_layout
+from dancetutor_cli.video.overlay import text
+from dancetutor_cli.video.overlay.fonts import system_fonts
+from dancetutor_cli.video.overlay.highway import wrapped
+from dancetutor_cli.video.overlay.text import Typeface, clean
+
+
+@pytest.fixture
+def fonts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """The fonts of a system, of which a test says what they are."""
+    found: list[str] = []
+    monkeypatch.setattr(text, "system_fonts", lambda: tuple(found))
+    for cached in (text._font_of, text._runs):
+        cached.cache_clear()
+    yield found
+    for cached in (text._font_of, text._runs):
+        cached.cache_clear()
+
+
+def test_titles_lose_controls_and_fold_what_no_font_has(fonts: list[str]) -> None:
+    face = Typeface()
+    assert clean("a\x1b[31mb\nc\u202e") == "a[31mb c"
+    assert face.drawable("Café ～日本") == "Cafe ~??"
+    long = face.fit("word " * 500, 20, 200)
+    assert long.endswith("…") and face.width(long, 20) <= 200
+
+
+def test_letters_the_built_in_font_lacks_come_from_the_system(fonts: list[str]) -> None:
+    wide = next((path for path in system_fonts() if Path(path).name == "DejaVuSans.ttf"), None)
+    if wide is None:
+        pytest.skip("DejaVu Sans is not installed")
+    assert Typeface().drawable("Ночь é") == "???? e"  # what a machine without fonts makes of it
+    text._font_of.cache_clear()
+    fonts.append(wide)
+    face = Typeface()
+    assert face.drawable("Ночь é") == "Ночь é" and face.missing("Ночь 日") == "日"
+    assert text._runs(None, "Night")[0][0] is None  # what the built-in one can draw, it draws
+    assert [part for part, _ in text._runs(None, "Ночь 1")] == [wide]  # one font for a line if there is one
+    ink = face.sprite("Ночь", 30, (255, 255, 255))[..., 3]
+    box = face.sprite("????", 30, (255, 255, 255))[..., 3]
+    assert ink.shape[0] == box.shape[0] and (ink > 128).sum() > 200
+
+
+def test_labels_wrap_before_they_become_small() -> None:
+    face = Typeface()
+    width = face.width("full crossover", 14)
+    assert wrapped(["full", "crossover"], 14, width + 1, face) == ["full crossover"]
+    assert wrapped(["full", "crossover"], 14, 0.7 * width, face) == ["full", "crossover"]
+    assert wrapped(["a", "b", "c", "d"], 14, 1.0, face) == ["a", "b", "c d"]
+    words, size = face.shrink("full crossover", 14, 0.9 * width)
+    assert words == "full crossover" and size == pytest.approx(0.9 * 14, rel=0.03)
+    words, size = face.shrink("full crossover", 14, 0.5 * width)
+    assert words.endswith("…") and size == pytest.approx(0.8 * 14) and face.width(words, size) <= 0.5 * width
+
+
+def test_a_longer_line_is_as_wide_as_its_letters() -> None:
+    face = Typeface()
+    ones, many = face.width("o", 9), face.width("o" * 40, 9)
+    assert many == pytest.approx(40 * ones, rel=0.02)  # letters on whole pixels would add up to something else
+
+
+@pytest.mark.parametrize("columns", [4, 8])
+@pytest.mark.parametrize("name", layout_names())
+def test_parts_of_a_layout_do_not_cover_each_other(name: str, columns: int) -> None:
+    layout = load_layout(name)
+    names = [n for n in ("dancer", "highway", "calls", "feet", "runs", "next", "progress") if getattr(layout, n)]
+    if layout.screen is not None:
+        names.remove("highway")  # it is shown in her room
+    boxes = {n: layout.box(n, layout.size, columns) for n in names}
+    for (one, a), (other, b) in combinations(boxes.items(), 2):
+        apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
+        assert apart or {one, other} == {"calls", "dancer"}, f"{one} and {other}"

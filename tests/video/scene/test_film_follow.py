@@ -1,0 +1,82 @@
+"""In doubles the camera goes with her, and a frame is the same whoever draws it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.resources import charts_path
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.video.clock import Moment
+from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.notes import Presses
+from dancetutor_cli.video.scene.dancer import Dancer
+
+DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+ASKED = [
+    "--steps-type",
+    "dance-double",
+    "--section",
+    "18:24",
+    "--fps",
+    "2",
+    "-q",
+    "--renderer",
+    "cpu",
+    "--size",
+    "160x90",
+]
+
+
+def dancer(pad_name: str, camera: str, stands: bool = False) -> Dancer:
+    """She stands 0.5 m to +x for ten seconds, then 0.5 m to -x."""
+    skeleton, times = dancer_skeleton(), np.arange(0.0, 20.0, 0.1)
+    rotations = np.zeros((len(times), len(skeleton.names), 4))
+    rotations[..., 0] = 1.0
+    root = np.column_stack([np.where(times < 10, 0.5, -0.5), np.full_like(times, 0.9), np.zeros_like(times)])
+    pad = load_pad(pad_name)
+    assert pad is not None
+    lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
+    motions = {rate: Motion(skeleton, 10.0, times / rate, rotations, root, ()) for rate in (0.5, 1.0)}
+    return Dancer(motions, pad, lights, (96, 96), camera, "draft", "cpu", stands=stands)
+
+
+@pytest.mark.parametrize("rate", [1.0, 0.5])
+@pytest.mark.parametrize("camera", ["back", "front"])
+def test_the_camera_goes_with_her_in_doubles(camera: str, rate: float) -> None:
+    who = dancer("dance-double", camera)
+    for second, x in ((2.0, 0.5), (18.0, -0.5)):
+        place = np.array([[x, 0.9, 0.0]])
+        assert abs(who.view(Moment(second, rate)).project(place, (96, 96))[0, 0] - 48) < 12
+        assert abs(who.camera.project(place, (96, 96))[0, 0] - 48) > 12
+
+
+@pytest.mark.parametrize(
+    ("pad", "camera", "stands"),
+    [
+        ("dance-single", "back", False),
+        ("dance-double", "back", True),
+        ("dance-double", "top", False),
+        ("dance-double", "side", False),
+        ("dance-double", "0,2,-4/0,1,0", False),
+    ],
+)
+def test_other_cameras_stand(pad: str, camera: str, stands: bool) -> None:
+    who = dancer(pad, camera, stands)
+    assert who.view(Moment(2.0)) == who.view(Moment(18.0)) == who.camera
+
+
+def test_the_followed_frame_is_the_same_whoever_draws_it(tmp_path: Path) -> None:
+    for jobs in ("1", "2"):
+        with pytest.raises(SystemExit) as stop:
+            main(["render", str(DEMO), *ASKED, "--frames", str(tmp_path / jobs), "--jobs", jobs])
+        assert stop.value.code == 0
+    names = sorted(p.name for p in (tmp_path / "1").iterdir())
+    assert len(names) == 12  # more than one segment of work
+    for name in names:
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()

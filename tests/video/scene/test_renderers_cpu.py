@@ -1,0 +1,281 @@
+"""What the software renderer's frames show, and that they are always the same."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import renderers_scene as rs
+from PIL import Image, ImageDraw
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.motion.swing.panels import panels_on_ground
+from dancetutor_cli.video.choices import QUALITIES
+from dancetutor_cli.video.scene import renderer
+from dancetutor_cli.video.scene.camera import with_pan_range
+from dancetutor_cli.video.scene.scene import foot_marks, hand_marks
+
+SIZE = (320, 180)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return rs.scene()
+
+
+@pytest.fixture(scope="module")
+def cpu(scene):
+    return renderer.create(scene, SIZE, "good", "cpu")
+
+
+def _frame(cpu, scene, kind="stand", camera="back", **more):
+    return cpu.frame(rs.state(scene, kind, camera, SIZE, **more)).astype(int)
+
+
+def _red(frame):
+    """Pixels of the red face."""
+    return (frame[..., 0] > 110) & (frame[..., 1] < 60) & (frame[..., 2] < 60)
+
+
+@pytest.mark.parametrize("name", rs.GOLDENS)
+def test_golden_frames(name):
+    expected = np.asarray(Image.open(rs.GOLDEN / f"frame_{name}.png")).astype(int)
+    difference = np.abs(rs.golden_frame(name).astype(int) - expected).max(axis=2)
+    # rendering.md: at most one level in 0.01 % of the pixels between machines.
+    assert difference.max() <= 1
+    assert (difference > 0).mean() <= 1e-4
+
+
+def test_frames_are_the_same_bytes_on_every_run(scene, cpu):
+    first = cpu.frame(rs.state(scene, "step", "back", SIZE, [(0, 0.6)])).copy()
+    cpu.frame(rs.state(scene, "jump", "front", SIZE))  # nothing of it may be left over
+    again = cpu.frame(rs.state(scene, "step", "back", SIZE, [(0, 0.6)])).copy()
+    other = renderer.create(scene, SIZE, "good", "cpu").frame(rs.state(scene, "step", "back", SIZE, [(0, 0.6)]))
+    assert first.tobytes() == again.tobytes() == other.tobytes()
+
+
+def test_frames_are_the_same_bytes_in_another_process():
+    program = """import hashlib, renderers_scene as rs
+print(hashlib.sha256(rs.golden_frame('back_step').tobytes()).hexdigest())"""
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=Path(rs.__file__).parent
+    )
+    assert run.stdout.strip() == hashlib.sha256(rs.golden_frame("back_step").tobytes()).hexdigest()
+
+
+def test_she_faces_the_screen(cpu, scene):
+    assert not _red(_frame(cpu, scene, camera="back")).any()
+    front = _red(_frame(cpu, scene, camera="front"))
+    assert front.sum() > 20
+    rows, columns = np.nonzero(front)
+    assert abs(columns.mean() - SIZE[0] / 2) < 2 and rows.mean() < SIZE[1] / 2
+
+
+def test_from_the_back_the_left_panel_and_the_left_foot_are_on_the_left(cpu, scene):
+    dark = _frame(cpu, scene)
+    lit = _frame(cpu, scene, lit=[(0, 1.0)])
+    assert np.nonzero((lit != dark).any(2))[1].max() < SIZE[0] / 2
+    left_foot, right_foot = foot_marks(scene, rs.pose(scene.character, "step"))
+    camera = scene.camera("back", SIZE)
+    ground = [[f.heel[0], 0.0, f.heel[1]] for f in (left_foot, right_foot)]
+    places = camera.project(np.array(ground), SIZE)
+    assert places[0, 0] < SIZE[0] / 2 - 10 and places[0, 0] < places[1, 0] - 10
+
+
+def _polygon(camera, x, z, half):
+    """Mask of a square on the pad, drawn by Pillow."""
+    corners = [[x - half, 0, z - half], [x - half, 0, z + half], [x + half, 0, z + half], [x + half, 0, z - half]]
+    scale = 4
+    places = camera.project(np.array(corners), SIZE)[:, :2] * scale
+    image = Image.new("L", (SIZE[0] * scale, SIZE[1] * scale))
+    ImageDraw.Draw(image).polygon([tuple(p) for p in places], fill=255)
+    return np.asarray(image).reshape(SIZE[1], scale, SIZE[0], scale).mean((1, 3)) / 255
+
+
+@pytest.mark.parametrize("camera_name", ["back", "top", "three-quarter"])
+@pytest.mark.parametrize("column", range(4))
+def test_a_lit_panel_changes_its_own_region_and_no_other(cpu, scene, column, camera_name):
+    nobody = {"kind": None, "camera": camera_name}
+    changed = (_frame(cpu, scene, **nobody) != _frame(cpu, scene, **nobody, lit=[(column, 1.0)])).any(2)
+    x, z = panels_on_ground(scene.pad)[column]
+    camera = scene.camera(camera_name, SIZE)
+    assert not (changed & (_polygon(camera, x, z, 0.14) == 0)).any()
+    inner = _polygon(camera, x, z, 0.12) == 1
+    assert inner.sum() > 10 and changed[inner].all()
+
+
+def test_a_lit_panel_has_the_colour_of_the_limb(cpu, scene):
+    camera = scene.camera("top", SIZE)
+    x, z = panels_on_ground(scene.pad)[1]
+    inside = _polygon(camera, x, z, 0.08) == 1
+    for limb, colour in enumerate(scene.colours.by_limb):
+        frame = _frame(cpu, scene, kind=None, camera="top", lit=[(1, 1.0)], by=[(1, limb)])
+        mean, target = frame[inside].mean(0), np.array(colour)
+        others = [np.array(c) for i, c in enumerate(scene.colours.by_limb) if i != limb]
+        hue = (mean - mean.mean()) / np.linalg.norm(mean - mean.mean())
+        own = hue @ ((target - target.mean()) / np.linalg.norm(target - target.mean()))
+        assert own > 0.95
+        if limb < 2:  # the hands have lighter shades of the feet's colours
+            other_foot = others[0]
+            assert own > hue @ ((other_foot - other_foot.mean()) / np.linalg.norm(other_foot - other_foot.mean()))
+
+
+def test_light_grows_with_the_level(cpu, scene):
+    x, z = panels_on_ground(scene.pad)[0]
+    inside = _polygon(scene.camera("top", SIZE), x, z, 0.1) == 1
+    levels = [0.0, 0.25, 0.5, 1.0, 7.0]
+    red = [_frame(cpu, scene, None, "top", lit=[(0, v)])[inside][:, 0].mean() for v in levels]
+    assert red[0] < red[1] < red[2] < red[3] == red[4]
+
+
+def test_a_jump_parts_the_feet_from_their_shadows(scene):
+    """The floor beside a standing foot is darker than below one in the air, and the mark around it stronger."""
+    size = (1280, 720)
+    cpu = renderer.create(scene, size, "draft", "cpu")
+    camera = scene.camera("top", size)
+    ground, jumping = rs.pose(scene.character, "stand"), rs.pose(scene.character, "stand")
+    jumping[:, 1, 3] += 0.12
+    foot = foot_marks(scene, ground)[0]
+    x, z = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
+    places = camera.project(np.array([[x - 0.072, 0.0, z], [x - 0.090, 0.0, z]]), size)[:, :2].astype(int)
+    state = rs.state(scene, None, "top", size)
+    colours = []
+    for joints in (ground, jumping, None):
+        frame = cpu.frame(replace(state, joints=joints)).astype(int)
+        colours.append([frame[row, column] for column, row in places])
+    (mark, beside), (mark_up, beside_up), (_, bare) = colours
+    orange = np.array(scene.colours.left_foot)
+    assert np.abs(mark - orange).sum() < 60 < np.abs(mark_up - orange).sum()
+    assert beside.sum() < 0.8 * bare.sum() and beside.sum() + 15 < beside_up.sum()
+
+
+def test_a_cast_shadow_from_good_on(scene):
+    far = np.s_[:, SIZE[0] * 6 // 10 :]
+    for quality, casts in (("draft", False), ("good", True)):
+        cpu = renderer.create(scene, SIZE, quality, "cpu")
+        empty = _frame(cpu, scene, None)[far]
+        darker = _frame(cpu, scene, "jump")[far].sum(2) < 0.8 * empty.sum(2)
+        assert (darker.sum() > 30) == casts
+
+
+def test_nobody_there_is_the_room_alone(cpu, scene):
+    empty = _frame(cpu, scene, None)
+    gone = rs.state(scene, "stand", "back", SIZE)
+    gone.joints[:, 1, 3] += 50.0
+    assert (empty != _frame(cpu, scene)).any(2).sum() > 1000
+    assert (cpu.frame(gone) == empty).all()
+
+
+def test_a_pan_shifts_the_room_by_whole_pixels(scene):
+    cpu = renderer.create(scene, SIZE, "good", "cpu")
+    state = rs.state(scene, "step", "back", SIZE, [(2, 0.5)])
+    camera = with_pan_range(state.camera, -0.2, 0.2)
+    still = cpu.frame(replace(state, camera=camera)).astype(int)
+    for pixels in (8, -24):
+        moved = cpu.frame(replace(state, camera=replace(camera, pan=pixels / SIZE[0]))).astype(int)
+        kept = slice(max(pixels, 0), SIZE[0] + min(pixels, 0))
+        assert (moved[:, kept] == np.roll(still, pixels, axis=1)[:, kept]).all()
+
+
+def test_the_picture_without_pan_range_is_the_same(scene):
+    cpu = renderer.create(scene, SIZE, "good", "cpu")
+    state = rs.state(scene, "step", "back", SIZE)
+    plain = cpu.frame(state).astype(int)
+    ranged = cpu.frame(replace(state, camera=with_pan_range(state.camera, -0.1, 0.1))).astype(int)
+    assert np.abs(plain - ranged).max() <= 1  # the dither may start elsewhere
+
+
+def test_more_samples_come_nearer_to_many(scene):
+    """Smooth edges: draft and good, both compared with a picture of four times the size, averaged."""
+    big = (SIZE[0] * 4, SIZE[1] * 4)
+    look = replace(scene.look, toon=replace(scene.look.toon, outline_width=0.0))
+    bare = type(scene)(scene.character, scene.pad, look, scene.colours)
+    state = rs.state(bare, "jump", "front", big)
+    fine = renderer.create(bare, big, "good", "cpu").frame(state).astype(float)
+    fine = fine.reshape(SIZE[1], 4, SIZE[0], 4, 3).mean((1, 3))
+    upper = np.s_[: SIZE[1] // 2]  # no shadow on the floor there, which draft leaves out
+    error = {}
+    for quality in QUALITIES:
+        frame = renderer.create(bare, SIZE, quality, "cpu").frame(rs.state(bare, "jump", "front", SIZE))
+        error[quality] = np.abs(frame - fine)[upper].mean()
+    assert error["best"] < error["good"] < error["draft"]
+
+
+def test_a_camera_inside_the_dancer_draws_something(cpu, scene):
+    state = rs.state(scene, "step", "0,1.2,0.05/0,0.2,0.6", SIZE)
+    assert cpu.frame(state).shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_the_frame_is_the_callers_until_the_next_one(cpu, scene):
+    frame = cpu.frame(rs.state(scene, "stand", "back", SIZE))
+    before = frame.copy()
+    frame[:] = 0
+    assert (cpu.frame(rs.state(scene, "stand", "back", SIZE)) == before).all()
+
+
+def test_odd_sizes_work(scene):
+    for size in ((33, 17), (17, 95)):
+        frame = renderer.create(scene, size, "good", "cpu").frame(rs.state(scene, "step", "back", size))
+        assert frame.shape == (size[1], size[0], 3) and frame.dtype == np.uint8
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"quality": "ultra"}, "draft, good, best"),
+        ({"kind": "vulkan"}, "auto, cpu, gl"),
+        ({"size": (0, 90)}, "not possible"),
+    ],
+)
+def test_bad_wishes_are_usage_errors(scene, arguments, message):
+    with pytest.raises(UsageError, match=message):
+        renderer.create(scene, **{"size": SIZE, "quality": "good", "kind": "cpu", **arguments})
+
+
+def test_states_that_do_not_fit_are_usage_errors(cpu, scene):
+    good = rs.state(scene, "stand", "back", SIZE)
+    for bad in (
+        replace(good, joints=good.joints[:3]),
+        replace(good, lit=np.zeros(9)),
+        replace(good, joints=good.joints * np.nan),
+        replace(good, joints=good.joints * 1e200),
+    ):
+        with pytest.raises(UsageError, match="frame"):
+            cpu.frame(bad)
+
+
+def test_choosing_a_renderer_imports_neither_numba_nor_opengl():
+    program = (
+        "import sys; from dancetutor_cli.video.scene import renderer, scene\n"
+        "from dancetutor_cli.video.scene.gl import probe\n"
+        "print(sorted({'numba', 'OpenGL', 'pyrender', 'scipy'} & set(sys.modules)))"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
+def test_a_palm_on_the_pad_leaves_its_mark_and_a_raised_hand_none(scene):
+    size = (640, 360)
+    cpu = renderer.create(scene, size, "draft", "cpu")
+    names = scene.character.skeleton.names
+    state = rs.state(scene, "stand", "top", size)
+    empty = cpu.frame(replace(state, joints=None)).astype(int)
+    place = np.array([-0.28, 0.0, 0.28])  # a blank tile, far from both feet
+    row, column = scene.camera("top", size).project(place[None], size)[0, 1::-1].astype(int)
+    around = np.s_[row - 19 : row + 19, column - 19 : column + 19]
+    wrist = names.index("r_radiocarpal")
+    for height, seen in ((0.0, True), (0.5, False)):
+        joints = state.joints.copy()
+        palm = hand_marks(scene, joints)[1]
+        joints[wrist, 0, 3] += place[0] - palm.heel[0]
+        joints[wrist, 2, 3] += place[2] - palm.heel[1]
+        joints[wrist, 1, 3] += height - palm.height
+        changed = cpu.frame(replace(state, joints=joints)).astype(int)[around] - empty[around]
+        cyan = np.abs(changed + empty[around] - np.array(scene.colours.right_hand)).sum(2) < 60
+        assert cyan.any() == seen
+        assert (changed != 0).any() == seen
