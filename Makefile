@@ -19,7 +19,7 @@ help:
 	@echo "make fuzz    broken input for every reader, MINUTES=10; finds go to tests/data/fuzz/"
 	@echo "make kill-test  end annotate, render and analyze at KILLS=300 random moments; nothing may be lost"
 	@echo "make bench   measure speed; print a table"
-	@echo "make motion-report  the quality of the motion on 40 charts (COUNT=400: more); a table in build/"
+	@echo "make motion-report  the quality of the motion on sections of COUNT=100 charts; a table in build/"
 	@echo "make fit     fit the presets itg and pump to labelled feet; the table of all sets, by method"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
@@ -83,7 +83,7 @@ kill-test: setup-dev
 fit: setup-dev
 	@$(BIN)/python tools/fit_weights.py $(FIT_ARGS)
 
-COUNT ?= 40
+COUNT ?= 100
 motion-report: setup-dev
 	@$(BIN)/python tools/motion_report.py --count $(COUNT) $(REPORT_ARGS)
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Bake many charts and measure each: which goals of the quality report are met, on what, and by how much not.
 
-usage: tools/motion_report.py [--count 40] [--seed 6] [--jobs N] [--out build/motion-report] [PATH ...]
-Without paths: the demo song, every chart of goin_under, and COUNT charts of the corpus, as many of each meter from 1 to
-13 and more as there are, the same ones for the same seed. With paths: every dance-single and dance-double chart there.
+usage: tools/motion_report.py [--count 100] [--seed 6] [--section 40] [--part I/N] [--jobs N] [--out FILE] [PATH ...]
+Without paths: COUNT charts of the corpus, by turns of each meter from 1 to 20 and more and of each steps type, the same
+ones for the same seed, and of each a section of so many seconds at a place that the seed says. With paths: every chart
+there that has a pad. --section 0 takes whole charts; --part 2/5 every fifth chart, from the second one on.
 Writes OUT.txt (worst charts first) and OUT.json, and prints the summary. Exit status 1 if a chart breaks.
 """
 
@@ -16,7 +17,7 @@ import math
 import sys
 import time
 from collections import defaultdict
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,21 +28,22 @@ from dancetutor_cli.jobs.pool import Task, default_jobs, open_workers
 
 ROOT = Path(__file__).resolve().parent.parent
 CORPUS = ROOT / "build" / "corpus" / "dev"
-ALWAYS = (ROOT / "charts" / "two_left_feet", ROOT.parent / "shared" / "data" / "songs" / "goin_under")
-TYPES = ("dance-single", "dance-double")
-HIGHEST = 13  # this meter and all above it are one group
+DEMO = (ROOT / "charts" / "two_left_feet",)
+HIGHEST = 20  # this meter and all above it are one group
+AROUND = 2.0  # seconds before the first note and after the last one that may be in a section
 FEWEST = 20  # rows with steps; a chart with fewer says little
 FAST = 12.0  # steps per second over which a goal may be missed, with a reason
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """A chart to measure: its file, its place in it, and what it is called."""
+    """A chart to measure: its file, its place in it, what it is called, and where in it (0 to 1) a section lies."""
 
     path: str
     index: int
     label: str
     meter: int
+    place: float = 0.0
 
 
 @dataclass
@@ -58,6 +60,7 @@ class Measured:
     error: str = ""
     figures: list[dict[str, Any]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    start: float = 0.0
 
     @property
     def missed(self) -> list[dict[str, Any]]:
@@ -76,14 +79,16 @@ def excess(figure: dict[str, Any]) -> float:
 
 def main() -> None:
     options = _options()
-    wanted = _everything(options.paths) if options.paths else _everything(ALWAYS) + pick(options.count, options.seed)
+    wanted = _everything(options.paths) if options.paths else pick(options.count, options.seed)
+    first, every = (int(x) for x in options.part.split("/"))
+    wanted = wanted[first - 1 :: every]
     if not wanted:
-        sys.exit("no dance-single or dance-double chart was found")
+        sys.exit("no chart was found that has a pad")
     results, started = [], time.monotonic()
     workers = open_workers(min(options.jobs, len(wanted)), lambda key, n: None)
     try:
         for chart in wanted:
-            workers.submit(Task(chart, measure, (chart, options.preset, options.bar)))
+            workers.submit(Task(chart, measure, (chart, options.preset, options.bar, options.section)))
         for done in workers.done():
             chart = done.key
             results.append(done.result or Measured(chart.path, chart.index, chart.label, error=str(done.error)))
@@ -100,8 +105,10 @@ def main() -> None:
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("paths", nargs="*", type=Path)
-    parser.add_argument("--count", type=int, default=40, help="charts of the corpus")
+    parser.add_argument("--count", type=int, default=100, help="charts of the corpus")
     parser.add_argument("--seed", type=int, default=6)
+    parser.add_argument("--section", type=float, default=40.0, help="seconds of each chart; 0: all of it")
+    parser.add_argument("--part", default="1/1", help="I/N: every N-th chart, from the I-th one on")
     parser.add_argument("--jobs", type=int, default=default_jobs())
     parser.add_argument("--preset")
     parser.add_argument("--bar", action="store_true", help="she holds the bar")
@@ -110,10 +117,10 @@ def _options() -> argparse.Namespace:
 
 
 def pick(count: int, seed: int) -> list[Wanted]:
-    """`count` charts of the corpus, by turns of each meter and, within it, of singles and doubles."""
+    """`count` charts of the corpus, by turns of each meter and, within it, of each steps type."""
     if not CORPUS.is_dir():
-        print(f"{CORPUS} is not there (the tests unpack it): only the project's own songs", file=sys.stderr)
-        return []
+        print(f"{CORPUS} is not there (the tests unpack it): only the demo song", file=sys.stderr)
+        return _everything(DEMO)
     groups: dict[tuple[int, str], list[Wanted]] = defaultdict(list)
     for chart in _everything((CORPUS,)):
         groups[min(chart.meter, HIGHEST), chart.label.split()[0]].append(chart)
@@ -125,19 +132,23 @@ def pick(count: int, seed: int) -> list[Wanted]:
     for group in groups.values():
         group.sort(key=draw, reverse=True)
     picked: list[Wanted] = []
+    meters = sorted({m for m, _ in groups})
     while len(picked) < count and any(groups.values()):
-        for meter in sorted({m for m, _ in groups}):
-            both = [groups[meter, t] for t in TYPES if groups.get((meter, t))]
-            if both and len(picked) < count:
-                picked.append(both[len(picked) % len(both)].pop())
+        for meter in meters:
+            kinds = [groups[key] for key in sorted(groups) if key[0] == meter and groups[key]]
+            if kinds and len(picked) < count:
+                # one on in each round, and another one first at each meter
+                chart = kinds[(len(picked) // len(meters) + len(picked)) % len(kinds)].pop()
+                picked.append(replace(chart, place=int.from_bytes(draw(chart)[-4:]) / 2**32))
     return picked
 
 
 def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
-    """Every chart of the two steps types below `paths` with enough steps; of a .sm and .ssc of one song the latter."""
+    """Every chart below `paths` with a pad and enough steps; of a .sm and .ssc of one song the latter."""
     from dancetutor_cli.chart import load
     from dancetutor_cli.chart.model import Kind
     from dancetutor_cli.library import find_files, twin
+    from dancetutor_cli.pads import load_pad
 
     out = []
     for path in find_files([p for p in paths if p.exists()]):
@@ -149,13 +160,13 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
             continue
         for chart in song.charts:
             steps = chart.notes.judged & (chart.notes.kind != Kind.MINE)
-            if chart.steps_type in TYPES and len(np.unique(chart.notes.tick[steps])) >= FEWEST:
+            if load_pad(chart.steps_type) is not None and len(np.unique(chart.notes.tick[steps])) >= FEWEST:
                 out.append(Wanted(str(path), chart.index, chart.label, chart.meter))
     return out
 
 
-def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool) -> Measured:
-    """Bake one chart and report on it; runs in a worker process."""
+def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
+    """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
     from dancetutor_cli.bake import mines_of, report
     from dancetutor_cli.commands.animate import as_json
     from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
@@ -165,11 +176,22 @@ def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool) -> Measured:
     task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset, bar=bar)
     asked = ask(task)
     stepped = asked.play.rows.second[(asked.play.limb >= 0).any(axis=1)]
+    start = 0.0
+    if length > 0.0:
+        start = section_start(stepped, wanted.place, length)
+        asked = replace(asked, section=(start, start + length))
+        stepped = stepped[(stepped >= start) & (stepped <= start + length)]
     found = as_json(report(bake_asked(asked, task), mines_of(asked.play, asked.pad)))
     return Measured(
-        wanted.path, wanted.index, wanted.label, len(stepped), float(np.ptp(stepped)), peak_rate(stepped),
-        round(time.monotonic() - started, 2), "", found["figures"], found["notes"],
+        wanted.path, wanted.index, wanted.label, len(stepped), float(np.ptp(stepped)) if len(stepped) else 0.0,
+        peak_rate(stepped), round(time.monotonic() - started, 2), "", found["figures"], found["notes"], start,
     )  # fmt: skip
+
+
+def section_start(stepped: np.ndarray[Any, Any], place: float, length: float) -> float:
+    """Where a section begins whose place (0 to 1) is between a little before the first note and after the last one."""
+    first, last = float(stepped[0]) - AROUND, float(stepped[-1]) + AROUND
+    return first + place * max(last - first - length, 0.0)
 
 
 def peak_rate(seconds: np.ndarray[Any, Any]) -> float:
@@ -215,7 +237,7 @@ def _write(out: Path, results: list[Measured]) -> None:
     out.parent.mkdir(parents=True, exist_ok=True)
     lines = [summary(results), "", "charts, worst first: steps, seconds, most steps/s, and which goals are missed"]
     for m in results:
-        lines.append(f"{_short(m)}: {m.steps} rows, {m.seconds:.0f} s, {m.peak:.1f}/s, {m.path}")
+        lines.append(f"{_short(m)}: {m.steps} rows, {m.seconds:.0f} s, from {m.start:.1f} s, {m.peak:.1f}/s, {m.path}")
         lines += [f"    {m.error}"] if m.error else []
         for f in sorted(m.missed, key=excess, reverse=True):
             lines.append(f"    {f['name']}: {f['value']:.4g} {f['unit']}, goal {f['goal']:g}")

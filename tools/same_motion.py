@@ -49,14 +49,14 @@ def main() -> None:
 
 def freeze(options: argparse.Namespace) -> int:
     options.folder.mkdir(parents=True, exist_ok=True)
-    wanted = motion_report._everything(motion_report.ALWAYS[:1]) + motion_report.pick(options.count, options.seed)
+    wanted = motion_report._everything(motion_report.DEMO) + motion_report.pick(options.count, options.seed)
     for number, chart in enumerate(wanted):
         try:
             asked = ask(BakeTask(Path(chart.path), Selection(index=chart.index)))
         except DancetutorError as error:
             print(f"left out: {error}", file=sys.stderr)
             continue
-        whole = chart.path.startswith(str(motion_report.ALWAYS[0]))
+        whole = chart.path.startswith(str(motion_report.DEMO[0]))
         how = {"bar": True, "gait": "heels"} if number % 5 == 0 else {}
         section = None if whole else _section(asked.play.rows.second, number)
         scene = Scene(

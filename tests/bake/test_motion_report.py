@@ -47,18 +47,33 @@ def test_a_chart_is_measured_and_the_worst_comes_first(tool: ModuleType, tmp_pat
     assert line.split()[:4] == ["balance", "98", "1", "0"] and "x #0 dance-single Hard 9" in line
 
 
-def test_the_pick_is_even_over_meters_and_one_for_a_seed(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_pick_is_even_over_meters_and_types_and_one_for_a_seed(
+    tool: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     root = tool.CORPUS
     charts = [
-        tool.Wanted(str(root / f"{n}.sm"), 0, f"dance-{kind} Hard {meter}", meter)
+        tool.Wanted(str(root / f"{n}.sm"), 0, f"{kind} Hard {meter}", meter)
         for n in range(5)
-        for kind in ("single", "double")
-        for meter in range(1, 16)
+        for kind in ("dance-single", "dance-double", "pump-single")
+        for meter in range(1, 25)
     ]
     monkeypatch.setattr(tool, "_everything", lambda paths: list(charts))
     monkeypatch.setattr(tool, "CORPUS", type("Here", (type(root),), {"is_dir": lambda self: True})(root))
-    picked = tool.pick(39, 6)
-    assert picked == tool.pick(39, 6) != tool.pick(39, 7)
-    meters = [min(p.meter, 13) for p in picked]
-    assert all(meters.count(meter) == 3 for meter in range(1, 14))
-    assert 10 < sum("double" in p.label for p in picked) < 30 and len(set(picked)) == 39
+    picked = tool.pick(60, 6)
+    assert picked == tool.pick(60, 6) != tool.pick(60, 7)
+    meters = [min(p.meter, 20) for p in picked]
+    assert all(meters.count(meter) == 3 for meter in range(1, 21))
+    kinds = [p.label.split()[0] for p in picked]
+    assert min(kinds.count(kind) for kind in set(kinds)) >= 18 and len(set(kinds)) == 3
+    assert len(set(picked)) == 60 and len({p.place for p in picked}) == len({p.path for p in picked})
+
+
+def test_a_section_is_in_the_chart(tool: ModuleType) -> None:
+    stepped = np.array([10.0, 50.0, 110.0])
+    assert tool.section_start(stepped, 0.0, 40.0) == 8.0
+    assert tool.section_start(stepped, 1.0, 40.0) == 72.0
+    assert tool.section_start(stepped, 0.7, 400.0) == 8.0
+    song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+    wanted = tool.Wanted(str(song), 0, "dance-single Beginner 1", 1, 0.5)
+    found = tool.measure(None, wanted, "itg", False, 10.0)
+    assert 3 < found.steps < 30 and found.seconds <= 10.0 and found.start > 0.0

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.balance import balance_figures
 from dancetutor_cli.bake.quality.bar import bar_figures
 from dancetutor_cli.bake.quality.body import Body, body_of
+from dancetutor_cli.bake.quality.capsules import capsule_figures
 from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
 from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
+from dancetutor_cli.bake.quality.posture import posture_figures
 from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
 from dancetutor_cli.errors import DancetutorError
@@ -46,6 +48,7 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
     ground, notes = ground_figures(motion, body, mines)
     smoothness, jump_notes = smoothness_figures(body, motion.skeleton, motion.contacts)
     shape, shape_notes = shape_figures(body, motion.skeleton)
+    limbs, limb_notes = capsule_figures(body, motion.skeleton)
     figures = (
         *contacts,
         *bar_figures(motion),
@@ -54,8 +57,10 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
         *smoothness,
         *balance_figures(body, motion.bar is not None),
         *shape,
+        *limbs,
+        *posture_figures(body, motion.skeleton, motion.contacts),
     )
-    return Report(figures, errors, (*notes, *jump_notes, *shape_notes), _curves(motion, body, errors))
+    return Report(figures, errors, (*notes, *jump_notes, *shape_notes, *limb_notes), _curves(motion, body, errors))
 
 
 def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str, Curve]:

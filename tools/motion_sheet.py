@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Draw moments of a baked chart side by side, from before her and from her left: what the report's numbers look like.
+
+usage: tools/motion_sheet.py FILE --out SHEET.png (--index N | see below) --at 12.0:14.0 [--count 12] [--bar] [--steps]
+The section's moments are even; with --steps they are those at which the section's notes fall. Each column is a moment.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from dancetutor_cli.bake import bake
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.settings import load_settings
+from dancetutor_cli.rig.kinematics import joint_matrices
+from dancetutor_cli.video import renderer
+from dancetutor_cli.video.scene import FrameState, Scene
+
+SIZE = (168, 250)  # pixels of one picture
+VIEWS = {"front": (0.0, 1.05, 3.3), "side": (3.3, 1.05, 0.0)}  # of the camera from her place, metres
+TARGET = 0.86  # metres over the pad that the camera looks at
+AROUND = 1.5  # seconds baked before and after the section
+
+
+def main() -> None:
+    options = _options()
+    asked = ask(BakeTask(options.file, Selection(index=options.index)))
+    start, end = (float(x) for x in options.at.split(":"))
+    settings = load_settings(options.motion)
+    section = (start - AROUND, end + AROUND)
+    motion = bake(asked.chart, asked.play, asked.pad, section=section, bar=options.bar, settings=settings)
+    times = np.linspace(start, end, options.count)
+    if options.steps:
+        times = np.unique([c.start for c in motion.contacts if start <= c.start <= end])[: options.count]
+    sheet(motion, asked.pad, times).save(options.out)
+    print(f"{options.out}: {len(times)} moments")
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--index", type=int, default=0, help="place of the chart in the file")
+    parser.add_argument("--at", required=True, metavar="START:END", help="seconds of the music")
+    parser.add_argument("--count", type=int, default=12, help="moments")
+    parser.add_argument("--steps", action="store_true", help="moments of the notes")
+    parser.add_argument("--bar", action="store_true", help="she holds the bar")
+    parser.add_argument("--motion", type=Path, help="a file of changed numbers, as for animate")
+    parser.add_argument("--out", type=Path, required=True)
+    return parser.parse_args()
+
+
+def sheet(motion: Motion, pad: Any, times: np.ndarray[Any, Any]) -> Image.Image:
+    """A picture with a column for each of the times, seconds, and a row for each view."""
+    character = load_dancer()
+    scene = Scene(character, pad)
+    ours = [j for j, name in enumerate(character.skeleton.names) if name in motion.skeleton.names]
+    theirs = [motion.skeleton.names.index(character.skeleton.names[j]) for j in ours]
+    sampled, root = sample(motion, times)
+    turns = np.zeros((len(times), len(character.skeleton.names), 4))
+    turns[..., 0] = 1.0
+    turns[:, ours] = sampled[:, theirs]
+    joints = joint_matrices(character.skeleton, turns, root)
+    draw = renderer.create(scene, SIZE, "draft", "cpu")
+    out = Image.new("RGB", (SIZE[0] * len(times), SIZE[1] * len(VIEWS)))
+    pen = ImageDraw.Draw(out)
+    for k, time in enumerate(times):
+        lit = np.zeros(scene.panels)
+        by = np.zeros(scene.panels, dtype=np.int64)
+        for contact in motion.contacts:
+            if contact.start - 1e-3 <= time <= max(contact.end, contact.start + 0.05):
+                lit[contact.column], by[contact.column] = 1.0, contact.limb
+        for row, (dx, y, dz) in enumerate(VIEWS.values()):
+            x, z = root[k, 0], root[k, 2]
+            camera = scene.camera(f"{x + dx:.3f},{y},{z + dz:.3f}/{x:.3f},{TARGET},{z:.3f}", SIZE)
+            out.paste(
+                Image.fromarray(draw.frame(FrameState(joints[k], camera, lit, by)).copy()), (SIZE[0] * k, SIZE[1] * row)
+            )
+        pen.text((SIZE[0] * k + 4, 4), f"{time:.2f}", fill=(255, 255, 255))
+    draw.close()
+    return out
+
+
+if __name__ == "__main__":
+    main()
