@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli import bounded
 from dancetutor_cli.errors import DancetutorError, FileError, MissingFileError
-from dancetutor_cli.jobs.baseline import load_baseline
+from dancetutor_cli.lint.baseline import load_baseline
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.marked_yaml import parse_value, read
 from dancetutor_cli.play import load_preset

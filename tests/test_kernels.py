@@ -16,7 +16,7 @@ import pytest
 from dancetutor_cli import kernel_folder, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.doctor import _cache
-from dancetutor_cli.jobs.presets import PresetChoice
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.video.scene import cpu
 
 MODULE = """

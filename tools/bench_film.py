@@ -46,7 +46,7 @@ def child(output: str, kind: str) -> None:
     from dancetutor_cli.jobs.film_request import Request, look_up
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
-    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
     from dancetutor_cli.video.media.encoder import Encoding
@@ -147,7 +147,7 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
     from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
-    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
     from dancetutor_cli.video.media.encoder import Encoding

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.annotate import Item, Order, Outcome, annotate_song
-from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.library import find_files
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.markers.model import STYLES
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -43,7 +43,7 @@ def _chart(path: Path) -> object:
     from dancetutor_cli.jobs.analyze import analyze_file
     from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
     from dancetutor_cli.jobs.lint_run import LintRun, Request
-    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.library.selection import Selection
 
     before = path.read_bytes()
     result = analyze_file(LintRun(Request()).task(path))
@@ -95,7 +95,7 @@ def _motion(path: Path) -> object:
 
 
 def _baseline(path: Path) -> object:
-    from dancetutor_cli.jobs.baseline import load_baseline
+    from dancetutor_cli.lint.baseline import load_baseline
 
     known = load_baseline(path)
     known.saw("x.sm", "dance-single Hard", ["DT201"])
@@ -119,7 +119,7 @@ def _editor(path: Path) -> object:
     from dancetutor_cli import chart as charts
     from dancetutor_cli.feet import overrides_for
     from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
-    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.library.selection import Selection
 
     folder = path.with_suffix(".d")
     folder.mkdir(exist_ok=True)

@@ -170,7 +170,7 @@ def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float
     from dancetutor_cli.bake import mines_of, report
     from dancetutor_cli.commands.animate import as_json
     from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
-    from dancetutor_cli.jobs.selection import Selection
+    from dancetutor_cli.library.selection import Selection
 
     started = time.monotonic()
     task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset, bar=bar)

@@ -23,7 +23,7 @@ import numpy as np
 from dancetutor_cli.bake import bake
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.bake import BakeTask, ask
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 

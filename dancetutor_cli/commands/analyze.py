@@ -216,7 +216,7 @@ def _is_brief(options: dict[str, Any]) -> bool:
 def _before_work(tasks: Sequence[Task]) -> None:
     """Decide whether kernels have to be compiled for these files, and say so."""
     solves_often = any(task.suggest or task.alternatives for task in tasks)
-    from dancetutor_cli.jobs.selection import note_bytes
+    from dancetutor_cli.library.selection import note_bytes
 
     size = None if solves_often else sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
     tell_of_compiling(tasks[0].presets, size)

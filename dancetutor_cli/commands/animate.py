@@ -22,7 +22,7 @@ from dancetutor_cli.commands.selection import (
     selection_options,
 )
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.part import FASTEST, SLOWEST
+from dancetutor_cli.lint.part import FASTEST, SLOWEST
 from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
@@ -89,8 +89,8 @@ def command(
     """
     from dancetutor_cli.character import DANCER, load_character
     from dancetutor_cli.jobs.bake import BakeTask, ask
-    from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.library import one_song
+    from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
 
     if output is not None:
@@ -105,7 +105,7 @@ def command(
     task = BakeTask(
         one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs, motion
     )  # fmt: skip
-    from dancetutor_cli.jobs.selection import note_bytes
+    from dancetutor_cli.library.selection import note_bytes
 
     tell_of_compiling(choice_for(task.path, preset), note_bytes(task.path, task.selection))
     asked = ask(task)

@@ -79,8 +79,8 @@ def command(
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """
     from dancetutor_cli.jobs.annotate import Order
-    from dancetutor_cli.jobs.presets import choice_of
     from dancetutor_cli.library import find_files
+    from dancetutor_cli.lint.presets import choice_of
 
     wanted = styles or (STYLES if strip else STYLES[:1])
     if into_file and "edit" not in wanted:
@@ -101,7 +101,7 @@ def command(
     talk = _Talk(order, check, dry_run)
     talk.begin()
     if not strip:
-        from dancetutor_cli.jobs.selection import note_bytes
+        from dancetutor_cli.library.selection import note_bytes
 
         tell_of_compiling(
             choice_of(preset), sum(note_bytes(item.source, Selection()) for song in songs for item in song)

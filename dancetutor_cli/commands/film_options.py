@@ -20,9 +20,10 @@ from dancetutor_cli.commands.selection import (
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.film_request import Practice, Request
+    from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.video.layout import Layout
     from dancetutor_cli.video.media.encoder import Target
+    from dancetutor_cli.video.practice import Practice
 
 RENDERERS = ("auto", "cpu", "gl")
 GIF_FPS, GIF_SIDE = 25, 480  # of GIF and WebP, where nothing else is asked for
@@ -160,8 +161,8 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
 
 
 def _practice(options: dict[str, Any], layout: Layout) -> Practice:
-    from dancetutor_cli.jobs.film_request import Practice, parse_rates
     from dancetutor_cli.video.layout import PracticePart
+    from dancetutor_cli.video.practice import Practice, parse_rates
 
     usual = layout.practice or PracticePart()
     rates = parse_rates(options["rate"]) if options["rate"] else usual.rates

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.presets import PresetChoice
+    from dancetutor_cli.lint.presets import PresetChoice
 
 _NOT_KEPT = "nothing compiled is kept, and each run compiles again; set NUMBA_CACHE_DIR to a folder that can be written"
 

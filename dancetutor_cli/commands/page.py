@@ -67,8 +67,8 @@ def command(
     """
     from dancetutor_cli.jobs.bake import BakeTask
     from dancetutor_cli.jobs.page import PageTask
-    from dancetutor_cli.jobs.presets import choice_for
     from dancetutor_cli.library import one_song
+    from dancetutor_cli.lint.presets import choice_for
 
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     bake = BakeTask(file, Selection(**selection), preset, play_file=play_file, bar=bar, gait=gait, jobs=jobs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,7 +102,7 @@ def _render_one(
     path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.jobs.presets import choice_for
+    from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.video.media.encoder import target_of
 
     kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
@@ -149,17 +150,17 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
 
 
 def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet: bool, options: dict[str, Any]) -> None:
-    from dancetutor_cli.jobs import extras
     from dancetutor_cli.jobs.film_plan import Prepared, prepare
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.video import extras
     from dancetutor_cli.video.media.encoder import Encoding
     from dancetutor_cli.video.media.probe import choose
 
     def prepared() -> Prepared:
         film = prepare(request, subject)
-        return extras.poses(film, subject) if options["poses"] else film
+        return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
 
     _warn(subject.warnings)
     if kind in ("gif", "webp") and subject.clock.seconds > LONG_GIF:
@@ -171,7 +172,7 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
         film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
     _warn(film.warnings)
     if options["poses"]:
-        extras.write_pose_index(target, subject, film.plan)
+        extras.write_pose_index(target, subject.song, subject.chart, film.plan)
     if options["poster"]:
         extras.write_poster(options["poster"], film.plan)
     if options["srt"] and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):

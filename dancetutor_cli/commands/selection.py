@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 
 __all__ = [
     "Selection",
@@ -38,7 +38,7 @@ def selection_options(command: _Command) -> _Command:
 
 
 def preset_option(command: _Command) -> _Command:
-    """Add --preset; the function gets keyword argument `preset`, to be given to `jobs.presets`."""
+    """Add --preset; the function gets keyword argument `preset`, to be given to `lint.presets`."""
     option = click.option(
         "--preset",
         metavar="NAME|FILE",
@@ -55,7 +55,7 @@ def number(_context: click.Context, _option: click.Parameter, value: float) -> f
 
 
 def section_option(command: _Command) -> _Command:
-    """Add --section; the function gets keyword argument `section`, to be given to `jobs.part`."""
+    """Add --section; the function gets keyword argument `section`, to be given to `lint.part`."""
     option = click.option(
         "--section",
         metavar="START:END",

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.presets import PresetChoice, mismatch, preset_for
-from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, Figures, FileResult
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.presets import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.settings import Settings
 
 if TYPE_CHECKING:
@@ -82,15 +83,10 @@ def load_song(task: Task) -> Song:
 
 def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartSubject]:
     """Each of the charts with its play."""
-    from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import solve_chart
+    from dancetutor_cli.lint.solved import solved_chart
 
     for chart in charts:
-        overrides, ignores, problems = overrides_for(song, chart)
-        play = solve_chart(chart, preset_for(chart, task.path, task.presets), overrides, margins=True)
-        yield ChartSubject(song, chart, play, load_pad(chart.steps_type), overrides, ignores, problems)
+        yield solved_chart(song, chart, preset_for(chart, task.path, task.presets))
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
@@ -104,8 +100,7 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
 
 
 def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
-    from dancetutor_cli.jobs.excerpt import arrows, with_excerpts
-    from dancetutor_cli.jobs.rows import json_rows
+    from dancetutor_cli.lint.excerpt import arrows, with_excerpts
 
     chart, play = subject.chart, subject.play
     preset = preset_for(chart, task.path, task.presets)
@@ -121,7 +116,7 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
         cost=0 if play is None else play.total,
         counts=subject.counts,
         findings=with_excerpts(findings, play) if play is not None and task.want_excerpts else findings,
-        rows=json_rows(subject) if task.want_rows else None,
+        rows=_rows(subject) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),
         figures=_figures(subject, task) if task.want_figures else None,
         alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,
@@ -132,6 +127,12 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
     )
 
 
+def _rows(subject: ChartSubject) -> str:
+    from dancetutor_cli.formats.play_rows import json_rows
+
+    return "[]" if subject.play is None else json_rows(subject.play, subject.file_lines)
+
+
 def _findings(
     subject: ChartSubject, task: Task, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
@@ -140,26 +141,26 @@ def _findings(
 
     findings, causes = check_chart(subject, task.settings), None
     if task.want_rows or task.suggest:
-        from dancetutor_cli.jobs.causes import causes_of, with_causes
+        from dancetutor_cli.lint.causes import causes_of, with_causes
 
         causes = causes_of(subject, preset)
         findings = with_causes(findings, causes, subject.pad.names if subject.pad else ())
     if task.suggest:
-        from dancetutor_cli.jobs.suggest import with_suggestions
+        from dancetutor_cli.lint.suggest import with_suggestions
 
         findings = with_suggestions(findings, subject, task.settings, preset)
     return findings, causes
 
 
 def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
-    from dancetutor_cli.jobs.alternatives import alternatives_of
+    from dancetutor_cli.lint.alternatives import alternatives_of
 
     return alternatives_of(subject, preset, count)
 
 
 def _figures(subject: ChartSubject, task: Task) -> Figures:
-    from dancetutor_cli.jobs.density import density
-    from dancetutor_cli.jobs.tech_counts import tech_counts
+    from dancetutor_cli.chart.density import density
+    from dancetutor_cli.lint.tech_counts import tech_counts
 
     dense = density(subject.chart, task.settings.stream_rows)
     return Figures(dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject))

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
-from dancetutor_cli.jobs.presets import mismatch, preset_for
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.presets import mismatch, preset_for
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -28,7 +28,7 @@ class Order:
     """What shall be done with every file. Pickles.
 
     named : whether somebody asked for these styles; else files beside the song that are not ours are no error
-    preset : name or file of the cost preset; None: what `jobs.presets` finds for each chart
+    preset : name or file of the cost preset; None: what `lint.presets` finds for each chart
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
     """

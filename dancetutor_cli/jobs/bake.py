@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.jobs.part import check_part, part_of
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.part import check_part, part_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
@@ -28,7 +28,7 @@ AFTER = 2.5  # seconds after the last row that a section may still reach
 class BakeTask:
     """What to bake. Pickles, so that another process can do it.
 
-    preset : name or file of the solver's costs, None: what `jobs.presets` finds for the chart
+    preset : name or file of the solver's costs, None: what `lint.presets` finds for the chart
     play_file : a play as JSON instead of the solver's, or None
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
@@ -67,7 +67,8 @@ class Asked:
 def ask(task: BakeTask) -> Asked:
     """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli import chart as charts
-    from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
+    from dancetutor_cli.bake.rate import at_rate
+    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
 
     check_motion(task.motion, task.gait)
     if task.section is not None:
@@ -95,11 +96,6 @@ def check_motion(motion: Path | None, gait: str) -> None:
 
     load_settings(motion)
     load_gait(gait)
-
-
-def at_rate(play: Play, rate: float) -> Play:
-    """A play whose seconds are those of the music as it is heard at a rate: at half speed notes come twice as late."""
-    return replace(play, rows=replace(play.rows, second=play.rows.second / rate))
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
@@ -159,7 +155,7 @@ def plan_asked(asked: Asked, task: BakeTask) -> tuple[Plan, Bar | None]:
 
 
 def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Play, Pad]:
-    from dancetutor_cli.jobs.feet import solve_with_feet
+    from dancetutor_cli.lint.solved import solved_chart
     from dancetutor_cli.pads import load_pad
     from dancetutor_cli.play import prepare
 
@@ -172,6 +168,6 @@ def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Pla
         from dancetutor_cli.formats.play_json import read_play
 
         return read_play(task.play_file, chart, prepare(chart, pad, preset.roll_window), pad), pad
-    play, _ = solve_with_feet(song, chart, preset)
+    play = solved_chart(song, chart, preset).play
     assert play is not None
     return play, pad

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.jobs.film_request import Request
 from dancetutor_cli.jobs.film_work import FilmJob
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.media.encoder import Encoding
 
 if TYPE_CHECKING:

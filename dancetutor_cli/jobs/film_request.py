@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.errors import DancetutorError, MissingFileError, UsageError
-from dancetutor_cli.jobs.part import FASTEST, SLOWEST, check_part, part_of
-from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.library.music import find_music
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.part import check_part, part_of
+from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.practice import Practice, passes_of, whole_song
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.play.preset import Preset
-
-LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
-
-
-@dataclass(frozen=True, slots=True)
-class Practice:
-    """What helps to learn. rates : speeds of the runs in turn; loop : number of runs (0: one for each rate)
-
-    count_in : beats counted before each run; claps : a clap on each step; metronome : a tick on each beat
-    """
-
-    rates: tuple[float, ...] = (1.0,)
-    loop: int = 0
-    count_in: int = 0
-    claps: bool = False
-    metronome: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +26,7 @@ class Request:
     """What film is wanted. Pickles, so that another process can prepare it.
 
     path : the chart file; selection : which chart
-    preset : name or file of the cost preset; None: what `jobs.presets` finds for the chart
+    preset : name or file of the cost preset; None: what `lint.presets` finds for the chart
     section : "START:END" in seconds, beats or measures, or None for the whole song
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
@@ -59,7 +43,7 @@ class Request:
     section: str | None = None
     sync: float = 0.0
     mute: bool = False
-    practice: Practice = Practice()
+    practice: Practice = field(default_factory=Practice)
     play: Path | None = None
     character: str = "dancer"
     bar: bool = False
@@ -95,7 +79,7 @@ class Subject:
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     from dancetutor_cli import chart as charts
-    from dancetutor_cli.jobs.presets import choice_for, mismatch, preset_for
+    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
 
     if request.look.layout.dancer is not None:
         from dancetutor_cli.jobs.bake import check_motion
@@ -107,7 +91,8 @@ def look_up(request: Request) -> Subject:
     song = charts.load(request.path)
     chart = request.selection.one(song)
     preset = preset_for(chart, request.path, choice)
-    music, warnings = (None, ()) if request.mute else find_music(song, chart)
+    music, missing = (None, None) if request.mute else find_music(song, chart)
+    warnings = () if missing is None else (f"{missing}; the film has claps on the steps instead",)
     if unfit := mismatch(preset, chart.steps_type):
         warnings = (*warnings, f"{chart.label}: {unfit}")
     start, end = _section(request, song, chart, preset)
@@ -115,55 +100,8 @@ def look_up(request: Request) -> Subject:
     return Subject(song, chart, preset, clock, music, request.section is not None, warnings)
 
 
-def parse_rates(text: str) -> tuple[float, ...]:
-    """ "0.5,0.75,1.0" to numbers; UsageError outside `part.SLOWEST` to `part.FASTEST`."""
-    try:
-        rates = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        rates = ()
-    if not rates or not all(SLOWEST <= rate <= FASTEST for rate in rates):
-        raise UsageError(
-            f"rate '{text}': give speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, as 0.5,0.75,1"
-        )
-    return rates
-
-
-def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
-    """The runs through a section, slower ones first as asked for, each with its count-in."""
-    lead = 0.0
-    if practice.count_in:
-        beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
-        lead = practice.count_in * beat
-    count = practice.loop or len(practice.rates)
-    rates = (practice.rates[i % len(practice.rates)] for i in range(count))
-    return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
-
-
-def whole_song(chart: Chart) -> tuple[float, float]:
-    """Start and end of the film of a whole chart, seconds of the music: from its beginning to after the last note."""
-    notes = chart.notes
-    if len(notes) == 0:
-        raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
-    ticks = np.array([notes.tick.min(), max(notes.tick.max(), notes.end.max())])
-    first, last = chart.timing.seconds(ticks)
-    return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
-
-
 def _section(request: Request, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:
     whole = whole_song(chart)
     if request.section is None:
         return whole
     return part_of(request.section, song, chart, preset, whole[1])
-
-
-def find_music(song: Song, chart: Chart) -> tuple[Path | None, tuple[str, ...]]:
-    """The chart's own or the song's music; None and a warning if it is missing.
-
-    FileError if its name leads out of the song's folder.
-    """
-    from dancetutor_cli.library.music import music_file
-
-    try:
-        return music_file(song, chart), ()
-    except MissingFileError as error:
-        return None, (f"{error}; the film has claps on the steps instead",)

@@ -9,18 +9,18 @@ from pathlib import Path
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import Task
-from dancetutor_cli.jobs.baseline import Baseline, Key, load_baseline
-from dancetutor_cli.jobs.presets import PresetChoice, choice_of
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.library.feet_files import places_of_feet
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.library.settings_file import find_settings_file
+from dancetutor_cli.lint.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
     with_assignments,
     with_selection,
 )
+from dancetutor_cli.lint.presets import PresetChoice, choice_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 
@@ -25,7 +24,6 @@ MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", "
                ".flac": "audio/flac", ".opus": "audio/ogg"}  # fmt: skip
 MOST_MUSIC = 64_000_000  # bytes that are put into a page
 NEXT = "next"
-BEATS_AFTER = 16  # that the page knows after the last note
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +54,7 @@ class Page:
 def make_page(task: PageTask) -> Page:
     """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli.character import load_character
-    from dancetutor_cli.jobs.presets import choice_for, preset_for
+    from dancetutor_cli.lint.presets import choice_for, preset_for
     from dancetutor_cli.page import document, pack_content
 
     character = load_character(task.character)
@@ -79,7 +77,7 @@ def _beside(task: PageTask, asked: Asked, preset: Preset) -> Asked | None:
         return None
     from dancetutor_cli.feet import overrides_for
     from dancetutor_cli.formats.play_json import read_play
-    from dancetutor_cli.jobs.feet import solve_with_feet
+    from dancetutor_cli.lint.solved import solved_chart
     from dancetutor_cli.play import alternatives, load_preset
 
     play: Play | None
@@ -92,7 +90,7 @@ def _beside(task: PageTask, asked: Asked, preset: Preset) -> Asked | None:
     elif task.beside.lower().endswith(".json"):
         play = read_play(Path(task.beside), asked.chart, asked.play.rows, asked.pad)
     else:
-        play, _ = solve_with_feet(asked.song, asked.chart, load_preset(task.beside))
+        play = solved_chart(asked.song, asked.chart, load_preset(task.beside)).play
         assert play is not None
     return replace(asked, play=play)
 
@@ -106,70 +104,38 @@ def _content(
     music: tuple[str, bytes] | None,
 ) -> Content:
     from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.jobs.callouts import findings_of
-    from dancetutor_cli.jobs.film_plan import directions_of, note_track
-    from dancetutor_cli.jobs.flips import flips_of
+    from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.passages import hardest
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.page import Content
+    from dancetutor_cli.page.facts import beats_of, ticks_of, words_of
+    from dancetutor_cli.page.flips import flips_of
     from dancetutor_cli.page.sentences import told
     from dancetutor_cli.video.scroll import parse_segments
+    from dancetutor_cli.video.tracks import note_track
 
     asked, other = both
     song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
-    overrides, ignores, _ = overrides_for(song, chart)
+    overrides, ignores, problems = overrides_for(song, chart)
+    subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)
     solved = task.bake.play_file is None  # only of the solver's own play can it say what else would cost
     return Content(
-        words=_words(song, chart, preset.name),
+        words=words_of(song, chart, preset.name),
         play=play,
         pad=pad,
         notes=note_track(chart, play, parse_segments("")),
-        ticks=_ticks(chart),
-        beats=_beats(chart),
-        findings=findings_of(ChartSubject(song, chart, play, pad, ignores=ignores)),
+        ticks=ticks_of(chart),
+        beats=beats_of(chart),
+        findings=findings_of(subject),
         character=character,
         motions=motions,
-        directions=directions_of(pad),
+        directions=pad.directions,
         beside=Path(task.beside or "").stem,
         beside_rows=[] if other is None else np.flatnonzero((other.play.limb != play.limb).any(axis=1)).tolist(),
         passages=[told(passage) for passage in hardest(play, chart.timing)],
         flips=flips_of(play, pad, preset, overrides) if solved else (),
         music=music,
     )
-
-
-def _words(song: Song, chart: Chart, preset: str) -> dict[str, str]:
-    from dancetutor_cli.jobs.film_plan import bpm_text
-    from dancetutor_cli.video.overlay.text import clean
-
-    return {
-        "title": clean(" ".join(part for part in (song.title or song.path.stem, song.subtitle) if part)),
-        "artist": clean(song.artist),
-        "badge": clean(f"{chart.difficulty} {chart.meter}"),
-        "difficulty": chart.difficulty,
-        "steps": chart.steps_type,
-        "bpm": bpm_text(chart),
-        "credit": clean(chart.tags.get("CREDIT", "") or song.tags.get("CREDIT", "")),
-        "file": clean(song.path.name),
-        "music": clean(song.music),
-        "preset": preset,
-        "index": str(chart.index),
-        "meter": str(chart.meter),
-    }
-
-
-def _ticks(chart: Chart) -> list[int]:
-    """Ticks of the notes in the order of `film_plan.note_track`."""
-    keep = chart.notes.kind != Kind.KEYSOUND
-    tick = chart.notes.tick[keep]
-    order = np.argsort(np.asarray(chart.timing.seconds(tick), dtype=np.float64), kind="stable")
-    return [int(t) for t in tick[order]]
-
-
-def _beats(chart: Chart) -> list[float]:
-    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0))) // TICKS_PER_BEAT
-    ticks = np.arange(last + BEATS_AFTER, dtype=np.int64) * TICKS_PER_BEAT
-    return [float(second) for second in chart.timing.seconds(ticks)]
 
 
 def _retargeted(motion: Motion, character: Character) -> Motion:
@@ -179,11 +145,11 @@ def _retargeted(motion: Motion, character: Character) -> Motion:
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:
-    from dancetutor_cli.jobs.film_request import find_music
+    from dancetutor_cli.library.music import find_music
 
-    path, warnings = find_music(song, chart)
+    path, missing = find_music(song, chart)
     if path is None:
-        return None, tuple(w.replace("the film has claps on the steps instead", "the page claps") for w in warnings)
+        return None, (f"{missing}; the page claps",)
     try:
         if path.stat().st_size > MOST_MUSIC:
             limit = f"{MOST_MUSIC // 1_000_000} MB"

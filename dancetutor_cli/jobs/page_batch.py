@@ -8,7 +8,7 @@ from pathlib import Path
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.page import PageTask, make_page
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.page.index import Entry, index_page
 
 INDEX = "index.html"

@@ -8,63 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from dancetutor_cli.lint.figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.model import Finding
-
-# Names of ITGmania's TechCounts, and after their pattern those that it does not tell apart; see `jobs.tech_counts`.
-TECH_COUNTS = (
-    "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
-    "Sideswitches", "LeftSideswitches", "RightSideswitches", "Jacks", "Brackets", "Doublesteps", "ForcedDoublesteps",
-    "UnforcedDoublesteps",
-)  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class DifferentRun:
-    """Rows one after the other that two plays step with other limbs, with their letters in each, as in {dt1 ...}."""
-
-    first_beat: float
-    last_beat: float
-    best: str
-    other: str
-
-
-@dataclass(frozen=True, slots=True)
-class AlternativeResult:
-    """Another way to play a chart. extra : how much more it costs; terms : what differs in cost, the largest first"""
-
-    extra: int
-    terms: tuple[tuple[str, int], ...]
-    runs: tuple[DifferentRun, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """What makes a doublestep.
-
-    beat : of the doublestep; forced : whether the other foot holds; cause : "hold", "mine", "jump" or "pattern"
-    at_beat, column : of the cause; None for a pattern
-    """
-
-    beat: float
-    forced: bool
-    cause: str
-    at_beat: float | None
-    column: int | None
-
-
-@dataclass(frozen=True, slots=True)
-class Figures:
-    """What `--format csv` tells of a chart.
-
-    nps_mean, nps_peak, breakdown, stream_measures : see `jobs.density.Density`
-    tech : how often each of `TECH_COUNTS` happens
-    """
-
-    nps_mean: float
-    nps_peak: float
-    breakdown: str
-    stream_measures: int
-    tech: Mapping[str, int]
 
 
 @dataclass(frozen=True, slots=True)

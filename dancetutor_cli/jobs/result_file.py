@@ -13,7 +13,8 @@ from dataclasses import fields
 from operator import attrgetter
 from typing import Any
 
-from dancetutor_cli.jobs.result import AlternativeResult, Cause, ChartResult, DifferentRun, Figures, FileResult
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.figures import AlternativeResult, Cause, DifferentRun, Figures
 from dancetutor_cli.lint.model import ExcerptRow, Finding
 
 _HEAD = b"dancetutor result 1\n"  # another number whenever the form below changes

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.jobs.film_request import Practice, Request, look_up
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.video.choices import QUALITIES, Quality
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.practice import Practice
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared

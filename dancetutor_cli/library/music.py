@@ -42,6 +42,14 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
     return _inside(song, current, folder)
 
 
+def find_music(song: Song, chart: Chart) -> tuple[Path | None, str | None]:
+    """The chart's own or the song's music; None and a line for people if it is missing. FileError as `music_file`."""
+    try:
+        return music_file(song, chart), None
+    except MissingFileError as error:
+        return None, str(error)
+
+
 def _only_audio_file(song: Song, folder: Path) -> Path:
     audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and not name.startswith("._")]
     if len(audio) != 1:

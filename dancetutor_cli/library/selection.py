@@ -1,12 +1,61 @@
-"""Which charts of a file are meant."""
+"""Which charts of a file are meant, and how much there is to solve in them; imports no reader of charts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart import names
-from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import DancetutorError, UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+_LARGE = 200_000  # bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Which charts are meant: values as the user typed them, several with commas; None stands for all."""
+
+    steps_type: str | None = None
+    difficulty: str | None = None
+    index: int | None = None
+
+    @property
+    def is_all(self) -> bool:
+        """Whether every chart is meant."""
+        return self == Selection()
+
+    def charts(self, song: Song) -> tuple[Chart, ...]:
+        """The charts of `song` that match, in file order; may be empty."""
+        return tuple(select(song, _parts(self.steps_type), _parts(self.difficulty), self.index))
+
+    def one(self, song: Song) -> Chart:
+        """The one chart of `song` that matches; UsageError lists the charts there are if none or several do."""
+        return select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
+
+
+def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:
+    """How much there is to solve in a chart file: bytes of the note data that is meant; 0 where it cannot be read.
+
+    data : what to read in place of the file. A large file that is meant in part is not read only for this.
+    """
+    from dancetutor_cli import chart
+
+    try:
+        size = path.stat().st_size if data is None else len(data)
+        if selection.is_all or size > _LARGE:
+            return size
+        song = chart.load(path) if data is None else chart.parse(data, path)
+        return sum(end - start for start, end in (one.notes_span for one in selection.charts(song)))
+    except (OSError, DancetutorError):
+        return 0
+
+
+def _parts(text: str | None) -> list[str]:
+    return [part.strip() for part in text.split(",")] if text else []
 
 
 def select(
@@ -17,6 +66,8 @@ def select(
     Names in any case, old ones too ("Heavy", "Oni"); several of a kind mean either. Raises `UsageError` for a
     difficulty that no game has.
     """
+    from dancetutor_cli.chart import names
+
     types = {names.steps_type(text) for text in steps_types}
     levels = {_difficulty(text) for text in difficulties}
     return [
@@ -42,6 +93,8 @@ def select_one(
 
 
 def _difficulty(text: str) -> str:
+    from dancetutor_cli.chart import names
+
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
         raise UsageError(f"difficulty '{text}' is none; there are {', '.join(names.DIFFICULTIES)}")

@@ -40,6 +40,15 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     return _in_order(finding for finding in findings if not _silenced(finding, subject))
 
 
+def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
+    """What the linter finds in a chart, with the configuration that holds for its file."""
+    from dancetutor_cli.library.settings_file import find_settings_file
+    from dancetutor_cli.lint.configuration import load_configuration
+
+    settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
+    return check_chart(subject, settings)
+
+
 @cache
 def _rules_of_files() -> Mapping[str, type[FileRule] | type[ReaderRule]]:
     return {code: rule for code, rule in all_rules().items() if issubclass(rule, FileRule | ReaderRule)}

@@ -64,6 +64,11 @@ class Pad:
         along = (low[0] + high[0]) / 2 + SQUARE * (np.arange(count) - (count - 1) / 2)
         return np.column_stack((along, np.full(count, (low[1] + high[1]) / 2)))
 
+    @property
+    def directions(self) -> tuple[float | None, ...]:
+        """Where each panel's arrow points, degrees clockwise from up (to the screen); None for a middle panel."""
+        return tuple(math.degrees(math.atan2(x, y)) % 360 if x or y else None for x, y in self.arrows.tolist())
+
     def mirrored(self, *, left_right: bool) -> NDArray[np.int64] | None:
         """For each column the column of the mirrored panel, left-right or up-down; None if the pad is not symmetric."""
         sign = np.array([-1.0, 1.0] if left_right else [1.0, -1.0])

@@ -6,7 +6,8 @@ import csv
 from collections.abc import Mapping
 from typing import IO, Any
 
-from dancetutor_cli.jobs.result import TECH_COUNTS, ChartResult, FileResult
+from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.figures import TECH_COUNTS
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.structured import relative
 from dancetutor_cli.reports.tally import Tally

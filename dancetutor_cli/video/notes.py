@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a colour of their own
+
 
 @dataclass(frozen=True, slots=True)
 class NoteTrack:
@@ -15,7 +17,7 @@ class NoteTrack:
     second, end_second : float64 (n,), of the music; end_second = second where there is no hold
     beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
     column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.model.Limb`
-    quantisation : int64 (n,), index into `sprites.QUANTISATIONS`; judged : bool (n,)
+    quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
     """
 
     second: NDArray[np.float64]
@@ -71,3 +73,11 @@ class BeatLines:
 
     second: NDArray[np.float64]
     beat: NDArray[np.float64]
+
+
+def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
+    out = np.full(len(tick), len(QUANTISATIONS) - 1)
+    for i in reversed(range(len(QUANTISATIONS) - 1)):
+        out[tick % (192 // QUANTISATIONS[i]) == 0] = i
+    return out

@@ -6,11 +6,15 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
 
 Seconds = NDArray[np.float64]
 Beats = NDArray[np.float64]
@@ -125,3 +129,18 @@ def parse_speeds(text: str, seconds_of: Callable[[Beats], Seconds]) -> SpeedSegm
     lengths, start = rows[:, 1], seconds_of(beats)
     end = np.where(rows[:, 2] > 0, start + lengths, seconds_of(beats + lengths))
     return SpeedSegments(start, end, rows[:, 0])
+
+
+def segments_of(song: Song, chart: Chart) -> ScrollSegments:
+    """The chart's #SCROLLS."""
+    return parse_segments(_timing_tag(song, chart, "SCROLLS"))
+
+
+def speeds_of(song: Song, chart: Chart) -> SpeedSegments:
+    """The chart's #SPEEDS."""
+    return parse_speeds(_timing_tag(song, chart, "SPEEDS"), chart.timing.seconds_of_beats)
+
+
+def _timing_tag(song: Song, chart: Chart, name: str) -> str:
+    """A timing tag as it holds for the chart: its own if it has split timing, else the song's."""
+    return (song.tags if chart.timing is song.timing else chart.tags).get(name, "")

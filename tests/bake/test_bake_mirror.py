@@ -13,7 +13,7 @@ from bake_plays import MEDLEY, L, R, chart, pad, play, stream
 from dancetutor_cli.bake import bake, plan_of
 from dancetutor_cli.chart import load
 from dancetutor_cli.jobs.bake import BakeTask, ask
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.trajectory.crouch import jump_lean
 from dancetutor_cli.pads import load_pad

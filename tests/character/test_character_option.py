@@ -20,7 +20,7 @@ from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.jobs.film_key import film_key
 from dancetutor_cli.jobs.film_request import Request, look_up
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.video.film_look import FilmLook
@@ -134,7 +134,7 @@ def test_a_bad_character_is_one_line_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("work began")
 
-    monkeypatch.setattr("dancetutor_cli.jobs.feet.solve_with_feet", work)
+    monkeypatch.setattr("dancetutor_cli.play.solver.solve_chart", work)
     monkeypatch.setattr("dancetutor_cli.bake.bake", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())

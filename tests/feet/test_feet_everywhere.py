@@ -11,7 +11,7 @@ from dancetutor_cli.chart import load
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.lint_run import LintRun, Request
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.model import Limb, Play
 
 CHART = "#TITLE:x;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :{}\n1000\n0001\n1000\n0001\n;\n"

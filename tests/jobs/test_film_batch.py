@@ -17,7 +17,7 @@ from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters,
 from dancetutor_cli.jobs.film_request import Request
 from dancetutor_cli.jobs.film_work import STATE, FilmJob, Outcome
 from dancetutor_cli.jobs.pool import Done, SerialWorkers
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.encoder import Encoding

@@ -12,14 +12,15 @@ import pytest
 from dancetutor_cli.jobs.analyze import Task
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import Practice, Request, look_up
+from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.lint_run import LintRun
 from dancetutor_cli.jobs.lint_run import Request as LintRequest
-from dancetutor_cli.jobs.selection import Selection
 from dancetutor_cli.library.feet_files import places_of_feet
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.practice import Practice
 from dancetutor_cli.video.scroll import parse_scroll
 
 ENCODING = Encoding("mp4", (64, 64), 12)

@@ -10,14 +10,15 @@ import pytest
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import Practice, Request, look_up
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices, world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.practice import Practice
 
 RATES = (0.5, 1.0)
 JUMPS = "1001\n0000\n0110\n0000\n1001\n0000\n0110\n0000\n"

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.kernel_folder import kernel_folder
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.play import compiled, load_preset
 
 

@@ -13,9 +13,9 @@ import yaml
 from numpy.typing import NDArray
 
 from dancetutor_cli.jobs.analyze import Task, analyze_file
-from dancetutor_cli.jobs.presets import PresetChoice
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.play import Play, load_preset, solver
 

@@ -10,9 +10,9 @@ import pytest
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.feet import solve_with_feet
-from dancetutor_cli.jobs.part import check_part, part_of
+from dancetutor_cli.lint.part import check_part, part_of
 from dancetutor_cli.lint.passages import Passage, hardest, passage_settings
+from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.page.document import languages
 from dancetutor_cli.page.sentences import sentence
 from dancetutor_cli.play import Play, load_preset
@@ -27,7 +27,7 @@ def song() -> charts.Song:
 
 
 def played(song: charts.Song, index: int = 3) -> Play:
-    play, _ = solve_with_feet(song, song.charts[index], load_preset("itg"))
+    play = solved_chart(song, song.charts[index], load_preset("itg")).play
     assert play is not None
     return play
 

@@ -12,9 +12,9 @@ import pytest
 from dancetutor_cli import chart as reader
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.analyze import Task, analyze_file
-from dancetutor_cli.jobs.presets import PresetChoice
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_selection
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.play import load_preset
 

@@ -12,7 +12,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.jobs.film_plan import prepare
 from dancetutor_cli.jobs.film_request import Request, look_up
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.video.film_look import FilmLook

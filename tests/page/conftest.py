@@ -10,7 +10,7 @@ from page_chromium import Browser
 
 from dancetutor_cli.jobs.bake import BakeTask
 from dancetutor_cli.jobs.page import Page, PageTask, make_page
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 
 # Hostile on purpose: all that people write is text. Two measures of rest, then steps, a crossover, a jump and a hold.
 TITLE = "</script><script>window.hacked=1</script>\"'><img src=x onerror=window.hacked=1>{{data}}&amp;"

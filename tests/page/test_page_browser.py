@@ -11,7 +11,7 @@ from page_chromium import NOW, Browser, pad_script, text
 from PIL import Image
 
 from dancetutor_cli.jobs.bake import BakeTask, ask
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.model import Limb
 
 

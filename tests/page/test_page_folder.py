@@ -12,7 +12,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.jobs.bake import BakeTask
 from dancetutor_cli.jobs.page import PageTask
 from dancetutor_cli.jobs.page_batch import page_jobs
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.page.index import Entry, index_page
 from dancetutor_cli.resources import charts_path
 

@@ -18,9 +18,9 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.jobs.analyze import Task, analyze_file
-from dancetutor_cli.jobs.presets import PresetChoice
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.play import load_preset
 from dancetutor_cli.reports.sarif import SarifReport
 from dancetutor_cli.reports.tally import Tally

@@ -10,8 +10,7 @@ from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses
-from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
 from dancetutor_cli.video.overlay.captions import SongShape, Words
 
 BPM = 120.0
@@ -37,7 +36,7 @@ def film_plan(
     tick = np.rint(beat * 48).astype(np.int64)
     track = NoteTrack(
         seconds, end, beat, end * BPM / 60, column.astype(np.int16), kind.astype(np.uint8), limb,
-        sprites.quantisation(tick), np.ones(n, dtype=bool),
+        quantisation(tick), np.ones(n, dtype=bool),
     )  # fmt: skip
     step = kind != Kind.MINE
     presses = Presses(seconds[step], end[step], track.column[step], limb[step])

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.play.model import StepKind
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import EPSILON, PanelLights
 from dancetutor_cli.video.overlay import shapes, sprites
@@ -18,6 +19,7 @@ from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Foot, Frame
 
 if TYPE_CHECKING:
+    from dancetutor_cli.play.model import Play
     from dancetutor_cli.video.picture import PadLike
 
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
@@ -34,6 +36,15 @@ class StepRows:
     second: NDArray[np.float64]
     limb: NDArray[np.int8]
     feet: NDArray[np.int16]
+
+
+def step_rows(play: Play) -> StepRows:
+    """The rows with steps that a person sees; the virtual taps of rolls are not among them."""
+    shown = play.rows.steps != StepKind.NONE
+    shown &= play.rows.steps != StepKind.ROLL_TAP
+    keep = shown.any(axis=1)
+    limb = np.where(shown, play.limb, np.int8(-1))
+    return StepRows(play.rows.second[keep], limb[keep], play.feet[keep])
 
 
 class PadMap:

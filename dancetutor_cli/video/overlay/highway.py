@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.notes import BeatLines, Callout, NoteTrack, Presses
+from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle, strip
 from dancetutor_cli.video.overlay.text import Typeface
@@ -116,7 +116,7 @@ class Highway:
         }
         wanted = {(self.geometry.directions[c], q) for c, q in pairs}
         colour = self.style.quantisation
-        return {(d, q): sprites.arrow(self.size, d, colour[sprites.QUANTISATIONS[q]], hollow) for d, q in wanted}
+        return {(d, q): sprites.arrow(self.size, d, colour[QUANTISATIONS[q]], hollow) for d, q in wanted}
 
     def _hold_colours(self) -> list[tuple[Kind, tuple[int, int, int]]]:
         return [(Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)]

@@ -16,7 +16,6 @@ from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.settings import RGB, load
 
-QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)
 CENTRE = None  # the direction of a panel in the middle of the pad
 
 # Corners of an arrow that points up, in halves of its size.
@@ -53,14 +52,6 @@ class HighwayStyle:
 def highway_style() -> HighwayStyle:
     """The style of configs/highway.yaml."""
     return load(config_path("highway.yaml"), HighwayStyle)
-
-
-def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
-    out = np.full(len(tick), len(QUANTISATIONS) - 1)
-    for i in reversed(range(len(QUANTISATIONS) - 1)):
-        out[tick % (192 // QUANTISATIONS[i]) == 0] = i
-    return out
 
 
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:

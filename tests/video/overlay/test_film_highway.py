@@ -16,7 +16,7 @@ from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.notes import Callout, Presses
+from dancetutor_cli.video.notes import QUANTISATIONS, Callout, Presses, quantisation
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import blit, rectangle, strip
 from dancetutor_cli.video.overlay.text import Typeface
@@ -55,7 +55,7 @@ def test_half_opacity_is_half_way_and_strips_cover_their_share() -> None:
 
 def test_quantisation_is_the_coarsest_note_value() -> None:
     ticks = np.array([0, 24, 16, 12, 8, 6, 4, 3, 1, 192, 36, 32])
-    values = [sprites.QUANTISATIONS[i] for i in sprites.quantisation(ticks)]
+    values = [QUANTISATIONS[i] for i in quantisation(ticks)]
     assert values == [4, 8, 12, 16, 24, 32, 48, 64, 192, 4, 16, 12]
 
 
@@ -151,14 +151,13 @@ def test_a_wrong_layout_says_what_is_wrong(tmp_path: object) -> None:
 
 def test_the_style_file_is_complete() -> None:
     style = load(config_path("highway.yaml"), sprites.HighwayStyle)
-    assert set(style.quantisation) == set(sprites.QUANTISATIONS)
+    assert set(style.quantisation) == set(QUANTISATIONS)
     assert len({*style.quantisation.values()} & {*limb_colours().by_limb}) == 0
 
 
 def test_directions_are_those_of_the_pad() -> None:
-    from dancetutor_cli.jobs.film_plan import directions_of
     from dancetutor_cli.pads import load_pad
 
     for steps_type, expected in (("dance-single", DIRECTIONS), ("dance-double", DIRECTIONS * 2)):
         pad = load_pad(steps_type)
-        assert pad is not None and directions_of(pad) == pytest.approx(expected)
+        assert pad is not None and pad.directions == pytest.approx(expected)

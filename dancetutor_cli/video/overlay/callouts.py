@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.lint.check import findings_of
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from dancetutor_cli.lint.model import Finding
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.video.scroll import ScrollSegments
 
@@ -49,16 +49,6 @@ def _moves(subject: ChartSubject, words: Mapping[str, str]) -> list[tuple[int, s
         out += [(tick, word, 0) for word in sorted(now - before)]
         before = now
     return out
-
-
-def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
-    """What the linter finds in a chart, with the configuration that holds for its file."""
-    from dancetutor_cli.library.settings_file import find_settings_file
-    from dancetutor_cli.lint.check import check_chart
-    from dancetutor_cli.lint.configuration import load_configuration
-
-    settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
-    return check_chart(subject, settings)
 
 
 def _findings(subject: ChartSubject) -> list[tuple[int, str, int]]:

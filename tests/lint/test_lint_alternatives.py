@@ -12,8 +12,8 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.feet import Overrides
 from dancetutor_cli.feet.notation import MEANING
-from dancetutor_cli.jobs.alternatives import alternatives_of
-from dancetutor_cli.jobs.causes import causes_of, with_causes
+from dancetutor_cli.lint.alternatives import alternatives_of
+from dancetutor_cli.lint.causes import causes_of, with_causes
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import load_pad

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.jobs.result import Cause
+from dancetutor_cli.lint.figures import Cause
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play import blame

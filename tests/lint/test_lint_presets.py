@@ -17,7 +17,6 @@ from click.testing import CliRunner
 from dancetutor_cli import chart as charts
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs import alternatives, causes, suggest
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
 from dancetutor_cli.jobs.bake import BakeTask, ask
@@ -26,8 +25,9 @@ from dancetutor_cli.jobs.film_list import BatchRequest, film_list
 from dancetutor_cli.jobs.film_request import Request as FilmRequest
 from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.jobs.lint_run import LintRun, Request
-from dancetutor_cli.jobs.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
-from dancetutor_cli.jobs.selection import Selection
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint import alternatives, causes, suggest
+from dancetutor_cli.lint.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.play import Preset, load_preset, preset_names
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout

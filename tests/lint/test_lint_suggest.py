@@ -9,12 +9,12 @@ import pytest
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.jobs.analyze import Task, analyze_file
-from dancetutor_cli.jobs.presets import PresetChoice
 from dancetutor_cli.jobs.result import FileResult
-from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.jobs.suggest import _edits
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.lint.suggest import _edits
 from dancetutor_cli.play import load_preset, solve_chart
 
 PANELS = ("left", "down", "up", "right")
@@ -72,7 +72,7 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """--suggest cost 19 times the run, for every edit of every finding was solved and checked whole."""
-    from dancetutor_cli.jobs import suggest
+    from dancetutor_cli.lint import suggest
 
     tried: list[object] = []
     checked: list[object] = []

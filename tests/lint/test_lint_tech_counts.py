@@ -17,12 +17,12 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet import Overrides
 from dancetutor_cli.jobs.analyze import Task, analyze_file
-from dancetutor_cli.jobs.presets import PresetChoice
-from dancetutor_cli.jobs.result import TECH_COUNTS
-from dancetutor_cli.jobs.selection import Selection
-from dancetutor_cli.jobs.tech_counts import tech_counts
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
+from dancetutor_cli.lint.figures import TECH_COUNTS
+from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.tech_counts import tech_counts
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.reports.csv_report import CsvReport

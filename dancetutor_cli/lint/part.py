@@ -47,10 +47,10 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
 
 
 def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[float, float]:
-    from dancetutor_cli.jobs.feet import solve_with_feet
     from dancetutor_cli.lint.passages import hardest
+    from dancetutor_cli.lint.solved import solved_chart
 
-    play, _ = solve_with_feet(song, chart, preset)
+    play = solved_chart(song, chart, preset).play
     found = () if play is None else hardest(play, chart.timing)
     if not 1 <= number <= len(found):
         many = f"{len(found)} passage{'' if len(found) == 1 else 's'}"
@@ -61,13 +61,10 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
 def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
     import numpy as np
 
-    from dancetutor_cli.jobs.callouts import findings_of
-    from dancetutor_cli.jobs.feet import solve_with_feet
-    from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.solved import solved_chart
 
-    play, ignores = solve_with_feet(song, chart, preset)
-    findings = findings_of(ChartSubject(song, chart, play, load_pad(chart.steps_type), ignores=ignores))
+    findings = findings_of(solved_chart(song, chart, preset))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):
         has = ", ".join(sorted({one.rule for one in findings})) or "none at all"

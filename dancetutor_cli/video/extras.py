@@ -9,35 +9,32 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.files import encoded, write_atomic
-from dancetutor_cli.jobs.film_plan import Prepared
-from dancetutor_cli.jobs.film_request import Subject
 from dancetutor_cli.video.clock import Moments
 from dancetutor_cli.video.film import Film, FilmPlan
 
 INDEX = "poses.json"
 
 
-def poses(prepared: Prepared, subject: Subject) -> Prepared:
-    """The same film, but with one frame for each row with a step: what an editor shows when an author scrolls to it."""
-    plan = prepared.plan
+def poses(plan: FilmPlan, label: str) -> FilmPlan:
+    """The film of a plan, with one frame for each row with a step: what an editor shows when one scrolls to it."""
     start, end = plan.clock.passes[0].start, plan.clock.passes[0].end
     rows = plan.rows
     times = () if rows is None else tuple(float(t) for t in rows.second if start <= t <= end)
     if not times:
-        raise DancetutorError(f"{subject.chart.label}: there is no step here, so there is no pose to draw")
+        raise DancetutorError(f"{label}: there is no step here, so there is no pose to draw")
     clock = Moments(plan.clock.passes[:1], plan.clock.fps, times)
     beats = np.interp(times, plan.lines.second, plan.lines.beat) if len(plan.lines.second) else np.zeros(len(times))
-    return replace(prepared, plan=replace(plan, clock=clock, beats=beats))
+    return replace(plan, clock=clock, beats=beats)
 
 
-def write_pose_index(folder: Path, subject: Subject, plan: FilmPlan) -> None:
+def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> None:
     """Say which picture shows which row: an object with one entry per picture."""
     assert isinstance(plan.clock, Moments)
-    notes = subject.chart.notes
-    seconds = subject.chart.timing.seconds(notes.tick)
+    notes = chart.notes
+    seconds = chart.timing.seconds(notes.tick)
     entries = []
     for number, time in enumerate(plan.clock.times):
         note = int(np.argmin(np.abs(seconds - time)))
@@ -51,7 +48,7 @@ def write_pose_index(folder: Path, subject: Subject, plan: FilmPlan) -> None:
                 "line": int(notes.line[note]),
             }
         )
-    data = {"schema": 1, "path": str(subject.song.path), "chart": subject.chart.label, "poses": entries}
+    data = {"schema": 1, "path": str(song.path), "chart": chart.label, "poses": entries}
     write_atomic(folder / INDEX, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 

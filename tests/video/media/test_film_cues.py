@@ -8,9 +8,9 @@ import pytest
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.jobs.cues import cues_of
-from dancetutor_cli.jobs.feet import solve_with_feet
+from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.play import load_preset
+from dancetutor_cli.video.media.cues import cues_of
 from dancetutor_cli.video.media.subtitles import subtitle_style
 from dancetutor_cli.video.notes import Cue
 
@@ -20,7 +20,8 @@ LEFT, RIGHT = ("left foot",), ("right foot",)
 
 def cues(rows: str) -> list[Cue]:
     song = charts.parse((HEAD + rows.replace(" ", "\n") + "\n;\n").encode(), Path("song.sm"))
-    play, _ = solve_with_feet(song, song.charts[0], load_preset("itg"))
+    play = solved_chart(song, song.charts[0], load_preset("itg")).play
+    assert play is not None
     assert play is not None
     return list(cues_of(play, song.charts[0].timing, subtitle_style().moves))
 

@@ -1,4 +1,4 @@
-"""The rows of a play as analysis-json.md describes them: text from the start, for there are hundreds of thousands.
+"""The rows of a play in the JSON of `analyze` (docs/formats.md): as text at once, for there are so many.
 
 Most rows look like others: what a row says besides its time, its line and its margin is written once for all rows of a
 run that share it.
@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import Limb, Part, Play, StepKind
 
 _LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
@@ -25,17 +24,15 @@ _SMALL, _LARGE = 0.001, 1e9  # numbers beyond are written with an exponent, or w
 _MOST_KNOWN = 100_000  # texts kept, so that a long run does not fill the memory
 
 
-def json_rows(subject: ChartSubject) -> str:
-    """The JSON of a list, one object for each row with a step, keys in the documented order; "[]" without a play.
+def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
+    """The JSON of a list, one object for each row with a step, keys in the documented order.
 
     A row of mines alone is there too if it costs something, so that the rows add up to the chart's cost.
+    file_lines : (rows,), the line in the file of each row
     """
-    play = subject.play
-    if play is None:
-        return "[]"
     shown = np.flatnonzero(play.rows.steps.any(axis=1) | (play.cost != 0).any(axis=1))
     beats = map(_beat, play.rows.tick[shown].tolist())
-    seconds, lines = play.rows.second[shown].tolist(), subject.file_lines[shown].tolist()
+    seconds, lines = play.rows.second[shown].tolist(), file_lines[shown].tolist()
     said = _said(play, shown)
     margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
     if play.confidence is not None:

@@ -1,0 +1,67 @@
+"""The runs of a film: which stretch of the music, how often and how fast, with what helps to learn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.lint.part import FASTEST, SLOWEST
+from dancetutor_cli.video.clock import Pass
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
+
+LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+
+
+@dataclass(frozen=True, slots=True)
+class Practice:
+    """What helps to learn. rates : speeds of the runs in turn; loop : number of runs (0: one for each rate)
+
+    count_in : beats counted before each run; claps : a clap on each step; metronome : a tick on each beat
+    """
+
+    rates: tuple[float, ...] = (1.0,)
+    loop: int = 0
+    count_in: int = 0
+    claps: bool = False
+    metronome: bool = False
+
+
+def parse_rates(text: str) -> tuple[float, ...]:
+    """ "0.5,0.75,1.0" to numbers; UsageError outside `lint.part.SLOWEST` to `FASTEST`."""
+    try:
+        rates = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        rates = ()
+    if not rates or not all(SLOWEST <= rate <= FASTEST for rate in rates):
+        raise UsageError(
+            f"rate '{text}': give speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, as 0.5,0.75,1"
+        )
+    return rates
+
+
+def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
+    """The runs through a section, slower ones first as asked for, each with its count-in."""
+    lead = 0.0
+    if practice.count_in:
+        beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
+        lead = practice.count_in * beat
+    count = practice.loop or len(practice.rates)
+    rates = (practice.rates[i % len(practice.rates)] for i in range(count))
+    return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
+
+
+def whole_song(chart: Chart) -> tuple[float, float]:
+    """Start and end of the film of a whole chart, seconds of the music: from its beginning to after the last note."""
+    notes = chart.notes
+    if len(notes) == 0:
+        raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
+    ticks = np.array([notes.tick.min(), max(notes.tick.max(), notes.end.max())])
+    first, last = chart.timing.seconds(ticks)
+    return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT

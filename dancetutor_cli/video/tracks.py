@@ -1,0 +1,54 @@
+"""From a chart and its play to what a picture shows of them: notes, presses and beats, on the clock of the music."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.play.model import Play
+from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
+from dancetutor_cli.video.scroll import ScrollSegments
+
+
+def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> NoteTrack:
+    """The notes as the highway draws them; keysounds are not notes to see."""
+    table = chart.notes
+    keep = table.kind != Kind.KEYSOUND
+    tick, end = table.tick[keep], np.where(table.end[keep] >= 0, table.end[keep], table.tick[keep])
+    limb = np.full(len(table), -1, dtype=np.int8)
+    if play is not None and len(play.rows):
+        row = np.searchsorted(play.rows.tick, table.tick)
+        row = np.clip(row, 0, len(play.rows) - 1)
+        found = (play.rows.tick[row] == table.tick) & (table.column < play.limb.shape[1])
+        limb[found] = play.limb[row[found], table.column[found]]
+    second = chart.timing.seconds(tick)
+    order = np.argsort(second, kind="stable")
+    track = NoteTrack(
+        second=second,
+        end_second=chart.timing.seconds(end),
+        beat=scrolls.shown(tick / TICKS_PER_BEAT),
+        end_beat=scrolls.shown(end / TICKS_PER_BEAT),
+        column=table.column[keep],
+        kind=table.kind[keep],
+        limb=limb[keep],
+        quantisation=quantisation(tick),
+        judged=table.judged[keep],
+    )
+    return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
+
+
+def presses_of(track: NoteTrack) -> Presses:
+    """Every press of a panel: taps, lifts, and holds and rolls from head to tail."""
+    step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
+    return Presses(track.second[step], track.end_second[step], track.column[step], track.limb[step])
+
+
+def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
+    """One line per beat, from beat 0 to the end of the film."""
+    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)))
+    beats = np.arange(min(last // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
+    second = chart.timing.seconds(beats * TICKS_PER_BEAT)
+    keep = second <= end + 60
+    return BeatLines(second[keep], scrolls.shown(beats.astype(np.float64))[keep])
