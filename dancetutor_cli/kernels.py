@@ -16,10 +16,13 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 from numba.core import caching as _caching
+from numba.core import cgutils as _cgutils
+from numba.extending import intrinsic
 
 from dancetutor_cli.kernel_folder import CHECKSUM, kernel_folder
 
-caching: Any = _caching  # has types in some versions only
+caching: Any = _caching  # have types in some versions only, or in none
+cgutils: Any = _cgutils
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
 
 
@@ -34,10 +37,28 @@ def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     return compiled
 
 
+def _borrowed(_typing: Any, array: Any) -> Any:
+    """The same array for numba, but one that nobody counts: the caller keeps it alive.
+
+    Arrays in tuples are counted up and down, one atomic step each, by every function that they are handed to; where
+    small functions hand on many arrays that takes longer than what they do.
+    """
+
+    def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        made = context.make_array(signature.args[0])(context, builder, value=values[0])
+        made.meminfo = cgutils.get_null_value(made.meminfo.type)
+        made.parent = cgutils.get_null_value(made.parent.type)
+        return made._getvalue()
+
+    return array(array), build
+
+
 if TYPE_CHECKING:
     from numba import njit as njit  # a kernel has the types that it says, as with numba's own
+
+    def borrowed(array: Any) -> Any: ...
 else:
-    njit = _njit
+    njit, borrowed = _njit, intrinsic(_borrowed)
 
 
 class _File(caching.IndexDataCacheFile):  # type: ignore[misc]

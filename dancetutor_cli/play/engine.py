@@ -5,7 +5,6 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,6 +27,7 @@ _EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
 _MOST_MOVES_KEPT = 4_000_000  # then the tables start anew, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 4_000_000  # the same
 
 
 class Engine:
@@ -45,9 +45,9 @@ class Engine:
             np.array([value for _, value in preset.switches], dtype=np.bool_),
             np.array(pad.home, dtype=np.int64),
         )
-        self._moves = moves(len(self.terms))
-        self.tables = _empty_tables(len(self.terms))
-        self._node = np.zeros((_NODES_KEPT, 2), dtype=np.int32)
+        self._moves = moves(len(preset.weights))
+        self.tables = _empty_tables(len(preset.weights))
+        self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
 
     def cheapest(self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False) -> Found:
         """The cheapest way through rows.
@@ -63,9 +63,11 @@ class Engine:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
         arrays = _arrays(rows, forced)
         _, nodes = self._run(arrays, False)
-        state = self.tables.move[nodes.node[: nodes.row[-1, store.FIRST], store.MOVE], store.NEXT].tolist()
-        layers = [state[a:b] for a, b in pairwise(nodes.row[:, store.FIRST].tolist())]
-        return Layers(layers, arrays.elapsed.tolist(), arrays.pattern.tolist(), self.tables.pair)
+        t = self.tables
+        numbers = [store.START, *t.transition[nodes.transition, store.TO_LAYER].tolist()]
+        spans = {number: t.layer[number].tolist() for number in set(numbers)}
+        states = {number: t.layer_state[first : first + size].tolist() for number, (first, size) in spans.items()}
+        return Layers([states[number] for number in numbers], arrays.elapsed.tolist(), arrays.pattern.tolist(), t.pair)
 
     def found(self, path: list[int]) -> Found:
         """A way through rows, given by its moves; without margins."""
@@ -83,7 +85,7 @@ class Engine:
     def price(self, rows: Rows, found: Found) -> NDArray[np.int32]:
         """Cost of each row of a way by term, (n, t)."""
         cost = np.empty((len(rows), len(self.terms)), dtype=np.int32)
-        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node, 0), cost, found)
+        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node), cost, found)
         return cost
 
     def _call(
@@ -94,8 +96,9 @@ class Engine:
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, Nodes]:
         n, c = arrays.steps.shape
-        if self.tables.counts[store.MOVES] > _MOST_MOVES_KEPT:
-            self.tables = _empty_tables(len(self.terms))
+        counts = self.tables.counts
+        if counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
+            self.tables = _empty_tables(len(self.preset.weights))
         found = Found(
             np.empty(n, dtype=np.int32),
             np.empty((n, c), dtype=np.int8),
@@ -104,17 +107,15 @@ class Engine:
             np.empty(n if margins else 0, dtype=np.uint8),
         )
         wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
-        node = self._node if wanted_nodes <= _NODES_KEPT else np.empty((wanted_nodes, 2), dtype=np.int32)
-        nodes = _nodes(n, node, len(self.tables.state_key))
+        nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
+        scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
         row, wanted = 0, store.UNKNOWN
         while wanted != store.DONE:
-            row, wanted = self._call(arrays, row, nodes, self._moves.terms, found)
+            row, wanted = self._call(arrays, row, nodes, scratch, found)
             if wanted == store.UNEXPLORED:
                 self._explore_from(row, arrays, nodes)
-                missing = np.full(len(self.tables.state_key) - len(nodes.slot), -1, dtype=np.int32)
-                nodes = nodes._replace(slot=np.append(nodes.slot, missing))
             elif wanted == store.MORE_NODES:
-                _make_room(nodes.node, row, n)
+                _make_room(nodes, row)
             elif wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, n)
         return found, nodes
@@ -122,11 +123,12 @@ class Engine:
     def _explore_from(self, row: int, arrays: RowArrays, nodes: Nodes) -> None:
         """Meet every state from a row on, so that the programme can go on there."""
         wanted = store.UNEXPLORED
+        before = self.tables.transition[nodes.transition[row - 1], store.TO_LAYER] if row else store.START
         while wanted != store.DONE:
             with _wrapping():
                 wanted = self._explore(
-                    row, arrays.pattern, self.tables, nodes, self.geometry, self._rules.weights, self._rules.switches,
-                    self._moves,
+                    row, np.int64(before), arrays.pattern, self.tables, self.geometry, self._rules.weights,
+                    self._rules.switches, self._moves,
                 )  # fmt: skip
             if wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, len(arrays.tick))
@@ -146,18 +148,18 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
     )  # fmt: skip
 
 
-def _nodes(rows: int, node: NDArray[np.int32], states: int) -> Nodes:
-    return Nodes(np.empty((rows + 2, 2), dtype=np.int64), node, np.full(states, -1, dtype=np.int32))
+def _nodes(rows: int, node: NDArray[np.int64]) -> Nodes:
+    return Nodes(np.empty((rows + 2, 2), dtype=np.int64), node, np.empty(rows, dtype=np.int32))
 
 
-def _make_room(node: NDArray[np.int32], row: int, rows: int) -> None:
+def _make_room(nodes: Nodes, row: int) -> None:
     """Room for as many nodes as the rest of the rows will need if it goes on like this, at most twice as many.
 
     The array grows where it is, so that old and new are not in memory together.
     """
-    used = len(node)
-    like_this = used * rows // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
-    node.resize((min(max(like_this, used * 9 // 8 + MOST_MOVES), 2 * used), 2), refcheck=False)
+    used, room = int(nodes.row[row + 1, store.FIRST]), len(nodes.node)
+    like_this = used * len(nodes.transition) // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
+    nodes.node.resize(min(max(like_this, room * 9 // 8 + MOST_MOVES), 2 * room), refcheck=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +209,7 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
     """The tables with more room for what is wanted."""
     if wanted == store.MORE_STATES:
         table = np.full(2 * len(t.state_hash), -1, dtype=np.int32)
-        store.fill_states(t.state_key, t.counts[store.STATES], table)
+        store.fill_numbers(t.state_key, t.counts[store.STATES], table)
         return t._replace(state_key=_longer(t.state_key), state_hash=table)
     if wanted == store.MORE_PATTERNS:
         least = 1 << int(len(t.pattern) + rows).bit_length()
@@ -224,30 +226,54 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
         return t._replace(terms=_longer(t.terms), terms_hash=table)
     if wanted == store.MORE_FACTS:
         table = np.full(2 * len(t.timed_hash), -1, dtype=np.int32)
-        store.fill_states(t.timed_key, t.counts[store.FACTS_KNOWN], table)
+        store.fill_numbers(t.timed_key, t.counts[store.FACTS_KNOWN], table)
         return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
     if wanted == store.MORE_TIMED:
         cost = np.full((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), store.UNKNOWN, dtype=np.int32)
         cost[:, : t.timed_cost.shape[1]] = t.timed_cost
         return t._replace(timed_cost=cost)
+    if wanted == store.MORE_LAYERS:
+        table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
+        store.fill_numbers(t.layer_key, t.counts[store.LAYERS], table)
+        return t._replace(layer=_longer(t.layer), layer_key=_longer(t.layer_key), layer_hash=table)
+    if wanted == store.MORE_TRANSITIONS:
+        table = np.full(2 * len(t.transition_hash), -1, dtype=np.int32)
+        store.fill_numbers(t.transition_key, t.counts[store.TRANSITIONS], table)
+        return t._replace(
+            transition=_longer(t.transition), transition_key=_longer(t.transition_key), transition_hash=table
+        )
+    if wanted == store.MORE_LAYER_STATES:
+        return t._replace(layer_state=_longer(t.layer_state))
+    if wanted == store.MORE_EDGES:
+        return t._replace(ends=_longer(t.ends), edge_cost=_longer(t.edge_cost), edge_move=_longer(t.edge_move))
     return t._replace(move=_longer(t.move), wide=_longer(t.wide))
 
 
-def _empty_tables(terms: int) -> Tables:
-    states, patterns, many, pairs, costs = 1 << 14, 1 << 12, 1 << 16, 1 << 15, 1 << 13
+def _empty_tables(weights: int) -> Tables:
+    states, patterns, many, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 16, 1 << 15, 1 << 13, 1 << 12
     whole, small = np.int64, np.int32
     return Tables(
-        counts=np.zeros(8, dtype=whole),
+        counts=np.zeros(10, dtype=whole),
         state_key=np.zeros(states, dtype=whole),
         state_hash=np.full(2 * states, -1, dtype=small),
         pattern=np.zeros((patterns, 2), dtype=whole),
         pattern_hash=np.full(4 * patterns, -1, dtype=small),
         pair=np.full((pairs, 2), -1, dtype=whole),
-        move=np.zeros((many, 4), dtype=small),
+        move=np.zeros((many, 3), dtype=small),
         wide=np.zeros((many, 2), dtype=whole),
-        terms=np.zeros((costs, terms), dtype=small),
+        terms=np.zeros((costs, weights), dtype=small),
         terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
         timed_hash=np.full(1 << 15, -1, dtype=small),
         timed_cost=np.full((store.MOST_MS + 1, 64), store.UNKNOWN, dtype=small),
+        layer=np.zeros((layers, 2), dtype=small),
+        layer_state=np.zeros(16 * layers, dtype=small),
+        layer_key=np.zeros(layers, dtype=whole),
+        layer_hash=np.full(4 * layers, -1, dtype=small),
+        transition=np.zeros((4 * layers, 3), dtype=small),
+        transition_key=np.zeros(4 * layers, dtype=whole),
+        transition_hash=np.full(16 * layers, -1, dtype=small),
+        ends=np.zeros(many, dtype=whole),
+        edge_cost=np.zeros(many, dtype=small),
+        edge_move=np.zeros(many, dtype=small),
     )

@@ -14,43 +14,64 @@ import numpy as np
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_moves import expand_itg
-from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.jit import borrowed, njit
 from dancetutor_cli.play.store import (
     ACTION,
     COST,
     DONE,
+    EDGE_COUNT,
+    EDGES,
     EVENTS,
     FACTS,
     FACTS_KNOWN,
-    FIRST,
+    FIRST_EDGE,
+    LAYER_FIRST,
+    LAYER_SIZE,
+    LAYER_STATES,
+    LAYERS,
+    MORE_EDGES,
     MORE_FACTS,
+    MORE_LAYER_STATES,
+    MORE_LAYERS,
     MORE_MOVES,
     MORE_PAIRS,
     MORE_STATES,
     MORE_TERMS,
-    MOVE,
+    MORE_TRANSITIONS,
     MOVES,
     NEXT,
     PAIRS,
     PART_SHIFT,
-    SOURCE,
+    PLACE_SHIFT,
     STATES,
     TERMS_KNOWN,
     TERMS_SHIFT,
+    TO_LAYER,
+    TRANSITIONS,
+    find,
     number_of_facts,
+    number_of_layer,
     number_of_state,
     number_of_terms,
     slot_of,
 )  # fmt: skip
-from dancetutor_cli.play.tables import MOST_MOVES
+from dancetutor_cli.play.tables import MOST_MOVES, Geometry, Moves
 from dancetutor_cli.play.thesis_moves import expand_thesis
 
 _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
 
 
 @njit
-def _keep(state, count, out, t):  # type: ignore[no-untyped-def]
-    """Number and keep the moves of a state in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
+def _borrowed_geometry(g):  # type: ignore[no-untyped-def]
+    return Geometry(
+        borrowed(g.left), borrowed(g.right), borrowed(g.angle), borrowed(g.distance), borrowed(g.place),
+        borrowed(g.panels), borrowed(g.mask), borrowed(g.arrow),
+    )  # fmt: skip
+
+
+@njit
+def _keep(count, out, t):  # type: ignore[no-untyped-def]
+    """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
     counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
     keys, numbers, terms, terms_hash = t.state_key, t.state_hash, t.terms, t.terms_hash
     given, given_terms = out.wide, out.terms
@@ -59,7 +80,6 @@ def _keep(state, count, out, t):  # type: ignore[no-untyped-def]
         move = first + i
         moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
         moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, t.timed_hash, counts)
-        moves[move, SOURCE] = state
         wide[move, ACTION] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT
         number = number_of_terms(given_terms[i], terms, terms_hash, counts)
         wide[move, EVENTS] = given[i, _EVENTS] | number << TERMS_SHIFT
@@ -88,6 +108,62 @@ def _room(t):  # type: ignore[no-untyped-def]
     return DONE
 
 
+@njit
+def _sort(values, count):  # type: ignore[no-untyped-def]
+    """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
+    gap = 1
+    while 9 * gap < count:
+        gap = 3 * gap + 1
+    while gap:
+        for i in range(gap, count):
+            value, k = values[i], i
+            while k >= gap and values[k - gap] > value:
+                values[k] = values[k - gap]
+                k -= gap
+            values[k] = value
+        gap //= 3
+
+
+@njit
+def _connect(key, layer, packed, found, reached, slot, t):  # type: ignore[no-untyped-def]
+    """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
+
+    key : layer << 32 | pattern; packed : of each state of the layer, what `Tables.pair` says
+    reached : key << 32 | number of each of the `found` next states, in any order; slot : scratch, by state
+    """
+    counts, moves, ends, transition = t.counts, t.move, t.ends, t.transition
+    size, total = t.layer[layer, LAYER_SIZE], 0
+    for i in range(size):
+        total += packed[i] & 0xFFFF
+    if counts[EDGES] + total > len(ends):
+        return MORE_EDGES
+    if counts[TRANSITIONS] >= len(transition):
+        return MORE_TRANSITIONS
+    if counts[LAYERS] >= len(t.layer):
+        return MORE_LAYERS
+    if counts[LAYER_STATES] + found > len(t.layer_state):
+        return MORE_LAYER_STATES
+    _sort(reached, found)
+    for i in range(found):
+        reached[i] &= 0xFFFFFFFF
+        slot[reached[i]] = i
+    e = counts[EDGES]
+    number = counts[TRANSITIONS]
+    transition[number, TO_LAYER] = number_of_layer(reached, found, t)
+    transition[number, FIRST_EDGE], transition[number, EDGE_COUNT] = e, total
+    for i in range(size):
+        for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+            facts, to = np.int64(moves[move, FACTS]), np.int64(slot[moves[move, NEXT]])
+            ends[e] = i | to << PLACE_SHIFT | facts << 2 * PLACE_SHIFT
+            t.edge_cost[e], t.edge_move[e] = moves[move, COST], move
+            e += 1
+    t.transition_key[number] = key
+    t.transition_hash[~find(key, t.transition_key, t.transition_hash)] = number
+    counts[EDGES] = e
+    counts[TRANSITIONS] += 1
+    return DONE
+
+
 expand: Any = None  # a global of each explorer's own; see `_compile`
 
 
@@ -98,47 +174,54 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
     kernel looks different in every process, so that nothing would ever be found again.
     """
 
-    def explore(row, pattern, t, nodes, g, weights, switches, out):  # type: ignore[no-untyped-def]
-        """From the nodes before `row` to the last row: meet every state, keep all moves. Returns what has no room."""
+    def explore(row, layer, pattern, t, g, weights, switches, out):  # type: ignore[no-untyped-def]
+        """From the layer before `row` to the last row: meet every state, keep all moves. Returns what has no room."""
         assert len(stamp)
-        first, node = nodes.row, nodes.node
-        now, coming = np.zeros(256, dtype=np.int64), np.zeros(256, dtype=np.int64)
-        many = first[row + 1, FIRST] - first[row, FIRST]
-        if many > len(now):
-            now = np.zeros(many, dtype=np.int64)
-        for i in range(many):
-            now[i] = t.move[node[first[row, FIRST] + i, MOVE], NEXT]
-        seen = np.full(len(t.state_key), -1, dtype=np.int32)
+        g = _borrowed_geometry(g)
+        weights, switches = borrowed(weights), borrowed(switches)
+        out = Moves(borrowed(out.wide), borrowed(out.terms), borrowed(out.scratch))
+        counts, pairs, keys = t.counts, t.pair, t.state_key
+        packed, reached = np.zeros(256, dtype=np.int64), np.zeros(256, dtype=np.int64)
+        slot, seen = np.zeros(len(keys), dtype=np.int32), np.full(len(keys), -1, dtype=np.int32)
         for r in range(row, len(pattern)):
-            found = 0
-            for i in range(many):
-                key = np.int64(pattern[r]) << 32 | now[i]
-                at = slot_of(key, len(t.pair))
-                while t.pair[at, 0] >= 0 and t.pair[at, 0] != key:
-                    at = (at + 1) & (len(t.pair) - 1)
-                if t.pair[at, 0] < 0:
+            number = find(layer << 32 | pattern[r], t.transition_key, t.transition_hash)
+            if number >= 0:
+                layer = np.int64(t.transition[number, TO_LAYER])
+                continue
+            first, size, found = t.layer[layer, LAYER_FIRST], t.layer[layer, LAYER_SIZE], 0
+            if size > len(packed):
+                packed = np.zeros(2 * size, dtype=np.int64)
+            for i in range(size):
+                state = np.int64(t.layer_state[first + i])
+                key = np.int64(pattern[r]) << 32 | state
+                at = slot_of(key, len(pairs))
+                while pairs[at, 0] >= 0 and pairs[at, 0] != key:
+                    at = (at + 1) & (len(pairs) - 1)
+                if pairs[at, 0] < 0:
                     wanted = _room(t)
                     if wanted != DONE:
                         return wanted
                     count = expand(
-                        t.state_key[now[i]], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], g, weights, switches,
-                        out,
-                    )  # fmt: skip
-                    t.pair[at, 0], t.pair[at, 1] = key, _keep(now[i], count, out, t)
-                    t.counts[PAIRS] += 1
-                packed = t.pair[at, 1]
-                if found + (packed & 0xFFFF) > len(coming):
+                        keys[state], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], g, weights, switches, out
+                    )
+                    pairs[at, 0], pairs[at, 1] = key, _keep(count, out, t)
+                    counts[PAIRS] += 1
+                packed[i] = pairs[at, 1]
+                if found + (packed[i] & 0xFFFF) > len(reached):
                     longer = np.zeros(2 * (found + MOST_MOVES), dtype=np.int64)
                     for k in range(found):
-                        longer[k] = coming[k]
-                    coming = longer
-                for move in range(packed >> 16, (packed >> 16) + (packed & 0xFFFF)):
-                    state = t.move[move, NEXT]
+                        longer[k] = reached[k]
+                    reached = longer
+                for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+                    state = np.int64(t.move[move, NEXT])
                     if seen[state] != r:
                         seen[state] = r
-                        coming[found] = state
+                        reached[found] = keys[state] << 32 | state
                         found += 1
-            now, coming, many = coming, now, found
+            wanted = _connect(layer << 32 | pattern[r], layer, packed, found, reached, slot, t)
+            if wanted != DONE:
+                return wanted
+            layer = np.int64(t.transition[counts[TRANSITIONS] - 1, TO_LAYER])
         return DONE
 
     own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name, None, explore.__closure__)

@@ -45,19 +45,11 @@ _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 
 @njit
-def mask_of(place, foot, g):  # type: ignore[no-untyped-def]
-    """Panels of a foot on a place, as bits."""
-    heel, toe = g.panels[place, foot, 0], g.panels[place, foot, 1]
-    mask = 1 << heel if heel >= 0 else 0
-    return mask | 1 << toe if toe >= 0 else mask
-
-
-@njit
-def held_by(s, foot, g):  # type: ignore[no-untyped-def]
-    """Panels that a foot is reserved for, as bits."""
+def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
+    """Panels that a foot is reserved for, as bits. panels : of `Geometry`"""
     held, place = s[LEFT_HELD + foot], s[foot]
-    mask = 1 << g.panels[place, foot, 0] if held & 1 else 0
-    return mask | 1 << g.panels[place, foot, 1] if held & 2 else mask
+    mask = 1 << panels[place, foot, 0] if held & 1 else 0
+    return mask | 1 << panels[place, foot, 1] if held & 2 else mask
 
 
 @njit(inline="always")
@@ -79,14 +71,14 @@ def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-unty
             brackets += 1
             events |= EVENT_BRACKET
             _charge_direction(s, foot, terms, g, w)
-        old = mask_of(before[foot], foot, g)
+        old = g.mask[before[foot]]
         if ended[0] & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
     if left and right:
         events |= EVENT_JUMP
         facts |= _F_BRACKET_JUMP if brackets else _F_JUMP
         for foot in range(2):
-            old, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
+            old, other = g.mask[before[foot]], g.mask[before[1 - foot]]
             if old & pressed[1 - foot] & ~other and not old & pressed[foot] and not before[LEFT_HELD + foot]:
                 terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
                 events |= EVENT_JUMP_FOOTSWITCH
@@ -121,13 +113,13 @@ def _charge_direction(s, foot, terms, g, w):  # type: ignore[no-untyped-def]
 def _charge_step(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
     """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
     facts = events = 0
-    stands, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
+    stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     again = before[LAST] == foot + 1
     if again and pressed & ~stands == 0:
         return _F_JACK, 0
     if not before[LAST] and pressed & ~stands:
         facts |= _F_AFTER_JUMP
-    if pressed & other and not pressed & held_by(before, 1 - foot, g):
+    if pressed & other and not pressed & held_by(before, 1 - foot, g.panels):
         for panel in range(len(g.arrow)):  # a bracket may take over two
             if pressed & other & 1 << panel:
                 events |= _SWITCH[g.arrow[panel]]
@@ -147,7 +139,7 @@ def _charge_step(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-
 @njit
 def _charge_doublestep(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
     """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
-    stands, other = mask_of(before[foot], foot, g), mask_of(before[1 - foot], 1 - foot, g)
+    stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     if before[LEFT_HELD + foot]:
         return 0, EVENT_FORCED  # a bracket on what it holds
     if before[LEFT_HELD + 1 - foot]:
@@ -220,10 +212,10 @@ def charge_mines(before, s, pressed, mines, terms, g, w):  # type: ignore[no-unt
         if pressed[foot]:
             s[LEFT_LIFTED + foot] = 0
             continue
-        if mines & mask_of(s[foot], foot, g):
+        if mines & g.mask[s[foot]]:
             terms[MINE] += w[MINE]
             s[LEFT_LIFTED + foot] = 1
-        if before[LEFT_LIFTED + foot] and pressed[1 - foot] & ~mask_of(before[foot], foot, g):
+        if before[LEFT_LIFTED + foot] and pressed[1 - foot] & ~g.mask[before[foot]]:
             terms[LIFTED] += w[LIFTED]
 
 

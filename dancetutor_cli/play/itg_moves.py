@@ -21,7 +21,6 @@ from dancetutor_cli.play.itg_costs import (
     charge_mines,
     charge_pose,
     held_by,
-    mask_of,
 )  # fmt: skip
 from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
@@ -55,16 +54,16 @@ def start_itg(home):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _hold(s, foot, mask, g):  # type: ignore[no-untyped-def]
-    """Reserve the parts of a foot that stand on the panels of `mask`."""
-    heel, toe = g.panels[s[foot], foot, 0], g.panels[s[foot], foot, 1]
+def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
+    """Reserve the parts of a foot that stand on the panels of `mask`. panels : of `Geometry`"""
+    heel, toe = panels[s[foot], foot, 0], panels[s[foot], foot, 1]
     s[LEFT_HELD + foot] = mask >> heel & 1 | (mask >> toe & 1) << 1 if toe >= 0 else mask >> heel & 1
 
 
 @njit(inline="always")
 def _ways_of_foot(s, foot, steps, brackets, ways, to, g):  # type: ignore[no-untyped-def]
     """What a foot can press in a row: panels as bits into `ways`, its place then into `to`. Returns how many."""
-    held = held_by(s, foot, g)
+    held = held_by(s, foot, g.panels)
     ways[0], to[0] = 0, s[foot]
     m, c = 1, g.place.shape[0]
     for p in range(c):
@@ -120,12 +119,12 @@ def _emit(out, m, row, earlier, steps, pressed, holders, switched, kept, g, w): 
         events |= happened
     holds, rolls = row >> HOLDS & _MASK, row >> ROLLS & _MASK
     for foot in range(2):
-        held = held_by(before, foot, g)
+        held = held_by(before, foot, g.panels)
         if switched >= 0:
             held = held & ~(1 << switched) if held >> switched & 1 else held | 1 << switched
-        mine = mask_of(s[foot], foot, g)
+        mine = g.mask[s[foot]]
         rolled = (pressed[foot] & rolls) if holders >> foot & 1 else 0
-        _hold(s, foot, (held & ~(pressed[foot] & (row >> ROLL_TAPS))) & mine | pressed[foot] & holds | rolled, g)
+        _hold(s, foot, (held & ~(pressed[foot] & (row >> ROLL_TAPS))) & mine | pressed[foot] & holds | rolled, g.panels)
     if left and right:
         s[LAST] = 0
     elif left or right:
@@ -248,11 +247,11 @@ def expand_itg(key, row, forced, g, w, switches, out):  # type: ignore[no-untype
     steps = (row >> TAPS | row >> HOLDS | row >> ROLLS | row >> ROLL_TAPS) & _MASK
     released = row >> RELEASED & _MASK
     for foot in range(2):
-        _hold(before, foot, held_by(before, foot, g) & ~released, g)
+        _hold(before, foot, held_by(before, foot, g.panels) & ~released, g.panels)
         held = before[LEFT_HOLDS + foot]
         if held and released >> held - 1 & 1:
             before[LEFT_HOLDS + foot] = 0
-        keepers[foot] = held_by(before, foot, g)
+        keepers[foot] = held_by(before, foot, g.panels)
     kept = steps & row >> ROLL_TAPS & (keepers[0] | keepers[1])  # virtual taps of rolls that a foot keeps down
     brackets, m = switches[0], 0
     for attempt in range(3):

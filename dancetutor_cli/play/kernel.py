@@ -1,7 +1,7 @@
 """The dynamic programme: the cheapest way through the rows, over the transition tables that `explore` fills.
 
-States and rows are numbered as they come up. For each pair of a row pattern and a state the moves are known, so the
-loop only adds costs. Costs of a row are kept relative to the row's cheapest state.
+For each layer of states and pattern of a row the edges to the next layer are known, so the loop only adds costs. Costs
+of a row are kept relative to the row's cheapest state. Of several ways as cheap, the first in order of edges is taken.
 """
 
 from __future__ import annotations
@@ -19,35 +19,41 @@ from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.store import (
     ACTION,
     BASE,
-    COST,
+    COST_SHIFT,
     DONE,
+    EDGE_COUNT,
+    EDGE_MASK,
     EVENTS,
     FACTS,
     FACTS_KNOWN,
     FIRST,
+    FIRST_EDGE,
+    LAYER_SIZE,
     LIMBS,
     MORE_NODES,
     MORE_PATTERNS,
     MORE_TIMED,
     MOST_MS,
-    MOVE,
     MOVES,
     NEXT,
     PART_SHIFT,
     PATTERNS,
-    REACHED,
-    SOURCE,
+    PLACE_MASK,
+    PLACE_SHIFT,
+    START,
     TERMS_SHIFT,
+    TO_LAYER,
     UNEXPLORED,
     UNKNOWN,
+    find,
+    number_of_layer,
     number_of_state,
     slot_of,
 )  # fmt: skip
-from dancetutor_cli.play.tables import MOST_MOVES, ROLL_TAPS, ROLLS
+from dancetutor_cli.play.tables import ROLL_TAPS, ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
 PRICE = -1  # instead of a row to start from
-_FAR = 2147483647
 _NEVER = np.int64(1 << 60)
 
 
@@ -93,15 +99,15 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
         return False
     goes_on = _rolls_on(steps) if keep_rolls else np.zeros(n, dtype=np.int32)
     ends = np.full(c, -1, dtype=np.int64)
-    held, last = 0, np.int64(-1)
+    held, last, latest = 0, np.int64(-1), np.int64(-1)
     for r in range(n):
         row = np.int64(goes_on[r]) << ROLLS
         more = forced[r] if len(forced) else np.int64(0)
         stepped = False
-        for p in range(c):
-            if keep_rolls and last >= 0 and ends[p] == last:
-                more |= np.int64(1) << p + columns.EARLIER
-            stepped |= steps[r, p] > 0
+        if keep_rolls and latest >= last >= 0:
+            for p in range(c):
+                if ends[p] == last:
+                    more |= np.int64(1) << p + columns.EARLIER
         if held:
             for p in range(c):
                 if held >> p & 1 and ends[p] <= tick[r]:
@@ -112,9 +118,11 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
         for p in range(c):
             step = steps[r, p]
             if step:
+                stepped = True
                 if step == 3:
                     row |= 1 << p + columns.HOLDS
                     ends[p] = hold_end[r, p]
+                    latest = max(latest, ends[p])
                     held |= 1 << p
                 else:
                     row |= 1 << p + (ROLL_TAPS if step == 5 and keep_rolls else columns.TAPS)
@@ -148,52 +156,43 @@ def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore
 
 @njit(inline="always")
 def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
-    """Nodes of row r and all after it. Returns the row reached and DONE, or what there is no room for.
+    """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
 
     Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
     """
-    pattern, elapsed, slot, first, node = rows.pattern, rows.elapsed, nodes.slot, nodes.row, nodes.node
-    pair, moves, timed_key, timed_cost = t.pair, t.move, t.timed_key, t.timed_cost
-    curves, size = rules.curves, len(pair)
+    pattern, elapsed, first, node, chosen = rows.pattern, rows.elapsed, nodes.row, nodes.node, nodes.transition
+    layer, ends, edge_cost, transition = t.layer, t.ends, t.edge_cost, t.transition
+    keys, numbers, curves = t.transition_key, t.transition_hash, rules.curves
+    timed_key, timed_cost = t.timed_key, t.timed_cost
+    here = np.int64(transition[chosen[r - 1], TO_LAYER]) if r else np.int64(START)
     for row in range(r, len(pattern)):
-        low, high = first[row, FIRST], first[row + 1, FIRST]
-        used, wanted, cheapest, ms = high, DONE, np.int32(_FAR), elapsed[row]
-        for v in range(low, high):
-            if used + MOST_MOVES > len(node):
-                wanted = MORE_NODES
-                break
-            key = np.int64(pattern[row]) << 32 | moves[node[v, MOVE], NEXT]
-            at = slot_of(key, size)
-            while pair[at, 0] >= 0 and pair[at, 0] != key:
-                at = (at + 1) & (size - 1)
-            if pair[at, 0] < 0:
-                wanted = UNEXPLORED
-                break
-            packed = pair[at, 1]
-            before = node[v, REACHED]
-            for move in range(packed >> 16, (packed >> 16) + (packed & 0xFFFF)):
-                facts = moves[move, FACTS]
-                cost = timed_cost[ms, facts]
-                if cost == UNKNOWN:
-                    cost = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
-                cost += before + moves[move, COST]
-                state = moves[move, NEXT]
-                u = slot[state]
-                if u < high:
-                    u = used
-                    used += 1
-                    slot[state] = u
-                elif cost >= node[u, REACHED]:
-                    continue
-                node[u, REACHED], node[u, MOVE] = cost, move
-                cheapest = min(cheapest, cost)
-        if wanted != DONE:
-            for u in range(high, used):
-                slot[moves[node[u, MOVE], NEXT]] = -1  # as if nothing had been done
-            return row, wanted
-        for u in range(high, used):
-            node[u, REACHED] -= cheapest
-        first[row + 2, FIRST] = used
+        number = find(here << 32 | pattern[row], keys, numbers)
+        if number < 0:
+            return row, UNEXPLORED
+        chosen[row] = number
+        here = np.int64(transition[number, TO_LAYER])
+        low, high, ms = first[row, FIRST], first[row + 1, FIRST], elapsed[row]
+        top = high + layer[here, LAYER_SIZE]
+        if top > len(node):
+            return row, MORE_NODES
+        for u in range(high, top):
+            node[u] = _NEVER
+        start = np.int64(transition[number, FIRST_EDGE])
+        for e in range(start, start + transition[number, EDGE_COUNT]):
+            facts = ends[e] >> 2 * PLACE_SHIFT
+            price = timed_cost[ms, facts]
+            if price == UNKNOWN:
+                price = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
+            cost = (node[low + (ends[e] & PLACE_MASK)] >> COST_SHIFT) + edge_cost[e] + price
+            u = high + (ends[e] >> PLACE_SHIFT & PLACE_MASK)
+            node[u] = min(node[u], cost << COST_SHIFT | e)
+        cheapest = _NEVER
+        for u in range(high, top):
+            cheapest = min(cheapest, node[u])
+        cheapest >>= COST_SHIFT
+        for u in range(high, top):
+            node[u] -= cheapest << COST_SHIFT
+        first[row + 2, FIRST] = top
         first[row + 1, BASE] = first[row, BASE] + cheapest
     return len(pattern), DONE
 
@@ -201,20 +200,17 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
     """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
-    first, node, moves, wide = nodes.row, nodes.node, t.move, t.wide
+    first, node, ends, wide = nodes.row, nodes.node, t.ends, t.wide
     limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
     at = first[n, FIRST]
-    for u in range(first[n, FIRST], first[n + 1, FIRST]):
-        if node[u, REACHED] < node[at, REACHED]:
-            at = u
+    while node[at] >> COST_SHIFT:
+        at += 1
     for r in range(n - 1, -1, -1):
-        move = node[at, MOVE]
-        path[r] = move
-        at = first[r, FIRST]
-        while moves[node[at, MOVE], NEXT] != moves[move, SOURCE]:
-            at += 1
-        action = wide[move, ACTION]
+        e = node[at] & EDGE_MASK
+        at = first[r, FIRST] + (ends[e] & PLACE_MASK)
+        path[r] = t.edge_move[e]
+        action = wide[path[r], ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
             limb[r, p] = -2 if code == 5 else code - 1
@@ -228,7 +224,7 @@ def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
     for r in range(len(path)):
         number = wide[path[r], EVENTS] >> TERMS_SHIFT
         for term in range(cost.shape[1]):
-            cost[r, term] = terms[number, term]
+            cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
         if moves[path[r], FACTS]:
             charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], rules.curves, cost[r])
 
@@ -239,8 +235,9 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
 
     Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
     """
-    first, node, slot, pair, moves, wide = nodes.row, nodes.node, nodes.slot, t.pair, t.move, t.wide
-    pattern, elapsed, path, timed_cost = rows.pattern, rows.elapsed, found.move, t.timed_cost
+    first, node, chosen, elapsed = nodes.row, nodes.node, nodes.transition, rows.elapsed
+    ends, edge_cost, edge_move, transition = t.ends, t.edge_cost, t.edge_move, t.transition
+    timed_cost, wide, path = t.timed_cost, t.wide, found.move
     margin, ambiguity = found.margin, found.ambiguity
     n = len(path)
     least = first[n, BASE]
@@ -250,28 +247,21 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     after, before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)
     same_after, same_before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)  # with the same limbs
     for r in range(n - 1, -1, -1):
-        low, high, top = first[r, FIRST], first[r + 1, FIRST], first[r + 2, FIRST]
-        for u in range(high, top):
-            slot[moves[node[u, MOVE], NEXT]] = u - high
-        chosen, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
-        for v in range(low, high):
-            key = np.int64(pattern[r]) << 32 | moves[node[v, MOVE], NEXT]
-            at = slot_of(key, len(pair))
-            while pair[at, 0] != key:
-                at = (at + 1) & (len(pair) - 1)
-            packed = pair[at, 1]
-            cheapest = same_cheapest = _NEVER
-            reached = first[r, BASE] + node[v, REACHED]
-            for move in range(packed >> 16, (packed >> 16) + (packed & 0xFFFF)):
-                price = np.int64(moves[move, COST]) + timed_cost[elapsed[r], moves[move, FACTS]]
-                state = slot[moves[move, NEXT]]
-                cost, same_cost = price + after[state], price + same_after[state]
-                cheapest = min(cheapest, cost)
-                if wide[move, ACTION] & LIMBS == chosen:
-                    same_cheapest = min(same_cheapest, same_cost)
-                else:
-                    other, resolved = min(other, reached + cost), min(resolved, reached + same_cost)
-            before[v - low], same_before[v - low] = cheapest, min(same_cheapest, _NEVER)
+        low, base, ms = first[r, FIRST], first[r, BASE], elapsed[r]
+        ours, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
+        for v in range(first[r + 1, FIRST] - low):
+            before[v] = same_before[v] = _NEVER
+        start = np.int64(transition[chosen[r], FIRST_EDGE])
+        for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
+            v, u = ends[e] & PLACE_MASK, ends[e] >> PLACE_SHIFT & PLACE_MASK
+            price = np.int64(edge_cost[e]) + timed_cost[ms, ends[e] >> 2 * PLACE_SHIFT]
+            rest, same_rest = price + after[u], price + same_after[u]
+            before[v] = min(before[v], rest)
+            if wide[edge_move[e], ACTION] & LIMBS == ours:
+                same_before[v] = min(same_before[v], same_rest)
+            else:
+                reached = base + (node[low + v] >> COST_SHIFT)
+                other, resolved = min(other, reached + rest), min(resolved, reached + same_rest)
         margin[r] = other - least if other < _NEVER else -1
         ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
         after, before, same_after, same_before = before, after, same_before, same_after
@@ -289,16 +279,17 @@ def _compile(stamp: str) -> Any:
             _wait(rows)
             _price(t, rows, rules, found.move, cost)
             return start_row, DONE
-        if t.counts[MOVES] == 0:  # move 0 leads to the start of every play
+        if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
             key = start_thesis(g) if model == 0 else start_itg(rules.home)
             t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
+            number_of_layer(np.zeros(1, dtype=np.int64), 1, t)
             t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
         if start_row == 0:
             if not _number_rows(rows, model > 0, t):
                 return 0, MORE_PATTERNS
             _wait(rows)
             nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
-            nodes.node[0, REACHED], nodes.node[0, MOVE] = 0, 0
+            nodes.node[0] = 0
         if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
             return start_row, MORE_TIMED
         row, wanted = _advance(start_row, rows, t, nodes, rules, cost[0])

@@ -1,4 +1,8 @@
-"""Where the solver keeps what it has met: states, row patterns and moves by number; nodes of one run. Kernel code."""
+"""Where the solver keeps what it has met: states, row patterns, moves and layers by number, and nodes. Kernel code.
+
+A layer is all states that a row can end in. Which they are depends only on the layer before and on the row's pattern,
+so charts share layers, and what leads from one to the next: a transition, of one edge for each state and move.
+"""
 
 from __future__ import annotations
 
@@ -10,16 +14,25 @@ from numpy.typing import NDArray
 from dancetutor_cli.play.jit import njit
 from dancetutor_cli.play.vocabulary import MOST_MS as MOST_MS
 
-STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN = range(6)  # places in `counts`
-NEXT, COST, FACTS, SOURCE = range(4)  # columns of `Tables.move`
+# places in `counts`
+(
+    STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES,
+) = range(10)  # fmt: skip
+NEXT, COST, FACTS = range(3)  # columns of `Tables.move`
 ACTION, EVENTS = range(2)  # columns of `Tables.wide`
+LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
+TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
+PLACE_SHIFT = 18  # in `Tables.ends`: places in the layers before and after, so many bits each, then the facts
+PLACE_MASK = (1 << PLACE_SHIFT) - 1
+COST_SHIFT = 32  # in `Nodes.node`: an edge below, the cost from here on; the least is the cheapest, then the first
+EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `Nodes.row`
-REACHED, MOVE = range(2)  # columns of `Nodes.node`
+START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on
 (
     DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
-    UNEXPLORED,
-) = range(10)  # fmt: skip
+    MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, UNEXPLORED,
+) = range(14)  # fmt: skip
 UNKNOWN = -1
 PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
 LIMBS = (1 << PART_SHIFT) - 1
@@ -35,11 +48,17 @@ class Tables(NamedTuple):
     state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
-    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, state it comes from
+    move : int32 (, 3), state it leads to, cost without time, number of its facts about time
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
-    terms : int32 (, t), costs without time by term: few, which many moves share; terms_hash : int32
+    terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
     timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
+    layer : int32 (, 2), where its states start in `layer_state`, and their number; they are in order of their keys
+    layer_key : int64, hash of the states; layer_hash : int32
+    transition : int32 (, 3), layer it leads to, first edge, number of edges
+    transition_key : int64, layer << 32 | pattern; transition_hash : int32
+    ends : int64, places of an edge's states in the layers before and after, and number of its facts; see `PLACE_SHIFT`
+    edge_cost, edge_move : int32, its cost without time, its move
     """
 
     counts: NDArray[np.int64]
@@ -55,19 +74,29 @@ class Tables(NamedTuple):
     timed_key: NDArray[np.int64]
     timed_hash: NDArray[np.int32]
     timed_cost: NDArray[np.int32]
+    layer: NDArray[np.int32]
+    layer_state: NDArray[np.int32]
+    layer_key: NDArray[np.int64]
+    layer_hash: NDArray[np.int32]
+    transition: NDArray[np.int32]
+    transition_key: NDArray[np.int64]
+    transition_hash: NDArray[np.int32]
+    ends: NDArray[np.int64]
+    edge_cost: NDArray[np.int32]
+    edge_move: NDArray[np.int32]
 
 
 class Nodes(NamedTuple):
     """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
-    node : int32 (, 2), cost, move that led there
-    slot : int32, by state: its node, if that belongs to the row at hand
+    node : int64, how much dearer a node is than the cheapest of its row, and the edge that led there; see `COST_SHIFT`
+    transition : int32 (n,), number of the transition that each row is
     """
 
     row: NDArray[np.int64]
-    node: NDArray[np.int32]
-    slot: NDArray[np.int32]
+    node: NDArray[np.int64]
+    transition: NDArray[np.int32]
 
 
 class RowArrays(NamedTuple):
@@ -117,6 +146,17 @@ class Found(NamedTuple):
 def slot_of(value, size):  # type: ignore[no-untyped-def]
     """Where the search for a number in a hash table of a power of two starts."""
     return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
+
+
+@njit
+def find(key, keys, numbers):  # type: ignore[no-untyped-def]
+    """Number of a key; if it is not known, ~ the slot for it."""
+    at = slot_of(key, len(numbers))
+    while numbers[at] >= 0:
+        if keys[numbers[at]] == key:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    return ~at
 
 
 @njit
@@ -180,8 +220,35 @@ def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
+@njit
+def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
+    """Number of the layer of the first `count` of some states in order; a new one is entered."""
+    layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts
+    mixed = np.int64(count)
+    for i in range(count):
+        mixed = mixed * 1000003 + states[i]
+    at = slot_of(mixed, len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        if keys[number] == mixed and layer[number, LAYER_SIZE] == count:
+            first, i = layer[number, LAYER_FIRST], 0
+            while i < count and kept[first + i] == states[i]:
+                i += 1
+            if i == count:
+                return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number, first = counts[LAYERS], counts[LAYER_STATES]
+    counts[LAYERS] += 1
+    counts[LAYER_STATES] += count
+    numbers[at] = number
+    keys[number], layer[number, LAYER_FIRST], layer[number, LAYER_SIZE] = mixed, first, count
+    for i in range(count):
+        kept[first + i] = states[i]
+    return np.int64(number)
+
+
 @njit(cache=True)
-def fill_states(keys, count, table):  # type: ignore[no-untyped-def]
+def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
     """Enter the first `count` keys into an empty hash table of their numbers."""
     for number in range(count):
         at = slot_of(keys[number], len(table))

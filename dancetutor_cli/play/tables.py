@@ -40,6 +40,7 @@ class Geometry(NamedTuple):
     distance : int64 (p, p), between the middles of places, 1/20 panel widths
     place : int64 (c, c), place of a foot on two panels, -1 if they are no neighbours; of one panel on the diagonal
     panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
+    mask : int64 (p,), the panels of a place as bits
     arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
     """
 
@@ -49,13 +50,14 @@ class Geometry(NamedTuple):
     distance: NDArray[np.int64]
     place: NDArray[np.int64]
     panels: NDArray[np.int64]
+    mask: NDArray[np.int64]
     arrow: NDArray[np.int64]
 
 
 class Moves(NamedTuple):
     """Every way to play one row from one state: room for `MOST_MOVES`.
 
-    wide : int64 (, 5), see above; terms : int32 (, t), what each cost term adds, not counting time
+    wide : int64 (, 5), see above; terms : int32 (, w), what each weight adds, not counting time
     scratch : int64 (8, 32)
     """
 
@@ -89,7 +91,11 @@ def geometry(pad: Pad) -> Geometry:
         place[a, b] = place[b, a] = c + 1 + number
         for foot in range(2):
             panels[c + 1 + number, foot] = heel_and_toe(pad, a, b, foot)
-    return Geometry(left, right, angle, distance, place, panels, np.array([_arrow(*way) for way in pad.arrows]))
+    mask = np.where(panels >= 0, np.int64(1) << panels.clip(min=0), np.int64(0)).astype(np.int64)
+    return Geometry(
+        left, right, angle, distance, place, panels, mask[:, 0, 0] | mask[:, 0, 1],
+        np.array([_arrow(*way) for way in pad.arrows]),
+    )  # fmt: skip
 
 
 def _arrow(x: float, y: float) -> int:
@@ -108,10 +114,10 @@ def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
     return (a, b) if (ax > bx) == (foot == 0) else (b, a)
 
 
-def moves(terms: int) -> Moves:
+def moves(weights: int) -> Moves:
     """Empty room for the ways to play one row."""
     return Moves(
         np.zeros((MOST_MOVES, 5), dtype=np.int64),
-        np.zeros((MOST_MOVES, terms), dtype=np.int32),
+        np.zeros((MOST_MOVES, weights), dtype=np.int32),
         np.zeros((8, 32), dtype=np.int64),
     )
