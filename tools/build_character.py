@@ -1,4 +1,4 @@
-"""Build the dancer and the mannequin of the package (`make character`): shapes to meshes, weights, paint, GLB.
+"""Build the dancer, her heels and the mannequin of the package (`make character`): meshes, weights, paint, GLB.
 
 Needs the development extra `character` (scikit-image); the program itself only reads the result. The same sources and
 library versions give the same bytes.
@@ -16,7 +16,7 @@ import numpy as np
 from build_character_bake import Atlas
 from build_character_loft import Lofted
 from build_character_mesh import Triangles, even, gradient, surface
-from build_character_parts import Part, mannequin_parts, parts
+from build_character_parts import Part, heel_parts, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
 
@@ -50,6 +50,9 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
         out[:, ORDER["l_knee"]] = shin
         out[:, ORDER["l_metatarsal"]] = toes * (1 - shin)
         out[:, ORDER["l_talocrural"]] = (1 - toes) * (1 - shin)
+    elif part.skin == "jaw":
+        jaw = head.below_the_lip(points)
+        out[:, ORDER["temporomandibular"]], out[:, ORDER["skullbase"]] = jaw, 1 - jaw
     elif part.skin == "braid":
         at = np.interp(-points[:, 1], [-p[1] for p in head.BRAID], np.arange(4.0)) - 0.5
         at = np.where(points[:, 1] < head.BRAID[3][1], 2.5 + (head.BRAID[3][1] - points[:, 1]) / 0.1, at)
@@ -177,12 +180,13 @@ def character(name: str, meshes: list[Mesh]) -> Character:
 
 
 def main(folder: Path = DATA) -> None:
-    """Write dancer.glb and mannequin.glb into the package, or into the folder given."""
+    """Write dancer.glb, mannequin.glb and heels.glb into the package, or into the folder given."""
     folder.mkdir(parents=True, exist_ok=True)
     skin = reference()
     for made in (
         assemble("dancer", parts(), skin, Atlas(2048, 1024)),
         assemble("mannequin", mannequin_parts(), skin, Atlas(1024, 512)),
+        assemble("heels", heel_parts(), skin, Atlas(256, 256)),
     ):
         path = folder / f"{made.name}.glb"
         write_glb(path, made)

@@ -38,7 +38,7 @@ TORSO = [
     (0.960, 0.147, 0.083, 0.088, -0.012), (1.000, 0.129, 0.078, 0.079, -0.014), (1.060, 0.112, 0.072, 0.073, -0.014),
     (1.100, 0.109, 0.071, 0.073, -0.014), (1.160, 0.114, 0.075, 0.077, -0.016), (1.220, 0.123, 0.079, 0.082, -0.018),
     (1.280, 0.131, 0.080, 0.086, -0.022), (1.330, 0.133, 0.075, 0.085, -0.026), (1.370, 0.122, 0.064, 0.076, -0.027),
-    (1.400, 0.096, 0.053, 0.062, -0.025), (1.430, 0.060, 0.044, 0.050, -0.021), (1.465, 0.044, 0.041, 0.044, -0.014),
+    (1.400, 0.096, 0.053, 0.062, -0.025), (1.430, 0.056, 0.042, 0.048, -0.021), (1.465, 0.037, 0.035, 0.038, -0.014),
 ]  # fmt: skip
 LEG = [
     (-0.110, 0.040, 0.045, 0.045, 0.000, 0.030), (-0.070, 0.062, 0.066, 0.068, -0.001, 0.014),
@@ -56,16 +56,17 @@ ARM_ROWS = [
     (0.492, 0.0190, 0.0240, 0.0215, 0.008), (0.520, 0.0170, 0.0270, 0.0240, 0.008),
 ]  # fmt: skip
 SHIRT = [
-    (0.972, 0.1545, 0.097, 0.102, -0.012), (1.000, 0.1450, 0.094, 0.096, -0.013), (1.060, 0.1270, 0.087, 0.087, -0.014),
+    (0.972, 0.1535, 0.091, 0.102, -0.012), (1.000, 0.1450, 0.094, 0.096, -0.013), (1.060, 0.1270, 0.087, 0.087, -0.014),
     (1.100, 0.1220, 0.087, 0.085, -0.014), (1.160, 0.1230, 0.090, 0.086, -0.016), (1.220, 0.1300, 0.095, 0.090, -0.018),
     (1.280, 0.1370, 0.087, 0.093, -0.022), (1.330, 0.1390, 0.082, 0.092, -0.026), (1.370, 0.1280, 0.070, 0.083, -0.027),
     (1.400, 0.1020, 0.060, 0.069, -0.025), (1.430, 0.0660, 0.050, 0.057, -0.021), (1.465, 0.0500, 0.048, 0.050, -0.014),
 ]  # fmt: skip
 SLEEVE = [
     (-0.030, 0.045, 0.047, 0.047, 0.0), (0.020, 0.0465, 0.0485, 0.0485, 0.0), (0.070, 0.0465, 0.0475, 0.0480, 0.0),
-    (0.128, 0.0490, 0.0490, 0.0495, 0.0),
+    (0.1015, 0.0482, 0.0486, 0.0490, 0.0), (0.1055, 0.0510, 0.0512, 0.0516, 0.0),
+    (0.1175, 0.0514, 0.0516, 0.0520, 0.0), (0.128, 0.0500, 0.0502, 0.0506, 0.0),
 ]  # fmt: skip
-SLEEVE_END, HEM, ANKLE = 0.122, 0.976, 0.120
+SLEEVE_END, CUFF, HEM, ANKLE = 0.122, 0.1035, 0.976, 0.120  # the cuff is the sleeve's own turned-up end
 
 
 def on_arm(along: float, aside: float = 0.0, front: float = 0.0, palm: float = 0.0) -> np.ndarray:
@@ -90,7 +91,8 @@ def shoulders(by: float = 0.0) -> Shape:
 def torso() -> Shape:
     """Pelvis to neck, without legs and arms."""
     seat = both(ellipsoid((0.072, 0.872, -0.058), (0.074, 0.078, 0.052)))
-    return blend(0.03, blend(0.04, stack((0, 0, 0), UP, FRONT, TORSO), bust()), seat, shoulders())
+    gusset = ellipsoid((0, 0.817, -0.008), (0.030, 0.029, 0.052))  # no light comes through between the thighs
+    return blend(0.03, blend(0.04, stack((0, 0, 0), UP, FRONT, TORSO), bust()), seat, gusset, shoulders())
 
 
 def leg() -> Shape:
@@ -101,7 +103,7 @@ def leg() -> Shape:
 def leggings() -> Shape:
     """Pelvis and both legs; the top is inside the shirt, the bottom inside the shoes."""
     pelvis = common(torso(), half_space((0, 1.035, 0), UP), 0.02)
-    return common(blend(0.035, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
+    return common(blend(0.040, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
 
 
 def hand() -> Shape:
@@ -172,7 +174,7 @@ def chest_skin() -> Shape:
     """Neck and the skin the scoop neck shows."""
     chest = common(grow(torso(), -0.0005), half_space((0, 1.33, 0), -UP), 0.02)
     chest = common(chest, ellipsoid((0, 1.425, 0.035), (0.090, 0.095, 0.085)), 0.02)
-    return blend(0.028, chest, cone((0, 1.42, -0.022), (0, 1.55, -0.006), 0.0445, 0.0395))
+    return blend(0.028, chest, cone((0, 1.42, -0.022), (0, 1.55, -0.006), 0.0390, 0.0335))
 
 
 def shoe_upper() -> Shape:
@@ -193,6 +195,11 @@ def shoe_upper() -> Shape:
     return common(carve(whole, hollow, 0.004), half_space((0, 0.012, 0), -UP), 0.004)
 
 
+def sock() -> Shape:
+    """What is seen in the shoe's opening where no leg is drawn, as from above."""
+    return ellipsoid((HIP[0], 0.124, -0.019), (0.0365, 0.0070, 0.0400))
+
+
 def figure() -> Shape:
     """The whole bare body with a plain head, for the mannequin."""
     skull = blend(
@@ -200,7 +207,7 @@ def figure() -> Shape:
         ellipsoid((0, 1.622, -0.005), (0.078, 0.092, 0.094)),
         cone((0, 1.545, 0.020), (0, 1.520, 0.050), 0.050, 0.028),
     )
-    neck = cone((0, 1.42, -0.022), (0, 1.56, -0.006), 0.046, 0.042)
+    neck = cone((0, 1.42, -0.022), (0, 1.56, -0.006), 0.042, 0.037)
     legs = common(both(leg()), half_space((0, 0.066, 0), -UP), 0.01)
     whole_arm = blend(0.016, stack(SHOULDER, ARM, FRONT, ARM_ROWS), hand())
     return blend(0.03, torso(), legs, both(whole_arm), neck, skull)

@@ -14,7 +14,7 @@ from build_character_sdf import Array, Shape, blend, both, carve, cone, ellipsoi
 
 EYE = REST["l_eyeball_joint"]
 EYE_RADIUS = 0.0367
-LID_EDGE, LOWER_EDGE = 29.0, -37.0  # degrees of elevation on the eyeball; the lid closes by their difference
+LID_EDGE, LOWER_EDGE = 34.0, -32.0  # degrees of elevation on the eyeball; the lid closes by their difference
 LARGER, ABOUT = 1.08, np.array([0.0, 1.53, 0.0])  # the head is drawn at life size and then made larger
 BRAID = [REST[f"braid{k}"] for k in (1, 2, 3, 4)]
 BRAID_TIP = np.array([0.0, 1.205, -0.153])
@@ -43,6 +43,14 @@ def head() -> Shape:
     return scaled(carve(blend(0.014, skull, nose), sockets, 0.005), ABOUT, LARGER)  # the hair covers her ears
 
 
+def below_the_lip(p: Array) -> Array:
+    """How far places of the face go with the jaw, (n,) 0 to 1: from the upper lip's line downwards, not the throat."""
+    x, y, z = drawn(p).T
+    down = np.clip((1.5345 + 0.0070 * np.minimum(np.abs(x) / 0.0245, 1.2) ** 2 - y) / 0.0125, 0, 1)
+    front = np.clip((z - 0.015) / 0.045, 0, 1)
+    return np.asarray(down**2 * (3 - 2 * down) * front**2 * (3 - 2 * front))
+
+
 def hair() -> Shape:
     """The close hair: it thins to nothing at the hairline, so that no wall stands on the forehead."""
     skull = blend(0.03, cranium(), ellipsoid((0, 1.612, -0.034), (0.0830, 0.0840, 0.0790)))
@@ -62,18 +70,18 @@ def hair() -> Shape:
 def locks() -> list[Lofted]:
     """The fringe, swept from a parting on her left, and a lock beside each cheek; each ends in a point."""
     fringe = [
-        [(0.030, 1.700, 0.000), (-0.010, 1.711, 0.054), (-0.044, 1.685, 0.083), (-0.071, 1.650, 0.074)],
-        [(0.028, 1.700, 0.010), (0.006, 1.707, 0.069), (-0.026, 1.682, 0.0965), (-0.055, 1.650, 0.0980)],
-        [(0.030, 1.698, 0.020), (0.018, 1.699, 0.080), (-0.004, 1.674, 0.1040), (-0.024, 1.649, 0.1070)],
-        [(0.026, 1.700, 0.000), (0.046, 1.701, 0.053), (0.062, 1.675, 0.069), (0.079, 1.643, 0.061)],
-        [(0.026, 1.698, 0.020), (0.040, 1.695, 0.079), (0.056, 1.670, 0.0940), (0.066, 1.644, 0.0870)],
+        [(0.030, 1.700, 0.000), (-0.010, 1.711, 0.054), (-0.044, 1.689, 0.083), (-0.071, 1.658, 0.074)],
+        [(0.028, 1.700, 0.010), (0.006, 1.707, 0.069), (-0.026, 1.689, 0.0965), (-0.054, 1.661, 0.0985)],
+        [(0.030, 1.698, 0.020), (0.018, 1.699, 0.080), (-0.004, 1.686, 0.1020), (-0.024, 1.665, 0.1060)],
+        [(0.026, 1.700, 0.000), (0.046, 1.701, 0.053), (0.062, 1.679, 0.069), (0.079, 1.652, 0.061)],
+        [(0.026, 1.698, 0.020), (0.040, 1.695, 0.079), (0.056, 1.679, 0.0930), (0.066, 1.656, 0.0880)],
     ]
     tips = [
-        (-0.088, 1.606, 0.052),
-        (-0.074, 1.616, 0.081),
-        (-0.044, 1.626, 0.099),
-        (0.088, 1.602, 0.046),
-        (0.079, 1.616, 0.070),
+        (-0.088, 1.618, 0.052),
+        (-0.072, 1.632, 0.083),
+        (-0.042, 1.645, 0.101),
+        (0.088, 1.614, 0.046),
+        (0.078, 1.631, 0.072),
     ]
     widths = [(0.020, 0.028, 0.028, 0.023), (0.020, 0.028, 0.028, 0.019), (0.016, 0.023, 0.022, 0.015)]
     widths += [(0.020, 0.025, 0.026, 0.021), (0.016, 0.023, 0.022, 0.014)]

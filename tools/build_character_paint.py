@@ -5,7 +5,7 @@ from __future__ import annotations
 import build_character_head as head
 import numpy as np
 from build_character_bake import Paint
-from build_character_body import ARM, HEM, SHOULDER
+from build_character_body import ARM, CUFF, HEM, SHOULDER, SLEEVE_END
 from build_character_sdf import Array, spline
 
 
@@ -55,6 +55,14 @@ def rubber(p: Array, n: Array) -> Array:
     return over(base, colour("#cfcbd8"), inside(np.abs(p[:, 1] - 0.0065) - 0.0012) * (np.abs(n[:, 1]) < 0.7))
 
 
+def leather(p: Array, n: Array) -> Array:
+    return fill(p, colour("#efeaf4"))
+
+
+def sock(p: Array, n: Array) -> Array:
+    return fill(p, colour("#dcd8e8"))
+
+
 def trim(p: Array, n: Array) -> Array:
     return fill(p, PINK)
 
@@ -82,17 +90,17 @@ def face(p: Array, n: Array) -> Array:
     socket = np.linalg.norm((q - [0.037, 1.592]) / [1.0, 0.85], axis=1)
     base = over(base, SHADE, 0.35 * inside(socket - 0.034, 0.010) * front)
     brow = stroke(
-        q, [(0.0150, 1.6285), (0.030, 1.6340), (0.047, 1.6320), (0.0605, 1.6225)], [0.0022, 0.0031, 0.0026, 0.0006]
+        q, [(0.0175, 1.6275), (0.030, 1.6315), (0.046, 1.6310), (0.0590, 1.6250)], [0.0020, 0.0028, 0.0024, 0.0008]
     )
     base = over(base, BROW, inside(brow) * front)
     return _smile(base, p, front)
 
 
 def _smile(base: Array, p: Array, front: Array) -> Array:
-    x, y, half = p[:, 0], p[:, 1] - 1.5335, 0.0212
+    x, y, half = p[:, 0], p[:, 1] - 1.5330, 0.0245
     t = np.clip(np.abs(x) / half, 0, 1.5)
-    top = 0.0056 * t**2
-    low = -0.0108 + 0.0164 * t**2
+    top = 0.0070 * t**2
+    low = -0.0118 + 0.0188 * t**2
     depth = np.maximum(y - top, low - y) * 0.85
     mouth = np.where(t < 1.0, depth, np.maximum(depth, np.abs(x) - half))
     base = over(
@@ -198,6 +206,10 @@ def shirt(p: Array, n: Array) -> Array:
     seam = (x - 0.068) * 0.86 + (p[:, 1] - 1.435) * 0.36 + 0.012
     base = over(base, INDIGO, inside(-seam, 0.001))
     base = over(base, PINK, inside(np.abs(seam) - 0.0022, 0.001))
+    along = (np.stack([x, p[:, 1], p[:, 2]], axis=1) - SHOULDER) @ ARM
+    sleeve = (x > 0.17).astype(float)
+    base = over(base, PINK, inside(CUFF - along, 0.001) * sleeve)
+    base = over(base, colour("#3a3486"), inside(SLEEVE_END - 0.002 - along, 0.001) * sleeve)  # the opening's inside
     front = p[:, 2] > 0
     for y, size, where in ((1.150, 0.056, front), (1.160, 0.066, ~front)):
         d = arrow(np.stack([x, p[:, 1] - y], axis=1) / size) * size

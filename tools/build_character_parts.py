@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import build_character_body as body
 import build_character_head as head
+import build_character_heels as heels
 import build_character_paint as paint
 import build_character_trims as trims
 import numpy as np
@@ -16,7 +17,8 @@ from build_character_mesh import Size, even, gradient, surface
 from build_character_sdf import Array, Shape
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
-Skin = str  # "heat" over the body, "foot", "braid", or the one joint that holds the part
+SHOES = "shoes"  # the mesh of soles, collars, laces and socks; other shoes stand in for it
+Skin = str  # "heat" over the body, "foot", "braid", "jaw", or the one joint that holds the part
 
 
 @dataclass(frozen=True)
@@ -51,37 +53,63 @@ def leggings_mesh() -> Lofted:
     """The leggings, with normals that pass over the fold between the legs."""
     leg = ramp(
         [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
-        [0.015, 0.018, 0.0235, 0.0180, 0.0180, 0.0255, 0.0262, 0.0220, 0.030],
+        [0.016, 0.019, 0.0245, 0.0180, 0.0180, 0.0265, 0.0272, 0.0220, 0.030],
         lambda p: p[:, 1],
     )
 
-    def fine_between(p: Array) -> Array:
-        fork = np.linalg.norm((p - [0, 0.795, 0]) / [0.03, 0.03, 0.06], axis=1)
-        return np.minimum(leg(p), np.interp(fork, [1.0, 1.8], [0.0140, 0.0262]))
-
     shape = body.leggings()
-    points, _, triangles = surface(shape, (-0.20, 0.05, -0.16), (0.20, 1.05, 0.12), 0.006, fine_between)
-    normals = gradient(shape, points, 0.006)
-    x, y, z = (points - [0, 0.815, 0]).T
+    points, _, triangles = surface(shape, (-0.20, 0.05, -0.16), (0.20, 1.05, 0.12), 0.006, fine_between_legs(leg))
+    normals = softer(gradient(shape, points, 0.006), gradient(shape, points, 0.035), 0.7)
+    x, y, z = (points - [0, 0.810, 0]).T
     fold = np.exp(-((x / 0.055) ** 4) - (y / 0.055) ** 4) * np.clip(0.3 + z / 0.03, 0, 1)
     level = np.stack([1 - 0.5 * fold, 1 - fold * (normals[:, 1] < 0), np.ones_like(fold)], axis=1)
     return points, unit(normals * level), triangles
 
 
+def fine_between_legs(size: Size) -> Size:
+    """The sizes given, smaller where the thighs part: there neighbours go with different legs."""
+
+    def both(p: Array) -> Array:
+        fork = np.linalg.norm((p - [0, 0.790, 0]) / [0.03, 0.03, 0.06], axis=1)
+        return np.minimum(size(p), np.interp(fork, [1.0, 1.8], [0.0100, 0.0272]))
+
+    return both
+
+
 def shirt_mesh() -> Lofted:
     """The shirt, with normals that do not turn under at its edges; finer at the neckline."""
     neck = body.neckline()
+    edge = ramp([0.008, 0.03], [0.0125, 0.0230], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM)))
+    cuff = ramp(
+        [0.058, 0.070], [0.0115, 0.0230], lambda p: np.linalg.norm(p * _on_left(p) - body.on_arm(0.114), axis=1)
+    )
     points, _, triangles = surface(
         body.shirt(),
         (-0.32, 0.96, -0.14),
         (0.32, 1.46, 0.14),
         0.005,
-        ramp([0.008, 0.03], [0.0125, 0.0230], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM))),
+        lambda p: np.minimum(edge(p), cuff(p)),
     )
-    normals = softer(gradient(body.shirt_cloth(), points), gradient(body.shirt_cloth(), points, 0.030), 0.75)
+    normals = softer(gradient(body.shirt_cloth(), points), gradient(body.shirt_cloth(), points, 0.040), 0.85)
+    below = (normals[:, 1] < 0) & (np.abs(points[:, 0]) < 0.17)
+    normals[:, 1] *= np.where(below, 0.45, 1.0)  # no smear of shade under the bust
+    normals = unit(normals)
     bowl = np.abs(neck(points)) < 0.002
     normals[bowl] = -gradient(neck, points[bowl])
     return points, normals, triangles
+
+
+def _on_left(p: Array) -> Array:
+    """Signs (n, 3) that take points to her left side."""
+    return np.stack([np.sign(p[:, 0]), np.ones(len(p)), np.ones(len(p))], axis=1)
+
+
+def arm_mesh(size: Size) -> Lofted:
+    """The arm, its fingers lit and outlined as one hand: at publishing size each by itself is a speckle."""
+    shape = body.arm()
+    points, normals, triangles = surface(shape, (0.15, 0.84, -0.07), (0.67, 1.39, 0.09), 0.0032, size)
+    finger = 0.75 * np.clip((_along_arm(points) - 0.54) / 0.03, 0, 1)
+    return points, softer(normals, gradient(shape, points, 0.014), finger), triangles
 
 
 def face_mesh() -> Lofted:
@@ -141,7 +169,7 @@ def surfaces() -> dict[str, Callable[[], Lofted]]:
     shoe_box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
     braid_box = ((-0.05, 1.18, -0.20), (0.05, 1.68, -0.08))
     return {
-        "arm": of_shape(body.arm(), ((0.15, 0.84, -0.07), (0.67, 1.39, 0.09)), 0.0032, arm),
+        "arm": lambda: arm_mesh(arm),
         "neck": of_shape(body.chest_skin(), ((-0.12, 1.31, -0.13), (0.12, 1.58, 0.12)), 0.004, even(0.0185)),
         "hair": of_shape(head.hair(), ((-0.14, 1.45, -0.19), (0.14, 1.79, 0.16)), 0.004, hairline),
         "braid": of_shape(head.braid(), braid_box, 0.0025, even(0.0116)),
@@ -156,16 +184,15 @@ def parts() -> list[Part]:
         Part("leggings", leggings_mesh, "heat", 470, paint.leggings, shade=0.0, ankles=True),
         Part("shirt", shirt_mesh, "heat", 660, paint.shirt, shade=0.10, on=cloth),
         Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim, on=cloth),
-        Part("cuff", trims.cuff, "heat", 400, paint.trim, mirror=True, on=cloth),
         Part("arm", made["arm"], "heat", 560, paint.arm, mirror=True),
         Part("neck", made["neck"], "heat", 450, paint.skin),
-        Part("head", face_mesh, "skullbase", 1750, paint.face),
+        Part("head", face_mesh, "jaw", 1750, paint.face),
         Part("hair", made["hair"], "skullbase", 700, paint.hair),
         Part("locks", locks_mesh, "skullbase", 800, paint.hair),
         Part("braid", made["braid"], "braid", 700, paint.braid),
         Part("hair ties", trims.hair_ties, "braid", 400, paint.trim),
         *_limb_parts(made["shoe"]),
-        Part("laces", trims.laces, "foot", 300, paint.rubber, mirror=True),
+        Part("laces", trims.laces, "foot", 300, paint.rubber, mirror=True, mesh=SHOES),
         Part("left eye", lambda: eye(1), "l_eyeball_joint", 2200, paint.eye(1), shade=0.0, mesh="eyes"),
         Part("right eye", lambda: eye(-1), "r_eyeball_joint", 2200, paint.eye(-1), shade=0.0, mesh="eyes"),
         Part("lid", lambda: lid(True), "eyelid_joint", 1300, paint.lid, mirror=True, shade=0.0, mesh="eyelids"),
@@ -178,15 +205,32 @@ def _limb_parts(shoe: Callable[[], Lofted]) -> list[Part]:
     return [
         Part("shoe", shoe, "foot", 0, paint.plain, mirror=True, tint="foot"),
         Part("wristband", trims.wristband, "heat", 0, paint.plain, mirror=True, tint="hand"),
-        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, mirror=True),
-        Part("sole", trims.sole, "foot", 400, paint.rubber, mirror=True),
+        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, mirror=True, mesh=SHOES),
+        Part("sole", trims.sole, "foot", 400, paint.rubber, mirror=True, mesh=SHOES),
+        Part("sock", _sock(), "foot", 200, paint.sock, mirror=True, shade=0.0, mesh=SHOES),
     ]
+
+
+def heel_parts() -> list[Part]:
+    """What she wears on her feet with `--gait heels`, in place of what is called shoe or `SHOES`."""
+    box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
+    upper = of_shape(heels.upper(), box, 0.0025, even(0.0140))
+    return [
+        Part("shoe", upper, "foot", 0, paint.plain, mirror=True, tint="foot"),
+        Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, mirror=True, mesh=SHOES),
+        Part("sole", heels.sole, "foot", 400, paint.leather, mirror=True, shade=0.0, mesh=SHOES),
+        Part("sock", _sock(), "foot", 200, paint.sock, mirror=True, shade=0.0, mesh=SHOES),
+    ]
+
+
+def _sock() -> Callable[[], Lofted]:
+    return of_shape(body.sock(), ((0.04, 0.11, -0.07), (0.14, 0.14, 0.03)), 0.003, even(0.020))
 
 
 def mannequin_parts() -> list[Part]:
     """A plain figure that shows the pose: one skin with its joints marked, and the limbs' colours."""
     fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0105, 0.0085], lambda p: np.abs(p[:, 0]))
-    make = of_shape(body.figure(), ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16)), 0.0055, fine)
+    make = of_shape(body.figure(), ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16)), 0.0055, fine_between_legs(fine))
     figure = Part("figure", make, "heat", 700, paint.figure, shade=0.0, ankles=True)
     return [figure, *_limb_parts(surfaces()["shoe"])]
 

@@ -8,7 +8,7 @@ import numpy as np
 from build_character_body import FRONT, HIP, PALM, UP, on_arm
 from build_character_loft import Lofted, band, joined, loft, rope, section
 from build_character_mesh import gradient
-from build_character_sdf import Array, spline
+from build_character_sdf import Array, Shape, spline
 
 RIGHT = np.array([1.0, 0.0, 0.0])
 
@@ -16,11 +16,6 @@ RIGHT = np.array([1.0, 0.0, 0.0])
 def hem() -> Lofted:
     curve, out, _ = section(body.shirt_cloth(), (0, body.HEM + 0.005, -0.012), RIGHT, FRONT, 36)
     return band(curve, out, 0.026, 0.0070)
-
-
-def cuff() -> Lofted:
-    curve, out, _ = section(body.shirt_cloth(), on_arm(body.SLEEVE_END - 0.006), PALM, FRONT, 22, 0.08)
-    return band(curve, out, 0.019, 0.0065)
 
 
 def collar() -> Lofted:
@@ -66,16 +61,20 @@ def shoe_collar() -> Lofted:
     return band(curve - 0.002 * out, out, 0.016, 0.0095, lean=-0.1)
 
 
-def sole() -> Lofted:
-    """White rubber with a flat bottom on y = 0, higher at the toe, where it is the shoe's cap."""
-    x = HIP[0]
+def outline() -> Array:
+    """The shoe from below: x from its middle and z, (n, 2)."""
     out = [
         (0.0000, 0.1830), (0.0200, 0.1760), (0.0345, 0.1600), (0.0425, 0.1380), (0.0465, 0.1100), (0.0465, 0.0820),
         (0.0450, 0.0500), (0.0435, 0.0150), (0.0430, -0.0200), (0.0405, -0.0450), (0.0315, -0.0650), (0.0165, -0.0765),
         (0.0000, -0.0790),
     ]  # fmt: skip
     inner = [(-w * (1.03 if z > 0.06 else 0.98), z) for w, z in out[-2:0:-1]]
-    ring = spline([*out, *inner, out[0]], 1)[:-1]
+    return spline([*out, *inner, out[0]], 1)[:-1]
+
+
+def sole() -> Lofted:
+    """White rubber with a flat bottom on y = 0, higher at the toe, where it is the shoe's cap."""
+    x, ring = HIP[0], outline()
     z = ring[:, 1]
     toe = np.clip((z - 0.115) / 0.055, 0, 1) ** 1.3
     rise = np.clip((z - 0.12) / 0.06, 0, 1) ** 2 * 0.004
@@ -92,12 +91,12 @@ def sole() -> Lofted:
         centre = np.array([0.0, 0.05])
         flat = centre + (ring - centre) * scale
         rings.append(np.stack([x + flat[:, 0], np.broadcast_to(y, len(z)), flat[:, 1]], axis=1))
-    return loft([*rings, _around_upper(ring + np.array([x, 0.0]), high + 0.002)])
+    return loft([*rings, around(body.shoe_upper(), ring + np.array([x, 0.0]), high + 0.002)])
 
 
-def _around_upper(ring: Array, y: Array) -> Array:
-    """The line where the rubber meets the upper: along each ray from the middle, 2 mm outside its surface."""
-    shape, middle = body.shoe_upper(), np.array([HIP[0], 0.05])
+def around(shape: Shape, ring: Array, y: Array) -> Array:
+    """The line where a sole meets the upper: along each ray from the middle, 2 mm outside its surface."""
+    middle = np.array([HIP[0], 0.05])
     low, high = np.zeros(len(ring)), np.ones(len(ring))
     length = np.linalg.norm(ring - middle, axis=1)
     for _ in range(40):

@@ -184,7 +184,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     feet = both_feet(plan.feet, at, context.settings.step.heel_drop)
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
     free *= 1.0 - hold_share(plan.grips, at, context.settings.bar.reach_time).max(axis=1)
-    doing = Doing(stepping(feet, context.settings), free, plan.lead)
+    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last)
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)

@@ -13,7 +13,9 @@ from dancetutor_cli.resources import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
 DANCER = "dancer"  # who dances where nobody else is asked for
-BUILT_IN = (DANCER, "mannequin")
+IN_HEELS = "dancer-heels"  # the same dancer in heels.glb, whose shoes stand in for hers
+BUILT_IN = (DANCER, "mannequin", IN_HEELS)
+_SHOES = ("left shoe", "right shoe", "shoes")  # her meshes that other shoes stand in for
 SUFFIXES = (".glb", ".vrm")
 
 
@@ -51,8 +53,16 @@ def check_character(name_or_path: str) -> str:
     return str(Path(name_or_path).absolute())
 
 
+def dressed(name: str, gait: str) -> str:
+    """Who dances: who walks in heels (`--gait heels`) wears them, if she is the project's own dancer."""
+    return IN_HEELS if name == DANCER and gait == "heels" else name
+
+
 def _built_in(name: str) -> Character:
-    character = read_character(DATA / f"{name}.glb")
+    character = read_character(DATA / f"{DANCER if name == IN_HEELS else name}.glb")
+    if name == IN_HEELS:
+        kept = (mesh for mesh in character.meshes if mesh.name not in _SHOES)
+        character = replace(character, name=name, meshes=(*kept, *read_character(DATA / "heels.glb").meshes))
     return replace(character, meshes=tuple(_coloured(mesh) for mesh in character.meshes))
 
 

@@ -87,7 +87,7 @@ def command(
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
     capture; .json, only the moves: what moves when, from where to where.
     """
-    from dancetutor_cli.character import DANCER, load_character
+    from dancetutor_cli.character import DANCER, dressed, load_character
     from dancetutor_cli.jobs.bake import BakeTask, ask
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
@@ -101,7 +101,7 @@ def command(
         check_file(Path(report_to))
     if character != DANCER and output is not None and output.suffix.lower() == ".json":
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
-    dances = load_character(character)
+    dances = load_character(dressed(character, gait))
     task = BakeTask(
         one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs, motion
     )  # fmt: skip

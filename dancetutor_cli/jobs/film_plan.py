@@ -42,6 +42,7 @@ class Prepared:
 
 def prepare(request: Request, subject: Subject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
+    from dancetutor_cli.character import dressed
     from dancetutor_cli.lint.solved import solved_chart
 
     song, chart, clock = subject.song, subject.chart, subject.clock
@@ -59,7 +60,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     start, end = clock.passes[0].start, clock.passes[-1].end
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
-    character, motions = _fitted(request.character, _motions(request, subject, play, pad))
+    character, motions = _fitted(dressed(request.character, request.gait), _motions(request, subject, play, pad))
     plan = FilmPlan(
         look=request.look,
         clock=clock,

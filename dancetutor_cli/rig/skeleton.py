@@ -40,6 +40,7 @@ class Skeleton:
 
 
 EYELID_CLOSING = 66.0  # degrees about +x that close the dancer's upper lids; the rest pose has them open
+JAW_LAUGH = 11.0  # degrees about +x that open her mouth to a laugh; at rest she smiles
 
 _DOWN = np.sqrt(0.5)
 _LEFT_SIDE: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
@@ -61,6 +62,7 @@ _MIDDLE: tuple[tuple[str, str | None, tuple[float, float, float]], ...] = (
     ("vt4", "vt10", (0.0, 1.290, -0.028)),
     ("vc4", "vt4", (0.0, 1.450, -0.018)),
     ("skullbase", "vc4", (0.0, 1.525, 0.002)),
+    ("temporomandibular", "skullbase", (0.0, 1.552, 0.015)),
     ("braid1", "skullbase", (0.0, 1.628, -0.116)),
     ("braid2", "braid1", (0.0, 1.515, -0.150)),
     ("braid3", "braid2", (0.0, 1.405, -0.155)),
@@ -74,11 +76,12 @@ ORDER = (
     "vc4", "skullbase",
     *(f"{s}_{n}" for s in "lr" for n in ("eyeball_joint", "eyelid_joint")),
     "braid1", "braid2", "braid3", "braid4",
+    "temporomandibular",
 )  # fmt: skip
 
 
 def dancer_skeleton() -> Skeleton:
-    """The skeleton of the project's own dancer: 1.70 m tall, 30 joints."""
+    """The skeleton of the project's own dancer: 1.70 m tall, 31 joints."""
     world: dict[str, tuple[str | None, tuple[float, float, float]]] = {n: (p, x) for n, p, x in _MIDDLE}
     for name, parent, (x, y, z) in _LEFT_SIDE:
         world[name] = (parent, (x, y, z))

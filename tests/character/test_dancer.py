@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_character, load_dancer
+from dancetutor_cli.character import dressed, load_character, load_dancer
 from dancetutor_cli.character.model import Character, Mesh
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.errors import UsageError
@@ -175,6 +175,54 @@ def test_the_build_gives_the_same_bytes(tmp_path: Path) -> None:
         pytest.skip("scikit-image is not here; `make character` sets it up")
     command = [python, str(ROOT / "tools" / "build_character.py"), str(tmp_path)]
     subprocess.run(command, check=True, capture_output=True, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)})
-    for name in ("dancer", "mannequin"):
+    for name in ("dancer", "mannequin", "heels"):
         kept = ROOT / "dancetutor_cli" / "character" / "data" / f"{name}.glb"
         assert (tmp_path / f"{name}.glb").read_bytes() == kept.read_bytes(), f"{name}.glb differs: run make character"
+
+
+def test_heels_stand_in_for_the_flat_shoes_and_nothing_else() -> None:
+    flat, heels = load_character("dancer"), load_character(dressed("dancer", "heels"))
+    assert dressed("dancer", "flat") == "dancer"
+    assert dressed("mannequin", "heels") == "mannequin"
+    assert sorted(m.name for m in heels.meshes) == sorted(m.name for m in flat.meshes)
+    same = {m.name for m in flat.meshes if np.array_equal(m.positions, mesh_named(heels, m.name).positions)}
+    assert {m.name for m in flat.meshes} - same == {"left shoe", "right shoe", "shoes"}
+    boots = np.concatenate([mesh_named(heels, name).positions for name in ("left shoe", "right shoe", "shoes")])
+    assert abs(boots[:, 1].min()) < 1e-3
+    arch = boots[np.abs(boots[:, 2] - 0.005) < 0.012]
+    assert arch[:, 1].min() > 0.02, "light comes through between sole and heel"
+
+
+def test_the_jaw_opens_the_mouth_and_leaves_the_eyes_and_the_throat() -> None:
+    dancer = load_dancer()
+    body = mesh_named(dancer, "body")
+    turns = {"temporomandibular": quat.from_axis_angle(np.array([1.0, 0, 0]), np.asarray(np.radians(11)))}
+    moved = np.linalg.norm(skinned(dancer, turns, body) - body.positions, axis=1)
+    x, y, z = body.positions.T
+    chin = (np.abs(x) < 0.01) & (y > 1.49) & (y < 1.51) & (z > 0.06)
+    assert moved[chin].min() > 0.008
+    assert moved[(y > 1.55) | (y < 1.45)].max() < 1e-6
+
+
+def test_cuffs_are_part_of_the_sleeves() -> None:
+    """Rings of their own came off the cloth: where the sleeve ends there is one closed piece, the shirt's."""
+    body = mesh_named(load_dancer(), "body")
+    _, place = np.unique(np.round(body.positions * 1e5).astype(np.int64), axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    label = np.arange(place.max() + 1)
+    triangles = place[body.triangles]
+    for _ in range(400):
+        lowest, before = label[triangles].min(axis=1), label.copy()
+        for k in range(3):
+            np.minimum.at(label, triangles[:, k], lowest)
+        label = label[label]
+        if (label == before).all():
+            break
+    way = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0])
+    from_shoulder = np.abs(body.positions) * [1, 1, 0] + body.positions * [0, 0, 1] - [0.160, 1.380, -0.015]
+    along = from_shoulder @ way
+    off = np.linalg.norm(from_shoulder - along[:, None] * way, axis=1)
+    cuff = (along > 0.106) & (along < 0.119) & (off > 0.042) & (off < 0.07)
+    trunk = np.linalg.norm(body.positions - [0.0, 1.15, 0.08], axis=1).argmin()
+    assert cuff.sum() > 40
+    assert set(label[place[cuff]]) == {label[place[trunk]]}

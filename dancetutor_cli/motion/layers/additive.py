@@ -1,4 +1,4 @@
-"""Small movements on top of all others, multiplied in each joint's own space: breath, blinks, a bob of the head.
+"""Small movements on top of all others, multiplied in each joint's own space: breath, blinks, a laugh at the end.
 
 Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They touch no joint
 between the root and a foot, so no contact moves; while a palm is on the floor they are off.
@@ -15,13 +15,14 @@ from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.solver import Poses
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import EYELID_CLOSING, Skeleton
+from dancetutor_cli.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
 from dancetutor_cli.rig.soles import hand_direction, palm_normal
 
 Array = NDArray[np.float64]
 ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 WRIST_TIME = 5.7  # seconds in which a free hand drops and comes up
 BLINK = 0.16  # seconds from open to open
+LAUGH_AFTER, LAUGH_RISE = 0.35, 0.40  # seconds after the last contact until she begins to laugh, and until she does
 SEED = 20140513
 
 
@@ -30,12 +31,13 @@ class Doing:
     """What she does at f times, as far as layers go by it.
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
-    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead : as in `Plan`
+    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
     """
 
     stepping: Array
     free: Array
     lead: int
+    last: float
 
 
 def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
@@ -63,6 +65,8 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
     closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time)
     for side in "lr":
         _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
+    laugh = smooth(np.clip((times - doing.last - LAUGH_AFTER) / LAUGH_RISE, 0.0, 1.0))
+    _turn(skeleton, rotations, "temporomandibular", ACROSS, np.radians(JAW_LAUGH) * laugh)
 
 
 def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: Array) -> None:
