@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from dancetutor_cli.errors import FileError, UsageError
@@ -14,12 +14,17 @@ def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
     suffixes : how its name may end, in lower case; none: anyhow
     """
     if suffixes and path.suffix.lower() not in suffixes:
-        known = f"{', '.join(suffixes[:-1])} or {suffixes[-1]}" if len(suffixes) > 1 else suffixes[0]
-        raise UsageError(f"{path}: the name must end in {known}")
+        raise UsageError(f"{path}: the name must end in {one_of(suffixes)}")
     if path.is_dir():
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():
         raise FileError(path, f"its folder '{path.parent}' does not exist; make it first")
+
+
+def one_of(names: Iterable[str]) -> str:
+    """ ".svg or .png" for people."""
+    *most, last = names
+    return f"{', '.join(most)} or {last}" if most else last
 
 
 def check_folder(path: Path) -> None:

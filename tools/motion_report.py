@@ -168,9 +168,9 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
 def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
     """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
     from dancetutor_cli.bake import mines_of, report
-    from dancetutor_cli.commands.animate import as_json
     from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
     from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.reports.motion_report import as_json
 
     started = time.monotonic()
     task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset, bar=bar)

@@ -22,24 +22,22 @@ from dancetutor_cli.commands.selection import (
     selection_options,
 )
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.lint.part import FASTEST, SLOWEST
-from dancetutor_cli.targets import check_file
+from dancetutor_cli.targets import check_file, one_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import Report
-    from dancetutor_cli.character.model import Character
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.bake import Asked, BakeTask
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.jobs.bake import Asked, Dance
 
-SUFFIXES = (".glb", ".npz", ".bvh", ".json")
 _TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
 
 
 @click.command()
 @click.argument("file", type=_FILE)
-@click.option("-o", "--output", type=_FILE, help="A .glb, .npz, .bvh or .json file; default: SONG-difficulty.glb.")
+@click.option("-o", "--output", type=_FILE, help=f"A {one_of(FORMATS)} file; default: SONG-difficulty.glb.")
 @click.option(
     "--fps",
     type=click.FloatRange(1, 1000),
@@ -88,18 +86,18 @@ def command(
     capture; .json, only the moves: what moves when, from where to where.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
-    from dancetutor_cli.jobs.bake import BakeTask, ask
+    from dancetutor_cli.jobs.bake import BakeTask, Dance, ask
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
 
     if output is not None:
-        check_file(output, SUFFIXES)
+        check_file(output, tuple(FORMATS))
     if plot is not None:
         check_file(plot, (".svg", ".png"))
     if report_to not in (None, _TABLE):
         check_file(Path(report_to))
-    if character != DANCER and output is not None and output.suffix.lower() == ".json":
+    if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, gait))
     task = BakeTask(
@@ -112,9 +110,9 @@ def command(
     for note in asked.notes:
         click.echo(f"warning: {safe(note)}", err=True)
     target = output or Path(default_name(asked.song, asked.chart))
-    check_file(target, SUFFIXES)
+    check_file(target, tuple(FORMATS))
     _allow_long(asked, file, yes)
-    _bake_and_write(asked, task, target, dances, report_to, plot)
+    _write(Dance(asked, task, dances), target, report_to, plot)
 
 
 def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
@@ -125,42 +123,18 @@ def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
         confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
-def _bake_and_write(
-    asked: Asked, task: BakeTask, target: Path, character: Character, report_to: str | None, plot: Path | None
-) -> None:
-    from dancetutor_cli.jobs.bake import bake_asked, plan_asked
-
-    label = asked.chart.label
-    if target.suffix.lower() == ".json":
-        from dancetutor_cli.formats.moves_json import write_moves
-
-        plan, bar = plan_asked(asked, task)
-        write_moves(target, plan, asked.song.title, label, asked.section or (-1e9, 1e9), bar)
-        click.echo(f"{target}: the moves of {label}")
-    if target.suffix.lower() == ".json" and report_to is None and plot is None:
-        return
-    motion = bake_asked(asked, task)
-    for note in motion.notes:
-        click.echo(f"warning: {note}", err=True)
-    if target.suffix.lower() != ".json":
-        from dancetutor_cli.character.retarget import retarget
-
-        write_motion(target, retarget(motion, character), character)
-        click.echo(f"{target}: {_extent(motion, target)}, {label}")
-    if report_to is not None or plot is not None:
+def _write(dance: Dance, target: Path, report_to: str | None, plot: Path | None) -> None:
+    form = FORMATS[target.suffix.lower()]
+    measured = report_to is not None or plot is not None
+    if form.has_motion or measured:
+        for note in dance.own_motion.notes:
+            click.echo(f"warning: {note}", err=True)
+    click.echo(f"{target}: {form.write(target, dance)}, {dance.label}")
+    if measured:
         from dancetutor_cli.bake import mines_of, report
 
-        _report(report(motion, mines_of(asked.play, asked.pad)), report_to, plot)
-
-
-def _extent(motion: Motion, target: Path) -> str:
-    """How much is in a file: keys and seconds, and for what cannot say when it begins, that too."""
-    start, end = float(motion.times[0]), float(motion.times[-1])
-    if target.suffix.lower() != ".bvh":
-        return f"{len(motion.times)} keys, {end - start:.1f} s"
-    from dancetutor_cli.formats.bvh import frame_count
-
-    return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
+        asked = dance.asked
+        _report(report(dance.own_motion, mines_of(asked.play, asked.pad)), report_to, plot)
 
 
 def default_name(song: Song, chart: Chart) -> str:
@@ -170,27 +144,16 @@ def default_name(song: Song, chart: Chart) -> str:
     return f"{plain or 'dance'}.glb"
 
 
-def write_motion(path: Path, motion: Motion, character: Character) -> None:
-    """Write a motion of `character` in the format that the file's name asks for."""
-    if path.suffix.lower() == ".npz":
-        from dancetutor_cli.formats.npz import write_npz
-
-        write_npz(path, motion)
-    elif path.suffix.lower() == ".bvh":
-        from dancetutor_cli.formats.bvh import write_bvh
-
-        write_bvh(path, motion)
-    else:
-        from dancetutor_cli.formats.glb import write_glb
-
-        write_glb(path, character, motion)
-
-
 def _report(report: Report, target: str | None, plot: Path | None) -> None:
     if target is not None:
-        _print_table(report)
+        from dancetutor_cli.reports.motion_report import print_report
+
+        print_report(report)
+        for note in report.notes:
+            click.echo(f"note: {note}")
     if target is not None and target != _TABLE:
         from dancetutor_cli.files import write_atomic
+        from dancetutor_cli.reports.motion_report import as_json
 
         write_atomic(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
         click.echo(f"{target}: the report")
@@ -199,43 +162,3 @@ def _report(report: Report, target: str | None, plot: Path | None) -> None:
 
         write_plot(plot, report)
         click.echo(f"{plot}: the plot")
-
-
-def _print_table(report: Report) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title="Quality of the motion")
-    for name, justify in (("figure", "left"), ("value", "right"), ("goal", "right"), ("met", "center")):
-        table.add_column(name, justify=justify)  # type: ignore[arg-type]
-    for f in report.figures:
-        unit = f" {f.unit}" if f.unit else ""
-        goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
-        value = "nothing to measure" if f.value != f.value else f"{f.value:.4g}{unit}"
-        table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
-    Console().print(table)
-    for note in report.notes:
-        click.echo(f"note: {note}")
-
-
-def as_json(report: Report) -> dict[str, Any]:
-    """The report as plain data; a figure that could not be measured is null."""
-    figures = [
-        {
-            "name": f.name,
-            "value": None if f.value != f.value else f.value,
-            "unit": f.unit,
-            "goal": f.goal,
-            "at_least": f.at_least,
-            "met": f.met,
-        }
-        for f in report.figures
-    ]
-    errors = [None if e != e else round(float(e), 4) for e in report.contact_errors]
-    return {
-        "schema": 1,
-        "figures": figures,
-        "met": report.met,
-        "notes": list(report.notes),
-        "contact_errors_ms": errors,
-    }

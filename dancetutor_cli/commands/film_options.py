@@ -17,16 +17,14 @@ from dancetutor_cli.commands.selection import (
     number,
     section_option,
 )
-from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES
+from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.video.layout import Layout
-    from dancetutor_cli.video.media.encoder import Target
+    from dancetutor_cli.video.media.film_formats import FilmFormat
     from dancetutor_cli.video.practice import Practice
 
-RENDERERS = ("auto", "cpu", "gl")
-GIF_FPS, GIF_SIDE = 25, 480  # of GIF and WebP, where nothing else is asked for
 MOST_LATE = 60_000.0  # milliseconds that the music may be moved
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -114,7 +112,8 @@ def film_options(command: _Command) -> _Command:
     return command
 
 
-def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
+def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Request:
+    """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
     from dancetutor_cli.jobs.film_request import Request
     from dancetutor_cli.video.film_look import FilmLook
@@ -127,8 +126,8 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         from dancetutor_cli.video.overlay.fonts import font
 
         font(str(options["font"]), 24)  # refused before the work begins
-    wanted = options["size"] or _default_size(layout.size, kind)
-    size = even_size(wanted) if kind == "mp4" else wanted
+    wanted = options["size"] or _default_size(layout.size, form)
+    size = even_size(wanted) if form.h264 else wanted
     if size != wanted:
         click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
     scroll = parse_scroll(options["scroll"]) if options["scroll"] else None
@@ -146,7 +145,7 @@ def film_request(file: Path, options: dict[str, Any], kind: Target) -> Request:
         path=file,
         selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
         look=look,
-        fps=options["fps"] or (GIF_FPS if kind in ("gif", "webp") else 30),
+        fps=options["fps"] or form.fps,
         preset=options["preset"],
         section=options["section"],
         sync=options["sync_offset"] / 1000,
@@ -170,7 +169,8 @@ def _practice(options: dict[str, Any], layout: Layout) -> Practice:
     return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"])
 
 
-def _default_size(size: tuple[int, int], kind: Target) -> tuple[int, int]:
-    if kind not in ("gif", "webp"):
+def _default_size(size: tuple[int, int], form: FilmFormat) -> tuple[int, int]:
+    longer = max(size)
+    if form.side >= longer:
         return size
-    return round(size[0] * GIF_SIDE / max(size) / 2) * 2, round(size[1] * GIF_SIDE / max(size) / 2) * 2
+    return round(size[0] * form.side / longer / 2) * 2, round(size[1] * form.side / longer / 2) * 2

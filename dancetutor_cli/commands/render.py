@@ -21,9 +21,6 @@ from dancetutor_cli.targets import check_file, check_folder, make_folder
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.film_request import Request, Subject
-    from dancetutor_cli.video.media.encoder import Target
-
-LONG_GIF = 20.0  # seconds; a megabyte takes about four
 
 
 @click.command()
@@ -87,7 +84,9 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
 
 def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
     """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
-    film = output is not None and output.suffix.lower() in (".mp4", ".gif", ".webp") and not output.is_dir()
+    from dancetutor_cli.video.media.film_formats import FILES
+
+    film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
     if not path.is_dir() or not (film or options["poses"] or options["poster"] or options["srt"]):
         return path
     from dancetutor_cli.library import one_song
@@ -103,15 +102,15 @@ def _render_one(
 ) -> None:
     from dancetutor_cli.jobs.film_request import look_up
     from dancetutor_cli.lint.presets import choice_for
-    from dancetutor_cli.video.media.encoder import target_of
+    from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES, target_of
 
-    kind: Target = "png" if folder is not None else "mp4" if output is None else target_of(output)
+    kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
     for file in (output, options["poster"]):
         if file is not None:
             check_file(file)
     if folder is not None:
         check_folder(folder)
-    request = film_request(path, options, kind)
+    request = film_request(path, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
     tell_of_compiling(choice_for(path, request.preset), end - start, quiet=quiet)
@@ -149,13 +148,14 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
     confirm_long(what, "Render")
 
 
-def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet: bool, options: dict[str, Any]) -> None:
+def _make(request: Request, subject: Subject, target: Path, kind: str, quiet: bool, options: dict[str, Any]) -> None:
     from dancetutor_cli.jobs.film_plan import Prepared, prepare
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.reports.progress import FilmProgress
     from dancetutor_cli.video import extras
     from dancetutor_cli.video.media.encoder import Encoding
+    from dancetutor_cli.video.media.film_formats import PICTURES
     from dancetutor_cli.video.media.probe import choose
 
     def prepared() -> Prepared:
@@ -163,11 +163,12 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
         return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
 
     _warn(subject.warnings)
-    if kind in ("gif", "webp") and subject.clock.seconds > LONG_GIF:
+    encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
+    if subject.clock.seconds > encoding.format.largest:
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
         click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
-    encoder = choose(options["encoder"]) if kind == "mp4" else "x264"
-    encoding = Encoding(kind, request.look.size, request.fps, request.look.quality, encoder)
+    if encoding.format.h264:
+        encoding = replace(encoding, encoder=choose(options["encoder"]))
     with FilmProgress(target.name, quiet) as progress:
         film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
     _warn(film.warnings)
@@ -179,7 +180,7 @@ def _make(request: Request, subject: Subject, target: Path, kind: Target, quiet:
         _warn([warning])
     if not quiet:
         width, height = request.look.size
-        length = f"{film.plan.clock.frames} pictures" if kind == "png" else f"{film.plan.clock.seconds:.1f} s"
+        length = f"{film.plan.clock.frames} pictures" if kind == PICTURES else f"{film.plan.clock.seconds:.1f} s"
         click.echo(f"{target}: {length}, {width}x{height} at {request.fps} fps, {subject.chart.label}")
 
 

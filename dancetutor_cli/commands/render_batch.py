@@ -65,15 +65,17 @@ def _batch(
 ) -> BatchRequest:
     from dancetutor_cli.jobs.film_list import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
     from dancetutor_cli.video.media.encoder import Encoding
+    from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES
     from dancetutor_cli.video.media.probe import choose
 
-    request = film_request(path, options, "png" if frames else "mp4")
+    kind = PICTURES if frames else "mp4"
+    request = film_request(path, options, FORMATS[kind])
     look = request.look
     encoder = choose(options["encoder"]) if frames is None else "x264"
     return BatchRequest(
         paths=(path,),
         request=request,
-        encoding=Encoding("png" if frames else "mp4", look.size, request.fps, look.quality, encoder),
+        encoding=Encoding(kind, look.size, request.fps, look.quality, encoder),
         folder=frames or output or Path("videos"),
         name=options["name"] or DEFAULT_NAME,
         meters=parse_meters(options["meter"]) if options["meter"] else None,

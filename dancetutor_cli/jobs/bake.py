@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from dancetutor_cli.lint.part import check_part, part_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
+    from dancetutor_cli.character.model import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
@@ -171,3 +173,44 @@ def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Pla
     play = solved_chart(song, chart, preset).play
     assert play is not None
     return play, pad
+
+
+@dataclass
+class Dance:
+    """What is asked for, made when it is first wanted; as `formats.writers.Dance` describes it."""
+
+    asked: Asked
+    task: BakeTask
+    character: Character
+
+    @property
+    def title(self) -> str:
+        """Of the song."""
+        return self.asked.song.title
+
+    @property
+    def label(self) -> str:
+        """Of the chart, for people."""
+        return self.asked.chart.label
+
+    @property
+    def section(self) -> tuple[float, float]:
+        """First and last second that is wanted."""
+        return self.asked.section or (-math.inf, math.inf)
+
+    @cached_property
+    def own_motion(self) -> Motion:
+        """The motion of the project's own dancer, whoever dances."""
+        return bake_asked(self.asked, self.task)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The motion for the character's skeleton."""
+        from dancetutor_cli.character.retarget import retarget
+
+        return retarget(self.own_motion, self.character)
+
+    @cached_property
+    def moves(self) -> tuple[Plan, Bar | None]:
+        """Only the moves, and the bar that she holds."""
+        return plan_asked(self.asked, self.task)

@@ -14,6 +14,7 @@ from dancetutor_cli.jobs.film_request import Request
 from dancetutor_cli.jobs.film_work import FilmJob
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.media.film_formats import PICTURES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -127,7 +128,7 @@ def _charts(batch: BatchRequest, song: Song) -> Iterator[Chart]:
 
 
 def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> FilmJob:
-    suffix = "" if batch.encoding.target == "png" else f".{batch.encoding.target}"
+    suffix = "" if batch.encoding.target == PICTURES else f".{batch.encoding.target}"
     stem = file_name(batch.name, song, chart)
     name, number = stem, 2
     while name.lower() in taken:  # two charts of one name; file systems may not tell upper from lower case

@@ -21,6 +21,7 @@ from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.jobs.film_request import Request, look_up
 from dancetutor_cli.jobs.pool import Report, Task
 from dancetutor_cli.video.media.encoder import Encoding, join
+from dancetutor_cli.video.media.film_formats import PICTURES
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
@@ -138,7 +139,7 @@ def open_film(report: Report, job: FilmJob) -> Opened:
             shutil.rmtree(folder, ignore_errors=True)
         raise FileError(job.output, f"cannot be written: {error.strerror or error}") from error
     parts = tuple(segments(frames, job.encoding, folder))
-    missing = tuple(part for part in parts if job.encoding.target == "png" or not part.path.exists())
+    missing = tuple(part for part in parts if job.encoding.target == PICTURES or not part.path.exists())
     return Opened(key, folder, plan, parts, missing, sound, frames, (*subject.warnings, *prepared.warnings))
 
 
@@ -173,7 +174,7 @@ def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
     step = max(1, round(SEGMENT_SECONDS * encoding.fps))
     out = []
     for number, first in enumerate(range(0, frames, step)):
-        name = "frames" if encoding.target == "png" else f"segment_{number:05d}{encoding.suffix}"
+        name = "frames" if encoding.target == PICTURES else f"segment_{number:05d}{encoding.format.segment}"
         out.append(Segment(number, first, min(first + step, frames), folder / name))
     return out
 
@@ -225,8 +226,8 @@ def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encod
 
     film = _film(plan)
     part = segment.path
-    if encoding.target != "png":
-        part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.suffix}")
+    if encoding.target != PICTURES:
+        part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.format.segment}")
     try:
         encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
         if part != segment.path:
@@ -266,7 +267,7 @@ def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | 
     """The sound track as a WAV file in `folder`; None for a silent film."""
     from dancetutor_cli.video.media import sound
 
-    if encoding.target != "mp4" or prepared.sound is None:
+    if not encoding.format.has_sound or prepared.sound is None:
         return None
     path = folder / "sound.wav"
     sound.write_wav(sound.mix(prepared.sound, prepared.plan.clock), path)
@@ -275,7 +276,7 @@ def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | 
 
 def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
     """Join the segments and put the result in its place."""
-    if encoding.target == "png":
+    if encoding.target == PICTURES:
         _place_pictures(parts[0].path, output)
         return
     film = folder / f"film.{encoding.target}"

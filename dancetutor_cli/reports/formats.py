@@ -3,11 +3,35 @@
 from __future__ import annotations
 
 import sys
-from typing import IO
+from collections.abc import Callable
+from importlib import import_module
+from typing import IO, Any, NamedTuple
 
 from dancetutor_cli.reports import Report
 
-FORMATS = ("text", "json", "jsonl", "csv", "sarif", "github", "gitlab", "junit")
+
+class Format(NamedTuple):
+    """module, kind : where the report is, and its class
+
+    given : what that is made with, of `_GIVEN`: "text" (standard output in UTF-8), "terminal" (with "?" for what it
+    cannot show), "bytes", "errors" (standard error), "preset" (name of the cost preset)
+    """
+
+    module: str
+    kind: str
+    given: tuple[str, ...] = ("text",)
+
+
+FORMATS = {
+    "text": Format("text", "TextReport", ("terminal", "errors")),
+    "json": Format("json_report", "JsonReport", ("bytes", "preset")),
+    "jsonl": Format("jsonl", "JsonLinesReport"),
+    "csv": Format("csv_report", "CsvReport", ("text", "errors")),
+    "sarif": Format("sarif", "SarifReport"),
+    "github": Format("github", "GithubReport"),
+    "gitlab": Format("gitlab", "GitlabReport"),
+    "junit": Format("junit", "JunitReport"),
+}
 
 
 def open_brief_report(files: int, *, known: bool, statistics: bool) -> Report:
@@ -21,38 +45,19 @@ def open_brief_report(files: int, *, known: bool, statistics: bool) -> Report:
 
 def open_report(name: str, preset: str) -> Report:
     """A report in this format on standard output. `preset` is the cost preset's name."""
-    if name == "json":
-        from dancetutor_cli.reports.json_report import JsonReport
+    form = FORMATS[name]
+    kind = getattr(import_module(f"dancetutor_cli.reports.{form.module}"), form.kind)
+    report: Report = kind(*(_GIVEN[what](preset) for what in form.given))
+    return report
 
-        return JsonReport(sys.stdout.buffer, preset)
-    stream = _utf8_or_replacing(sys.stdout, utf8=name != "text")
-    if name == "text":
-        from dancetutor_cli.reports.text import TextReport
 
-        return TextReport(stream, sys.stderr)
-    if name == "csv":
-        from dancetutor_cli.reports.csv_report import CsvReport
-
-        return CsvReport(stream, sys.stderr)
-    if name == "jsonl":
-        from dancetutor_cli.reports.jsonl import JsonLinesReport
-
-        return JsonLinesReport(stream)
-    if name == "sarif":
-        from dancetutor_cli.reports.sarif import SarifReport
-
-        return SarifReport(stream)
-    if name == "github":
-        from dancetutor_cli.reports.github import GithubReport
-
-        return GithubReport(stream)
-    if name == "gitlab":
-        from dancetutor_cli.reports.gitlab import GitlabReport
-
-        return GitlabReport(stream)
-    from dancetutor_cli.reports.junit import JunitReport
-
-    return JunitReport(stream)
+_GIVEN: dict[str, Callable[[str], Any]] = {
+    "text": lambda _: _utf8_or_replacing(sys.stdout, utf8=True),
+    "terminal": lambda _: _utf8_or_replacing(sys.stdout, utf8=False),
+    "bytes": lambda _: sys.stdout.buffer,
+    "errors": lambda _: sys.stderr,
+    "preset": lambda preset: preset,
+}
 
 
 def _utf8_or_replacing(stream: IO[str], *, utf8: bool) -> IO[str]:

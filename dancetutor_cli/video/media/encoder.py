@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,14 +9,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.errors import FileError
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.media import ffmpeg, probe
+from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES, FilmFormat, Joining
 
 if TYPE_CHECKING:
     from dancetutor_cli.video.picture import Frame
 
-Target = Literal["mp4", "gif", "webp", "png"]
 Encoder = Literal["x264", "nvenc", "vaapi"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}
@@ -29,21 +28,21 @@ _TAGGED = "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=b
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How a film is written. size : (width, height), even for "mp4"; fps : frames per second."""
+    """How a film is written. target : of `film_formats.FORMATS`; size : (width, height), even for H.264."""
 
-    target: Target
+    target: str
     size: tuple[int, int]
     fps: int
     quality: Quality = "good"
     encoder: Encoder = "x264"
 
     @property
-    def suffix(self) -> str:
-        """Suffix of a segment's file. Segments of GIF and WebP are kept without loss until the palette is known."""
-        return {"mp4": ".mp4", "png": ""}.get(self.target, ".mkv")
+    def format(self) -> FilmFormat:
+        """What is known of the target."""
+        return FORMATS[self.target]
 
     def _codec(self) -> Sequence[str]:
-        if self.target == "mp4":
+        if self.format.h264:
             scale = ("-video_track_timescale", str(self.fps * 512))
             return (*_h264(self.encoder, self.quality, 4 * self.fps), *scale, *_BT709)
         return ("-c:v", "libx264rgb", "-preset", "ultrafast", "-qp", "0")
@@ -61,29 +60,19 @@ def _h264(encoder: Encoder, quality: Quality, group: int) -> Sequence[str]:
     return ("-vf", _TAGGED, "-c:v", "libx264", *level, "-x264-params", "open-gop=0")
 
 
-def target_of(path: Path) -> Target:
-    """What the name of an output file asks for; UsageError lists what there is."""
-    found = re.fullmatch(r"\.(mp4|gif|webp)", path.suffix.lower())
-    if not found:
-        raise UsageError(
-            f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in .mp4, .gif or .webp"
-        )
-    return found[1]  # type: ignore[return-value]
-
-
 def even_size(size: tuple[int, int]) -> tuple[int, int]:
     """Size rounded up to even numbers, which H.264 needs."""
     return size[0] + size[0] % 2, size[1] + size[1] % 2
 
 
 def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, first: int = 0) -> None:
-    """Write frames, uint8 (h, w, 3), to one segment; for "png" into the folder `path`, numbered from `first`.
+    """Write frames, uint8 (h, w, 3), to one segment; pictures into the folder `path`, numbered from `first`.
 
     Only here numba is needed, which an encoding that is only described must not bring.
 
     Raises EncoderError with ffmpeg's own words if it dies, FileError if a picture cannot be written.
     """
-    if encoding.target == "png":
+    if encoding.target == PICTURES:
         path.mkdir(exist_ok=True)
         for number, frame in enumerate(frames, first):
             save_picture(frame, path / f"frame_{number:06d}.png")
@@ -91,7 +80,7 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
     from dancetutor_cli.video.media.yuv import yuv420
 
     width, height = encoding.size
-    planes = encoding.target == "mp4"
+    planes = encoding.format.h264
     pixels = "yuv420p" if planes else "rgb24"
     raw = ("-f", "rawvideo", "-pix_fmt", pixels, "-s", f"{width}x{height}", "-r", str(encoding.fps), "-i", "pipe:0")
     device = probe.DEVICE.get("h264_vaapi", ()) if encoding.encoder == "vaapi" else ()
@@ -118,23 +107,8 @@ def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work:
     listing = work / "segments.txt"
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
-    source = (*ffmpeg.INPUT_GUARD, "-f", "concat", "-safe", "0", "-i", ffmpeg.local(listing))
-    if encoding.target == "mp4":
-        with_sound: tuple[str, ...] = ()
-        if sound is not None:
-            with_sound = (*ffmpeg.INPUT_GUARD, "-i", ffmpeg.local(sound))
-        codec = ("-c:v", "copy", "-c:a", "aac", "-b:a", "192k", "-threads", "1")
-        tidy = ("-map_metadata", "-1", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4")
-        ffmpeg.run(("-y", *source, *with_sound, *codec, *tidy, ffmpeg.local(output)), "writing the film")
-    elif encoding.target == "gif":
-        palette = work / "palette.png"
-        ffmpeg.run(("-y", *source, "-vf", "palettegen=stats_mode=diff", ffmpeg.local(palette)), "choosing colours")
-        mix = "[0:v][1:v]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
-        images = ("-i", ffmpeg.local(palette), "-lavfi", mix, "-loop", "0", "-f", "gif")
-        ffmpeg.run(("-y", *source, *images, ffmpeg.local(output)), "writing the GIF")
-    else:
-        webp = ("-c:v", "libwebp_anim", "-q:v", "72", "-compression_level", "4", "-loop", "0", "-f", "webp")
-        ffmpeg.run(("-y", *source, *webp, ffmpeg.local(output)), "writing the WebP")
+    assert encoding.format.join is not None, "pictures are not joined"
+    encoding.format.join(Joining(listing, sound, work, output))
 
 
 def _quoted(path: Path) -> str:

@@ -1,0 +1,103 @@
+"""The formats of `animate`: from the suffix of a file to what writes it.
+
+A new format is a function here that imports its module, and a line in `FORMATS`; options and help follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.motion.model import Bar, Motion
+    from dancetutor_cli.motion.plan import Plan
+
+
+class Dance(Protocol):
+    """What a format may ask for; motion and moves are made when they are first asked for."""
+
+    @property
+    def title(self) -> str:
+        """Of the song."""
+
+    @property
+    def label(self) -> str:
+        """Of the chart, for people."""
+
+    @property
+    def section(self) -> tuple[float, float]:
+        """First and last second that is wanted."""
+
+    @property
+    def character(self) -> Character:
+        """Who dances."""
+
+    @property
+    def motion(self) -> Motion:
+        """The motion, for the character's skeleton."""
+
+    @property
+    def moves(self) -> tuple[Plan, Bar | None]:
+        """What moves when, and the bar that she holds; needs no motion."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotionFormat:
+    """write : writes the file, FileError if that fails; returns how much is in it, for people
+
+    has_motion : whether it holds a motion, so that it matters who dances
+    """
+
+    write: Callable[[Path, Dance], str]
+    has_motion: bool = True
+
+
+def _glb(path: Path, dance: Dance) -> str:
+    from dancetutor_cli.formats.glb import write_glb
+
+    write_glb(path, dance.character, dance.motion)
+    return _keys(dance.motion)
+
+
+def _npz(path: Path, dance: Dance) -> str:
+    from dancetutor_cli.formats.npz import write_npz
+
+    write_npz(path, dance.motion)
+    return _keys(dance.motion)
+
+
+def _bvh(path: Path, dance: Dance) -> str:
+    from dancetutor_cli.formats.bvh import frame_count, write_bvh
+
+    motion = dance.motion
+    write_bvh(path, motion)
+    start, end = _span(motion)  # the file itself cannot say when it begins
+    return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
+
+
+def _moves(path: Path, dance: Dance) -> str:
+    from dancetutor_cli.formats.moves_json import write_moves
+
+    plan, bar = dance.moves
+    write_moves(path, plan, dance.title, dance.label, dance.section, bar)
+    return "the moves"
+
+
+def _keys(motion: Motion) -> str:
+    start, end = _span(motion)
+    return f"{len(motion.times)} keys, {end - start:.1f} s"
+
+
+def _span(motion: Motion) -> tuple[float, float]:
+    return float(motion.times[0]), float(motion.times[-1])
+
+
+FORMATS = {
+    ".glb": MotionFormat(_glb),
+    ".npz": MotionFormat(_npz),
+    ".bvh": MotionFormat(_bvh),
+    ".json": MotionFormat(_moves, has_motion=False),
+}

@@ -1,0 +1,47 @@
+"""The quality report of a motion: a table for people, plain data for programs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dancetutor_cli.bake import Report
+
+
+def print_report(report: Report) -> None:
+    """The figures as a table on standard output."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="Quality of the motion")
+    for name, justify in (("figure", "left"), ("value", "right"), ("goal", "right"), ("met", "center")):
+        table.add_column(name, justify=justify)  # type: ignore[arg-type]
+    for f in report.figures:
+        unit = f" {f.unit}" if f.unit else ""
+        goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
+        value = "nothing to measure" if f.value != f.value else f"{f.value:.4g}{unit}"
+        table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
+    Console().print(table)
+
+
+def as_json(report: Report) -> dict[str, Any]:
+    """The report as plain data; a figure that could not be measured is null."""
+    figures = [
+        {
+            "name": f.name,
+            "value": None if f.value != f.value else f.value,
+            "unit": f.unit,
+            "goal": f.goal,
+            "at_least": f.at_least,
+            "met": f.met,
+        }
+        for f in report.figures
+    ]
+    errors = [None if e != e else round(float(e), 4) for e in report.contact_errors]
+    return {
+        "schema": 1,
+        "figures": figures,
+        "met": report.met,
+        "notes": list(report.notes),
+        "contact_errors_ms": errors,
+    }

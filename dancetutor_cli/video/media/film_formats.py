@@ -1,0 +1,90 @@
+"""The formats of `render`: from the suffix of a file to how its pictures are encoded and joined.
+
+A new format is an entry of `FORMATS` with a function that joins segments; options and defaults follow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.targets import one_of
+from dancetutor_cli.video.media import ffmpeg
+
+
+class Joining(NamedTuple):
+    """What a film is joined of. listing : a list of segments for ffmpeg; sound : a WAV file or None
+
+    work : folder for what that needs; output : the film
+    """
+
+    listing: Path
+    sound: Path | None
+    work: Path
+    output: Path
+
+    @property
+    def source(self) -> tuple[str, ...]:
+        """ffmpeg's options for the pictures."""
+        return (*ffmpeg.INPUT_GUARD, "-f", "concat", "-safe", "0", "-i", ffmpeg.local(self.listing))
+
+
+@dataclass(frozen=True, slots=True)
+class FilmFormat:
+    """A kind of film.
+
+    join : makes the film of its segments; None: there is nothing to join, pictures lie in a folder
+    segment : suffix of a segment's file
+    h264 : segments are H.264 with colours as players want them, sizes even; else without loss, RGB, until joined
+    fps : frames a second unless something else is asked for; side : so long is the longer side then at most, pixels
+    largest : seconds of film after which the file is said to be very large
+    """
+
+    join: Callable[[Joining], None] | None
+    segment: str
+    h264: bool = False
+    has_sound: bool = False
+    fps: int = 30
+    side: float = math.inf
+    largest: float = math.inf
+
+
+def _mp4(parts: Joining) -> None:
+    sound = () if parts.sound is None else (*ffmpeg.INPUT_GUARD, "-i", ffmpeg.local(parts.sound))
+    codec = ("-c:v", "copy", "-c:a", "aac", "-b:a", "192k", "-threads", "1")
+    tidy = ("-map_metadata", "-1", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4")
+    ffmpeg.run(("-y", *parts.source, *sound, *codec, *tidy, ffmpeg.local(parts.output)), "writing the film")
+
+
+def _gif(parts: Joining) -> None:
+    palette = ffmpeg.local(parts.work / "palette.png")
+    ffmpeg.run(("-y", *parts.source, "-vf", "palettegen=stats_mode=diff", palette), "choosing colours")
+    mix = "[0:v][1:v]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
+    images = ("-i", palette, "-lavfi", mix, "-loop", "0", "-f", "gif")
+    ffmpeg.run(("-y", *parts.source, *images, ffmpeg.local(parts.output)), "writing the GIF")
+
+
+def _webp(parts: Joining) -> None:
+    images = ("-c:v", "libwebp_anim", "-q:v", "72", "-compression_level", "4", "-loop", "0", "-f", "webp")
+    ffmpeg.run(("-y", *parts.source, *images, ffmpeg.local(parts.output)), "writing the WebP")
+
+
+PICTURES = "png"  # not a file but a folder of them
+FORMATS: Mapping[str, FilmFormat] = {
+    "mp4": FilmFormat(_mp4, ".mp4", h264=True, has_sound=True),
+    "gif": FilmFormat(_gif, ".mkv", fps=25, side=480, largest=20.0),
+    "webp": FilmFormat(_webp, ".mkv", fps=25, side=480, largest=20.0),
+    PICTURES: FilmFormat(None, ""),
+}
+FILES = tuple(f".{name}" for name, form in FORMATS.items() if form.join is not None)
+
+
+def target_of(path: Path) -> str:
+    """The format that the name of an output file asks for; UsageError lists what there is."""
+    if path.suffix.lower() not in FILES:
+        raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in {one_of(FILES)}")
+    return path.suffix.lower().removeprefix(".")
