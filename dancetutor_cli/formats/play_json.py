@@ -104,7 +104,7 @@ def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, pa
 
 
 def _leave_mines(feet: Any, mines: Any, held: Any) -> None:
-    """A row of mines only: feet (2,) that stand on one go home, unless they hold their panel (cost-model.md)."""
+    """A row of mines only: feet (2,) that stand on one go home, unless they hold their panel (docs/cost-model.md)."""
     for side in (0, 1):
         if feet[side] >= 0 and mines[feet[side]] and not held[side]:
             feet[side] = -1

@@ -14,7 +14,7 @@ from dancetutor_cli.lint.model import Finding
 
 @dataclass(frozen=True, slots=True)
 class ChartResult:
-    """One analysed chart. `rows` is the JSON text of analysis-json.md's rows, None where nobody asked for it.
+    """One analysed chart. `rows` is the JSON text of its rows (docs/formats.md), None where nobody asked for it.
 
     counts : name of the move -> rows in which it happens
     playable : False if the steps type has no pad; then there are no rows and no cost

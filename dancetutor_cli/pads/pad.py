@@ -16,7 +16,7 @@ from dancetutor_cli.resources import config_path
 
 MAX_PANELS = 10  # a row of the solver packs into 64 bits
 SQUARE = 3  # panels
-HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (cost-model.md)
+HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (docs/cost-model.md)
 _KEYS = ("panels", "centre", "home", "reach")
 
 

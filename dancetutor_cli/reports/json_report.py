@@ -1,4 +1,4 @@
-"""`--format json`: the object of analysis-json.md, written file by file."""
+"""`--format json`: the object of docs/formats.md, written file by file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pads: the geometry of cost-model.md, symmetry, and what a wrong file says."""
+"""Pads: the geometry of docs/cost-model.md, symmetry, and what a wrong file says."""
 
 from __future__ import annotations
 
