@@ -88,3 +88,17 @@ def test_the_tables_of_costs_are_those_of_the_presets() -> None:
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
     assert tool.tables() in PAGES["docs/cost-model.md"], "run tools/cost_tables.py"
+
+
+CITED = re.compile(r"\bdocs/([\w-]+\.(?:md|json|svg))")
+CITING = [
+    p for part in ("dancetutor_cli", "configs", "tests", "tools") for p in sorted((ROOT / part).rglob("*.[py][ya]*"))
+]
+
+
+def test_pages_that_code_and_settings_cite_are_there() -> None:
+    found = {
+        (path, page) for path in CITING for page in CITED.findall(path.read_text(encoding="utf-8", errors="replace"))
+    }
+    assert len(found) > 20
+    assert [(path.name, page) for path, page in sorted(found) if not (ROOT / "docs" / page).exists()] == []
