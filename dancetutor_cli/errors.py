@@ -46,6 +46,10 @@ class ChartError(FileError):
     """A chart file that cannot be understood."""
 
 
+class NoChartsError(ChartError):
+    """A file of a song that nobody meant to be danced, such as the music of a menu: it has tags, but no notes."""
+
+
 class UnavailableError(DancetutorError):
     """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to mend it."""
 

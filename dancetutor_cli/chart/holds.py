@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Kind, ReadWarning
 
 TAIL = 100  # the cell '3', which is no note of its own
+OTHERS_HEAD = 102  # of a hold of another player (StepF2): no note here, nor is its end
 _KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
 _MOST = 20  # warnings of one sort; the rest is only counted
 
@@ -40,20 +41,22 @@ def joined(cells: Cells, warnings: list[ReadWarning]) -> Cells:
         cells = _last_of_each(cells, warnings)
     acting = np.flatnonzero(cells.kind != _KEYSOUND)
     kind, column = cells.kind[acting], cells.column[acting]
-    head, tail = (kind == _HOLD) | (kind == _ROLL), kind == TAIL
+    others = kind == OTHERS_HEAD
+    head, tail = (kind == _HOLD) | (kind == _ROLL) | others, kind == TAIL
     if not head.any() and not tail.any():
         return cells
     pair = np.flatnonzero(head[:-1] & tail[1:] & (column[:-1] == column[1:]))
     cells.end[acting[pair]] = cells.tick[acting[pair + 1]]
     open_head, lone_tail = head.copy(), tail.copy()
     open_head[pair] = False
+    open_head[others] = False
     lone_tail[pair + 1] = False
     for which, code, text in (
         (open_head, "unmatched-head", "a hold or roll has no end and is dropped"),
         (lone_tail, "unmatched-tail", "the end of a hold or roll has no head and is dropped"),
     ):
         report(warnings, code, text, np.sort(cells.line[acting[which]]))
-    keep = cells.kind != TAIL
+    keep = (cells.kind != TAIL) & (cells.kind != OTHERS_HEAD)
     keep[acting[open_head]] = False
     return cells[keep]
 

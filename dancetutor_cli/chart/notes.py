@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.holds import TAIL, Cells, joined, report
+from dancetutor_cli.chart import stepf2
+from dancetutor_cli.chart.holds import OTHERS_HEAD, TAIL, Cells, joined, report
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.timing import Timing
@@ -28,6 +29,7 @@ _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
+_OF_PLAYERS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
 _COUNTS = np.ones(256, dtype=bool)
 _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
@@ -172,13 +174,19 @@ class _Grid:
         if escapes:
             odd |= np.isin(np.arange(len(odd)), self._rows_at(sorted(escapes)))
         findings: dict[tuple[str, str], list[int]] = {}
+        foreign: dict[str, list[int]] = {}
         for row in np.flatnonzero(odd).tolist():
             raw = value[self.first[row] : self.last[row]]
             if escapes:
                 raw = bytes(c for at, c in enumerate(raw, int(self.first[row])) if at not in escapes)
-            kinds[row], found = _odd_row(raw, columns)
+            kinds[row], found, others = _odd_row(raw, columns)
+            for what in others:
+                foreign.setdefault(what, []).append(int(self.line[row]))
             for finding in found:
                 findings.setdefault(finding, []).append(int(self.line[row]))
+        for what, found_at in foreign.items():
+            message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
+            warnings.append(ReadWarning("compound-note", message, found_at[0]))
         for (code, text), found_at in findings.items():
             report(warnings, code, text, np.array(found_at))
         for which, code, text in (
@@ -208,18 +216,27 @@ class _Grid:
         return MeasureTable(anchor, line, self.row_first.astype(np.int32), self.row_count.astype(np.int32))
 
 
-def _odd_row(text: bytes, columns: int) -> tuple[list[int], list[tuple[str, str]]]:
-    """The cells of one row, character by character, as the games go; and what is odd about it: code, message."""
+def _odd_row(text: bytes, columns: int) -> tuple[list[int], list[tuple[str, str]], set[str]]:
+    """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
+
+    And which of `stepf2.SAID` it has.
+    """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}
+    others: set[str] = set()
     at = 0
     while at < len(text) and len(cells) < columns:
-        kind = int(_KIND[text[at]])
-        if kind == _UNKNOWN:
-            found[_unknown(text, at)] = None
-            kind = Kind.EMPTY
-        cells.append(kind)
-        at += 1
+        if foreign := stepf2.note_at(text, at, columns):
+            letter, at, what = foreign
+            others.add(what)
+            cells.append(_OF_PLAYERS.get(letter, int(_KIND[letter])))
+        else:
+            kind = int(_KIND[text[at]])
+            if kind == _UNKNOWN:
+                found[_unknown(text, at)] = None
+                kind = Kind.EMPTY
+            cells.append(kind)
+            at += 1
         if text[at : at + 1] == b"[":
             close = text.find(b"]", at)
             number = text[at + 1 : close if close >= 0 else len(text)].strip()
@@ -230,7 +247,7 @@ def _odd_row(text: bytes, columns: int) -> tuple[list[int], list[tuple[str, str]
         found["long-row", _TOO_LONG.format(columns)] = None
     if len(cells) < columns:
         found["short-row", _TOO_SHORT.format(columns)] = None
-    return cells + [Kind.EMPTY] * (columns - len(cells)), list(found)
+    return cells + [Kind.EMPTY] * (columns - len(cells)), list(found), others
 
 
 def _unknown(text: bytes, at: int) -> tuple[str, str]:

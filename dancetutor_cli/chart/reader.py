@@ -15,10 +15,11 @@ from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
 from dancetutor_cli.chart.notes import LineIndex, read_notes, width_of_first_row
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.errors import ChartError, FileError
+from dancetutor_cli.errors import ChartError, FileError, NoChartsError
 
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")
+_OF_A_SONG = ("TITLE", "MUSIC", "BPMS")
 EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
 _LARGEST_METER = 2**31 - 1
 _NUL_TEXT = re.compile(rb"\A\s*(?:[^\0]\0){4}|\A\s*(?:\0[^\0]){4}")
@@ -92,6 +93,13 @@ class _Reader:
     def no_charts(self) -> ChartError:
         """Why there is no chart; names the first that was skipped, and a wrong suffix."""
         raise NotImplementedError
+
+    def _without_charts(self) -> ChartError:
+        skipped = next((w for w in self.warnings if w.code == "chart-skipped"), None)
+        if skipped:
+            return ChartError(self.path, f"no charts: {skipped.message}", skipped.line)
+        a_song = any(tag.name in _OF_A_SONG for tag in self.tags)
+        return (NoChartsError if a_song else ChartError)(self.path, "no charts: the file has no NOTES", 1)
 
     def text(self, tag: Tag, index: int = 0) -> str:
         if index >= len(tag.spans):
@@ -191,7 +199,7 @@ class _Sm(_Reader):
         if any(tag.name == "NOTEDATA" for tag in self.tags):
             line = next(self.lines(tag.start) for tag in self.tags if tag.name == "NOTEDATA")
             return ChartError(self.path, "no charts: the text is in .ssc form; rename the file to .ssc", line)
-        return _no_charts(self.path, self.warnings)
+        return self._without_charts()
 
     def song(self) -> Song:
         song_tags = [tag for tag in self.tags if tag.name != "NOTES"]
@@ -214,7 +222,7 @@ class _Ssc(_Reader):
             if tag.name == "NOTES" and len(tag.spans) > len(_SM_FIELDS):
                 message = "no charts: the text is in .sm form; rename the file to .sm"
                 return ChartError(self.path, message, self.lines(tag.start))
-        return _no_charts(self.path, self.warnings)
+        return self._without_charts()
 
     def song(self) -> Song:
         song_tags, groups = self._groups()
@@ -281,13 +289,6 @@ def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
         warnings.append(ReadWarning("odd-meter", message, line))
         return read
     return int(meter)
-
-
-def _no_charts(path: Path, warnings: list[ReadWarning]) -> ChartError:
-    skipped = next((w for w in warnings if w.code == "chart-skipped"), None)
-    if skipped:
-        return ChartError(path, f"no charts: {skipped.message}", skipped.line)
-    return ChartError(path, "no charts: the file has no NOTES", 1)
 
 
 def suspicious_music(name: str) -> bool:

@@ -230,7 +230,7 @@ def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
         click.echo(tally.suggestions(), err=True)
     for line in run.close_baseline():
         click.echo(line, err=True)
-    if not tally.charts and not tally.unreadable:
+    if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])
         raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.errors import FileError, NoChartsError
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.figures import AlternativeResult, Cause, Figures
@@ -50,6 +50,8 @@ def analyze_file(task: Task) -> FileResult:
     """Read, solve and lint one file. Never raises for what is wrong with the file: that is `error` in the result."""
     try:
         song = load_song(task)
+    except NoChartsError as error:
+        return FileResult(str(task.path), "", "", None, (f"{error.message}: nothing to dance",), (), ())
     except FileError as error:
         return _unreadable(task, error)
     from dancetutor_cli.lint.check import check_file
@@ -90,8 +92,12 @@ def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartS
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
+    from dancetutor_cli.chart.names import is_lights
+
     yield from (warning.message for warning in song.warnings)
     for result in charts:
+        if is_lights(result.steps_type):  # nobody dances them
+            continue
         yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"

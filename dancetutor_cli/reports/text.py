@@ -45,6 +45,8 @@ class TextReport:
             return
         name = " - ".join(safe(text) for text in (result.artist, result.title) if safe(text))
         self._line(self._paint(safe_path(result.path), "bold"), f"  {name}" if name else "")
+        for warning in result.warnings if not (result.charts or result.unselected) else ():
+            self._line(f"  {safe(warning)}")
         for finding in result.findings:
             self._finding(result, None, finding)
         for chart in result.charts:
