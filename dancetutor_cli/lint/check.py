@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule
-from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.settings import Options, Settings
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
+_AMBIGUITY = "DT207"
 # Rule -> what SMEditor calls such findings in the `ignores` of data.sme.
 _EDITOR_CODES = {
     "DT201": "DS", "DT209": "DS", "DT206": "FS", "DT208": "FS", "DT211": "FS", "DT212": "FS", "DT207": "AM",
@@ -30,14 +33,18 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
 
 
 def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
-    """Findings about one chart, in order of line and rule."""
+    """Findings about one chart, in order of line and rule; none about the lights of a cabinet, which nobody dances."""
     findings: list[Finding] = []
     chart = subject.chart
+    if is_lights(chart.steps_type):
+        return ()
     rules = settings.for_chart(subject.song.path.absolute(), chart.steps_type, chart.difficulty, chart.meter)
     for code, options in rules.items():
         if code in _rules_of_charts():
             findings += _rules_of_charts()[code](options).check(subject)
-    return _in_order(finding for finding in findings if not _silenced(finding, subject))
+    findings = [finding for finding in findings if not _silenced(finding, subject)]
+    told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
+    return _in_order(finding for finding in told if not _silenced(finding, subject))
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
@@ -57,6 +64,34 @@ def _rules_of_files() -> Mapping[str, type[FileRule] | type[ReaderRule]]:
 @cache
 def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
     return {code: rule for code, rule in all_rules().items() if issubclass(rule, ChartRule | ReaderRule)}
+
+
+def _as_sure_as_they_are(
+    findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: Options | None
+) -> Iterator[Finding]:
+    """The findings; those that are true only with other feet than players may have are no warnings.
+
+    Where other feet cost next to nothing more it is an ambiguity (DT207, with its options if it runs), one for a row.
+    """
+    known = {finding.beat for finding in findings if finding.rule == _AMBIGUITY}
+    for finding in findings:
+        if finding.beat is None or not _rules_of_charts()[finding.rule].about_feet:
+            yield finding
+            continue
+        margin, confidence = subject.sureness(finding.beat)
+        if margin is not None and margin <= settings.coin_toss:
+            said = f"other feet are as good here; with these: {finding.message}"
+            if ambiguity is None:
+                yield replace(finding, severity="info", message=said)
+            elif finding.beat not in known:
+                known.add(finding.beat)
+                tossed = replace(finding, rule=_AMBIGUITY, name=_rules_of_charts()[_AMBIGUITY].name)
+                yield replace(tossed, severity=ambiguity["severity"], message=said)
+        elif confidence is not None and 100 * confidence < settings.sure_feet:
+            said = f"{finding.message}, if the feet are these: {confidence:.0%} sure".replace("%", " %")
+            yield replace(finding, severity="info", message=said)
+        else:
+            yield finding
 
 
 def _silenced(finding: Finding, subject: ChartSubject) -> bool:

@@ -21,6 +21,7 @@ from dancetutor_cli.library.settings_file import (
     texts_of,
 )
 from dancetutor_cli.lint.registry import all_rules, matching, named_singly, rule_named
+from dancetutor_cli.lint.rule import BY_METER
 from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
 from dancetutor_cli.marked_yaml import MarkedYaml, parse_value, read
 from dancetutor_cli.resources import config_path
@@ -33,6 +34,8 @@ _TOP_KEYS = (
     "fail-on",
     "baseline",
     "stream-rows",
+    "sure-feet",
+    "coin-toss",
     "select",
     "ignore",
     "rules",
@@ -210,7 +213,11 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path, *, confin
     stream_rows = data.get("stream-rows", settings.stream_rows)
     if isinstance(stream_rows, bool) or not isinstance(stream_rows, int) or not 1 <= stream_rows <= 192:
         raise SettingError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
-    settings = replace(settings, stream_rows=stream_rows)
+    settings = replace(
+        settings, stream_rows=stream_rows,
+        sure_feet=_number(data, "sure-feet", settings.sure_feet, 100),
+        coin_toss=int(_number(data, "coin-toss", settings.coin_toss, 1000)),
+    )  # fmt: skip
     return Configuration(settings, base.sources, preset, overridden, fail_on, baseline)
 
 
@@ -282,6 +289,8 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
 def _same_kind(value: Any, default: Any) -> bool:
     if isinstance(default, bool) or isinstance(value, bool):
         return isinstance(value, bool) and isinstance(default, bool)
+    if default == BY_METER:  # a number or that word: `Rule.fault` looks at it
+        return isinstance(value, int | float | str)
     if isinstance(default, int | float):
         return isinstance(value, int | float)
     if isinstance(default, list):
@@ -296,6 +305,13 @@ def _too_small(value: Any, default: Any) -> str:
     if all(isfinite(one) and one >= least for one in numbers):
         return ""
     return f"at least {least}" + (" each" if isinstance(value, list) else "")
+
+
+def _number(data: Mapping[str, Any], key: str, before: float, most: float) -> float:
+    value = data.get(key, before)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
+        raise SettingError((key,), f"'{key}' is a number from 0 to {most:g}")
+    return float(value)
 
 
 def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:

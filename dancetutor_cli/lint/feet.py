@@ -95,6 +95,67 @@ class Feet:
         """ "left foot", "right hand" ... of what presses a cell."""
         return _LIMB_NAMES.get(Limb(int(self._play.limb[row, column])), "limb")
 
+    @cached_property
+    def down(self) -> NDArray[np.int64]:
+        """(n,) how many panels are down in each row: stepped on, or held from before; taps of rolls do not count."""
+        rows = self._play.rows
+        down = ((rows.steps != _NONE) & (rows.steps != _ROLL_TAP)).sum(axis=1)
+        for column in np.flatnonzero((rows.hold_end >= 0).any(axis=0)).tolist():
+            heads = np.flatnonzero(rows.hold_end[:, column] >= 0)
+            first, after = heads + 1, rows.tick.searchsorted(rows.hold_end[heads, column])
+            change = np.zeros(len(rows) + 1, dtype=np.int64)
+            np.add.at(change, first, 1)
+            np.add.at(change, np.maximum(after, first), -1)
+            held = change.cumsum()[:-1] > 0
+            down += held & (rows.steps[:, column] == _NONE)
+        return np.asarray(down)
+
+    def triples(self) -> list[int]:
+        """Rows with a step in which three panels or more are down."""
+        real = (self._play.rows.steps != _NONE) & (self._play.rows.steps != _ROLL_TAP)
+        return np.flatnonzero((self.down >= 3) & real.any(axis=1)).tolist()
+
+    @cached_property
+    def _lone(self) -> NDArray[np.bool_]:
+        """(n,) whether one limb presses one panel in a row, and it is no tap of a roll."""
+        steps = self._play.rows.steps
+        return np.asarray(((self._play.limb >= 0).sum(axis=1) == 1) & ~(steps == _ROLL_TAP).any(axis=1))
+
+    def follows_freely(self, row: int) -> bool:
+        """Whether one panel is stepped on in a row and one in that before it, and neither a mine nor a hold has a say.
+
+        A foot whose hold ended after the row before these two has just been let go.
+        """
+        rows = self._play.rows
+        if row == 0 or not (self._lone[row] and self._lone[row - 1]) or rows.mines[row].any():
+            return False
+        other = 1 - int(self._play.limb[row].max())
+        return other >= 0 and bool(self._busy_until[other][row - 1] <= rows.tick[max(row - 2, 0)])
+
+    @cached_property
+    def _busy_until(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """For each foot (n,) the tick at which the last hold that it has pressed up to a row ends; -1 before any."""
+        ends, limb = self._play.rows.hold_end, self._play.limb
+        left, right = (np.maximum.accumulate(np.where(limb == foot, ends, -1).max(axis=1)) for foot in (0, 1))
+        return left, right
+
+    def crossed_rows(self) -> Iterator[list[int]]:
+        """The rows of every run of stepped rows with crossed feet."""
+        for first, count in self._crossed_runs:
+            at = int(self.stepped.searchsorted(first))
+            yield self.stepped[at : at + count].tolist()
+
+    def same_panel_runs(self, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
+        """Rows and limbs of every run of single steps on one panel, each at most so long after the one before."""
+        rows = self._play.rows
+        lone = np.flatnonzero(self._lone & (self.down == 1))
+        column, limb = self._play.limb[lone].argmax(axis=1), self._play.limb[lone].max(axis=1)
+        on = (np.diff(lone) == 1) & (column[1:] == column[:-1])
+        on &= np.diff(rows.second[lone]) <= max_seconds + _EPSILON
+        for run in np.split(np.arange(len(lone)), np.flatnonzero(~on) + 1):
+            if len(run) > 1:
+                yield lone[run].tolist(), limb[run].tolist()
+
     def crossed_runs(self) -> Iterator[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
         yield from self._crossed_runs
@@ -115,10 +176,12 @@ class Feet:
         if len(turn) and max(turn.max(), -turn.min()) >= 180 - 2 * _EPSILON:
             yield from (np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON) + 1).tolist()
 
-    def same_foot_runs(self, length: int, max_seconds: float) -> Iterator[int]:
+    def same_foot_runs(self, length: int, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
         """Rows in which one foot steps, alone, for the `length`-th time in a row and always on a new panel.
 
-        A step while the other foot is held down does not count: there is no choice.
+        With the time (s) since the step before. A step while the other foot is held down does not count: there is no
+        choice; nor do taps of rolls, steps around a mine, and steps less than `min_seconds` or more than `max_seconds`
+        apart.
         """
         p, seconds = self._pressed, self._play.rows.second  # a roll's taps are steps that come between, too
         new = np.ones(len(p.row) + 1, dtype=bool)
@@ -130,14 +193,16 @@ class Feet:
         follows &= next_row[1:] - next_row[:-1] == 1
         if not follows.any():
             return
-        follows &= np.diff(seconds[row]) <= max_seconds + _EPSILON
+        apart = np.diff(seconds[row])
+        follows &= (apart <= max_seconds + _EPSILON) & (apart >= min_seconds - _EPSILON)
+        follows &= [self.follows_freely(one) for one in row[1:].tolist()]
         count, last = 1, -1
         for place in (np.flatnonzero(follows) + 1).tolist():
             forced = "forced-doublestep" in self._play.moves[row[place]]
             count = 1 if forced else count + 1 if place == last + 1 else 2
             last = place
             if count == length:
-                yield int(row[place])
+                yield int(row[place]), float(apart[place - 1])
                 count = 1
 
     def travels(
@@ -168,11 +233,11 @@ class Feet:
             moved, late = moved[soon], late[soon]
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
-    def mines_under_held(self, max_seconds: float) -> Iterator[tuple[int, int, int]]:
-        """Row, column and foot of every mine under a foot that can hardly step aside.
+    def mines_under_held(self) -> Iterator[tuple[int, int, int, float]]:
+        """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
-        It is held by its other panel; or the other foot holds one, and the step was at most `max_seconds` before or no
-        other panel is free.
+        The other foot holds a panel. Where no other panel is free, or the foot holds its other panel itself, there is
+        no time that would do: 0.
         """
         if not self._has_mines:
             return
@@ -190,14 +255,14 @@ class Feet:
             near[:, foot] = stands | brackets[:, foot]
         for mine, foot in np.argwhere(near).tolist():
             at = int(row[mine])
-            if brackets[mine, foot] or self._just_stepped(foot, at, max_seconds) or self._all_mined(at, 1 - foot):
-                yield at, int(column[mine]), foot
+            stuck = brackets[mine, foot] or self._all_mined(at, 1 - foot)
+            yield at, int(column[mine]), foot, 0.0 if stuck else self._since_step(foot, at)
 
-    def _just_stepped(self, foot: int, row: int, max_seconds: float) -> bool:
-        """Whether the last step of a foot before a row was at most so long ago."""
+    def _since_step(self, foot: int, row: int) -> float:
+        """Seconds since the last step of a foot before a row."""
         steps, seconds = self._of_feet[foot].row, self._play.rows.second
         at = int(steps.searchsorted(row)) - 1
-        return at >= 0 and bool(seconds[row] - seconds[steps[at]] <= max_seconds + _EPSILON)
+        return float(seconds[row] - seconds[steps[at]]) if at >= 0 else np.inf
 
     def _all_mined(self, row: int, other: int) -> bool:
         """Whether every panel that the other foot does not hold has a mine."""

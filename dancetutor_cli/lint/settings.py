@@ -7,7 +7,7 @@ A layer is what one file says, or one entry of its `overrides`. Later layers win
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import Any
 
@@ -39,22 +39,26 @@ class Settings:
     """All layers in order. Plain data, so that it pickles and can be part of a cache key.
 
     stream_rows : a measure with at least so many rows counts as stream
+    sure_feet : a finding about feet that are less sure than this, per cent, is an info
+    coin_toss : it is an ambiguity where other feet cost at most so much more
     """
 
     layers: tuple[Layer, ...] = ()
     stream_rows: int = 16
+    sure_feet: float = 80
+    coin_toss: int = 5
     _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_layer(self, layer: Layer) -> Settings:
         """The same with one more layer on top."""
-        return Settings((*self.layers, layer), self.stream_rows)
+        return replace(self, layers=(*self.layers, layer), _resolved={})
 
     def fingerprint(self) -> str:
         """The same text for the same settings, in every process."""
         layers = [
             (x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules, sorted(x.named)) for x in self.layers
         ]
-        return repr((self.stream_rows, layers))
+        return repr((self.stream_rows, self.sure_feet, self.coin_toss, layers))
 
     def for_file(self, path: PurePath) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""

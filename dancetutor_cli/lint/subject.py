@@ -132,6 +132,10 @@ class ChartSubject:
         limbs = self.play.limb[row].tolist()
         return _LEFT in limbs and _RIGHT in limbs
 
+    def brackets(self, row: int) -> bool:
+        """Whether one foot presses two panels in this row."""
+        return self.play is not None and "bracket" in self.play.moves[row]
+
     def tempos(self) -> list[float]:
         """Every BPM of the chart's timing between its first and its last note."""
         ticks = self.chart.notes.tick
@@ -145,6 +149,18 @@ class ChartSubject:
         """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
         margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
         return None if margin < 0 else margin
+
+    def sureness(self, beat: float) -> tuple[int | None, float | None]:
+        """Margin and confidence of the feet in a row and in that with a step before it, the lesser; None: not known."""
+        play = self.play
+        if play is None or play.margin is None:
+            return None, None
+        row = int(play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT)))
+        at = int(self.step_rows.searchsorted(row))
+        rows = [one for one in (row, *self.step_rows[max(at - 1, 0) : at].tolist()) if one < len(play.rows)]
+        margins = [int(play.margin[one]) for one in rows if play.margin[one] >= 0]
+        sure = [] if play.confidence is None else [float(play.confidence[one]) for one in rows]
+        return min(margins, default=None), min((one for one in sure if one == one), default=None)
 
     def ties(self) -> Iterator[tuple[int, bool]]:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""

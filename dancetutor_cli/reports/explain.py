@@ -6,7 +6,8 @@ import inspect
 
 from dancetutor_cli.lint.configuration import default_rules, default_severity
 from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.rule import FAMILIES, Rule
+from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule
+from dancetutor_cli.lint.times import described
 
 
 def explain(rule: type[Rule]) -> str:
@@ -20,6 +21,13 @@ def explain(rule: type[Rule]) -> str:
     ]
     if settings:
         lines += ["", "Options: " + ", ".join(f"{name} = {value}" for name, value in settings.items())]
+    if issubclass(rule, TimedRule) and settings.get("max_seconds") == BY_METER:
+        share = settings["share"]
+        lines += [
+            "",
+            f"How quick it is in at most {share:g} % of the charts of a meter, and is reported:",
+        ]
+        lines += [f"  {line}" for line in described(rule.times, share)]
     return "\n".join(lines) + "\n"
 
 

@@ -95,7 +95,8 @@ def findings(song: Song) -> list[tuple[str, float | None]]:
 
 
 def test_findings_are_silenced_by_beat(song: Song) -> None:
-    feet = "feet:\n- when: {path: x.sm}\n  steps: {0: L, 1: R, 2: R}\n"
+    slow = "rules: {DT201: {max_seconds: 0.6}}\n"
+    feet = f"{slow}feet:\n- when: {{path: x.sm}}\n  steps: {{0: L, 1: R, 2: R}}\n"
     configure(song, feet)
     assert ("DT201", 2.0) in findings(song)
     for rule in ("doublestep", "DT201", "[spin, DT2]"):

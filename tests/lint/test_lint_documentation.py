@@ -40,8 +40,9 @@ class Pattern:
 def patterns(rule: type) -> list[Pattern]:
     found: list[Pattern] = []
     for line in (inspect.getdoc(rule) or "").splitlines():
-        if head := re.match(r"(Bad|Better)\b(?: \((\w+) = (.*?)\))?", line):
-            options = {head[2]: yaml.safe_load(head[3])} if head[2] else {}
+        if head := re.match(r"(Bad|Better)\b(?: \((\w+ = .*?)\))?", line):
+            said = (one.split(" = ") for one in re.split(r", (?=\w+ = )", head[2] or "") if one)
+            options = {name: yaml.safe_load(value) for name, value in said}
             found.append(Pattern(head[1], options, [], []))
         elif row := re.match(r"    ([0-9MLFKx]{3,10})(?:  (\S+))?$", line):
             found[-1].rows.append(row[1])

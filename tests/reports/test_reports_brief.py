@@ -44,8 +44,8 @@ def test_a_song_is_a_screen() -> None:
 
 def test_a_rule_many_times_in_a_chart_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "x.sm").write_text(TWICE.format("Hard").replace(":9:", ":4:"))
-    said = run("--brief", tmp_path / "x.sm", "--select", "low-bracket").stdout
-    (line,) = [line for line in said.splitlines() if line.startswith("DT210")]
+    said = run("--brief", tmp_path / "x.sm", "--select", "hand").stdout
+    (line,) = [line for line in said.splitlines() if line.startswith("DT302")]
     assert "40 times, measures 4 5 6 7 8 9 ..." in line
 
 

@@ -5,28 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
+from dancetutor_cli.lint.rule import Happening, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-class Crossover(ChartRule):
+class Crossover(TimedRule):
     """The feet cross in a chart whose players do not know crossovers yet.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties, and a contest or your own
-    dancetutor.yaml may do so for others. `max_seconds`: only steps at most this long after the step before count; after
-    a longer rest a beginner does not cross, but begins anew.
+    dancetutor.yaml may do so for others.
 
-    Bad:
+    `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
+    but begins anew. by-meter: what at most `share` per cent of the charts of a meter have; on two pads, where walking
+    from one to the other crosses the feet, few crossings are so quick.
+
+    Bad (max_seconds = 0.6):
 
         1000  L
         0100  R
         0001  L
         0100  R
 
-    Better:
+    Better (max_seconds = 0.6):
 
         1000  L
         0001  R
@@ -36,9 +38,9 @@ class Crossover(ChartRule):
 
     code = "DT204"
     name = "crossover"
+    times = "crossover"
 
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each step after which the feet are newly crossed."""
+    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+        """Each step after which the feet are newly crossed."""
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
-            if subject.pause(first) <= self.options["max_seconds"] + 1e-6:
-                yield self.finding("the feet cross here", subject.at_row(first))
+            yield Happening(first, subject.pause(first), "the feet cross here")

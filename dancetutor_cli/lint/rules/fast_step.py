@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
-    `max_speed`: panel widths per second, on the straight way from panel to panel.
+    `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
+    are a flam, one movement of the foot, and do not count.
 
     Bad (max_speed = 2): the left foot crosses the whole pad in half a second.
 
@@ -34,6 +35,7 @@ class FastStep(ChartRule):
 
     code = "DT305"
     name = "fast-step"
+    about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step that is too fast."""
@@ -41,7 +43,8 @@ class FastStep(ChartRule):
 
         feet = subject.feet
         for rows, columns, ways, seconds in feet.travels() if feet else ():
-            for at in np.flatnonzero(ways > self.options["max_speed"] * seconds + 1e-6).tolist():
+            fast = ways > self.options["max_speed"] * seconds + 1e-6
+            for at in np.flatnonzero(fast & (seconds >= self.options["min_seconds"])).tolist():
                 row, column = int(rows[at]), int(columns[at])
                 name = feet.limb_name(row, column) if feet else ""
                 message = f"the {name} moves {ways[at]:.1f} panels in {seconds[at] * 1000:.0f} ms"

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 from dancetutor_cli.lint.rule import MoveRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Footswitch(MoveRule):
@@ -10,14 +16,17 @@ class Footswitch(MoveRule):
 
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
 
-    Bad:
+    `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
+    by-meter: what at most `share` per cent of the charts of a meter have.
+
+    Bad (max_seconds = 0.6):
 
         1000  L
         0100  R
         0100  L
         0001  R
 
-    Better:
+    Better (max_seconds = 0.6):
 
         1000  L
         0100  R
@@ -28,4 +37,9 @@ class Footswitch(MoveRule):
     code = "DT212"
     name = "footswitch"
     move = "footswitch"
+    times = "footswitch"
     said = "a foot takes over the panel of the other: footswitch"
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Footswitches on one panel; what a bracket does beside it is DT210's."""
+        return [row for row in subject.rows_with_any(self.move) if not subject.brackets(row)]

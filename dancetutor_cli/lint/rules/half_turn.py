@@ -32,6 +32,7 @@ class HalfTurn(ChartRule):
 
     code = "DT304"
     name = "half-turn"
+    about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each half turn."""

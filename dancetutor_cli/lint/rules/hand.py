@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 from dancetutor_cli.lint.rule import MoveRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 class Hand(MoveRule):
-    """Both feet are busy, so a hand has to press a panel, in a chart whose players do not use hands yet.
+    """Three panels are down at once, so a hand has to help, in a chart whose players do not use hands yet.
+
+    Held panels count; on pads with panels side by side some players bracket two of the three.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
 
@@ -28,4 +36,11 @@ class Hand(MoveRule):
     code = "DT302"
     name = "hand"
     move = "hand"
-    said = "a hand has to press a panel"
+    about_feet = False  # it is the number of panels that asks for it
+    said = "three panels at once: a hand has to press one"
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
+        if subject.feet is None:
+            return []
+        return sorted({*subject.rows_with_any(self.move), *subject.feet.triples()})

@@ -34,6 +34,7 @@ class JumpSpin(ChartRule):
 
     code = "DT203"
     name = "jump-spin"
+    about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each spin that ends in a jump."""

@@ -34,6 +34,7 @@ class MineInTheWay(ChartRule):
 
     code = "DT307"
     name = "mine-in-the-way"
+    about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such step."""

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
+from dancetutor_cli.lint.rule import Happening, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-class MineUnderHold(ChartRule):
+class MineUnderHold(TimedRule):
     """A mine comes under a foot that can hardly step aside: the weight is on a panel that is held down.
 
     The foot holds the panel beside it; or the other foot holds one, and the step was just now or every other panel has
-    a mine, so that the dancer has to stand on one leg. `max_seconds`: just now means at most this long before the mine.
+    a mine, so that the dancer has to stand on one leg. `max_seconds`: just now means at most this long before the mine;
+    by-meter: what at most `share` per cent of the charts of a meter have.
 
     Bad (max_seconds = 1.5):
 
@@ -35,10 +35,10 @@ class MineUnderHold(ChartRule):
 
     code = "DT303"
     name = "mine-under-hold"
+    times = "mine-under-hold"
 
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each such mine."""
-        limit = self.options["max_seconds"]
-        for row, column, foot in subject.feet.mines_under_held(limit) if subject.feet else ():
+    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+        """Each such mine, with the time since the foot's step; where it cannot leave at all, no time at all."""
+        for row, column, foot, seconds in subject.feet.mines_under_held() if subject.feet else ():
             message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
-            yield self.finding(message, subject.at_row(row, column))
+            yield Happening(row, seconds, message, column)

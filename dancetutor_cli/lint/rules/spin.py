@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.model import Finding
 from dancetutor_cli.lint.rule import MoveRule
 
 if TYPE_CHECKING:
@@ -15,14 +14,17 @@ if TYPE_CHECKING:
 class Spin(MoveRule):
     """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins (in a jump: DT203).
 
-    Bad: the crossover goes on in place of being unwound.
+    `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
+    back: of the 71 spins in 168,000 rows that players have labelled, three of four come within 0.4 s.
+
+    Bad (max_seconds = 0.6): the crossover goes on in place of being unwound.
 
         1000  L
         0100  R
         0001  L
         0010  R
 
-    Better: back the way it came.
+    Better (max_seconds = 0.6): back the way it came.
 
         1000  L
         0100  R
@@ -34,9 +36,8 @@ class Spin(MoveRule):
     name = "spin"
     move = "spin"
     said = "the body turns beyond 180 degrees: a spin"
+    times = "spin"
 
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each spin; DT203 tells of those in a jump."""
-        for row in subject.rows_with(self.move):
-            if not subject.is_jump(row):
-                yield self.finding(self.said, subject.at_row(row))
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Spins; DT203 tells of those in a jump."""
+        return [row for row in subject.rows_with(self.move) if not subject.is_jump(row)]

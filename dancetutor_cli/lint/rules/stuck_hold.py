@@ -36,6 +36,7 @@ class StuckHold(ChartRule):
 
     code = "DT306"
     name = "stuck-hold"
+    about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine, and for each step that comes too early."""

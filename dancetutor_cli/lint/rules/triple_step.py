@@ -5,26 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.model import Finding
-from dancetutor_cli.lint.rule import ChartRule
+from dancetutor_cli.lint.rule import Happening, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-class TripleStep(ChartRule):
+class TripleStep(TimedRule):
     """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
 
-    Steps while the other foot is held down do not count. `max_seconds`: only steps at most this far apart count.
+    Steps while the other foot is held down, taps of a roll and steps around a mine do not count.
 
-    Bad:
+    `max_seconds`: only steps at most this far apart count. by-meter: the time of a doublestep (DT201) that at most
+    `share` per cent of the charts of a meter have.
+    `min_seconds`: steps closer together are a flam, one movement of the foot.
+
+    Bad (max_seconds = 0.6):
 
         0001  R
         1000  L
         0100  L
         0010  L
 
-    Better:
+    Better (max_seconds = 0.6):
 
         0001  R
         1000  L
@@ -34,8 +37,10 @@ class TripleStep(ChartRule):
 
     code = "DT209"
     name = "triple-step"
+    times = "doublestep"
 
-    def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each third step."""
-        for row in subject.feet.same_foot_runs(3, self.options["max_seconds"]) if subject.feet else ():
-            yield self.finding(f"the {subject.foot_name(row)} foot steps three times in a row", subject.at_row(row))
+    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+        """Each third step that is quick enough: where a run begins depends on that."""
+        spans = self.options["min_seconds"], self.longest(subject)
+        for row, seconds in subject.feet.same_foot_runs(3, *spans) if subject.feet else ():
+            yield Happening(row, seconds, f"the {subject.foot_name(row)} foot steps three times in a row")

@@ -31,6 +31,7 @@ class Unplayable(MoveRule):
     code = "DT301"
     name = "unplayable"
     move = "unplayable"
+    about_feet = False
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
