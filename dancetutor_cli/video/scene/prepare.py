@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,7 @@ _MARK_HEIGHT = 1.0  # a foot higher than this has no mark
 NO_FOOT = -1.0
 
 
-@dataclass(frozen=True, slots=True)
-class Cast:
+class Cast(NamedTuple):
     """Where the shadow map is. axes : (3, 3), rows u, v and the direction to the light; origin : (2,), u and v of its
     corner, metres; scale : texels a metre, 0 if there is none."""
 

@@ -8,7 +8,7 @@ import renderers_scene as rs
 
 from dancetutor_cli.video.scene.cpu.background import quantise
 from dancetutor_cli.video.scene.cpu.ground import blur
-from dancetutor_cli.video.scene.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, clear, fill, skin
+from dancetutor_cli.video.scene.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, Bound, clear, fill, skin
 from dancetutor_cli.video.scene.cpu.surfaces import arrow_distance
 from dancetutor_cli.video.scene.geometry import pack
 
@@ -102,7 +102,7 @@ def test_skin_is_linear_blending():
     index = rng.integers(0, joints, (count, 4)).astype(np.int32)
     matrices = rng.normal(size=(joints, 3, 4))
     world = np.empty((count, 9))
-    skin(positions, normals, hull, index, weights, matrices, world)
+    skin(Bound(positions, normals, hull, index, weights), matrices, world)
     blended = np.einsum("vk,vkrc->vrc", weights, matrices[index])
     np.testing.assert_allclose(
         world[:, :3], np.einsum("vrc,vc->vr", blended, np.column_stack([positions, np.ones(count)])), rtol=1e-9

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.camera import Camera
-from dancetutor_cli.video.scene.cpu.surfaces import palette, surface
+from dancetutor_cli.video.scene.cpu.surfaces import Paints, paints_of, surface
 from dancetutor_cli.video.scene.look import Look
 from dancetutor_cli.video.scene.stage import Stage
 
@@ -18,8 +17,7 @@ F32 = NDArray[np.float32]
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Background:
+class Background(NamedTuple):
     """The stage as one camera sees it, without dancer, shadows and lights; h rows, w columns with the pan's room.
 
     colour : float32 (h, w, 3), sRGB 0..255; picture : uint8 (h, w, 3), the same, dithered
@@ -40,9 +38,27 @@ class Background:
     left: int
 
 
+class _Rays(NamedTuple):
+    """Where rays start and how a place of the picture becomes one; see `_rays`. focal : pixels."""
+
+    eye: Array
+    back: Array
+    focal: float
+
+
+class _Stage(NamedTuple):
+    """What rays may meet. quads : `_quads`; kinds : `stage.Kind` of each"""
+
+    quads: Array
+    kinds: NDArray[np.int32]
+    paints: Paints
+
+
 @njit(cache=True)
-def _nearest(ex: float, ey: float, ez: float, dx: float, dy: float, dz: float, quads: Any) -> Any:  # pragma: no cover
+def _nearest(eye: Any, direction: Any, quads: Any) -> Any:  # pragma: no cover
     """Number of the nearest surface and the distance along the ray, -1 if there is none."""
+    ex, ey, ez = eye[0], eye[1], eye[2]
+    dx, dy, dz = direction
     best, found = 1e30, -1
     for q in range(quads.shape[0]):
         facing = quads[q, 0] * dx + quads[q, 1] * dy + quads[q, 2] * dz
@@ -60,19 +76,20 @@ def _nearest(ex: float, ey: float, ez: float, dx: float, dy: float, dz: float, q
 
 
 @njit(cache=True)
-def _look(x: float, y: float, eye: Any, back: Any, quads: Any) -> Any:  # pragma: no cover
+def _look(x: float, y: float, rays: Any, quads: Any) -> Any:  # pragma: no cover
+    back = rays.back
     dx = back[0, 0] * x + back[0, 1] * y + back[0, 2]
     dy = back[1, 0] * x + back[1, 1] * y + back[1, 2]
     dz = back[2, 0] * x + back[2, 1] * y + back[2, 2]
-    found, t = _nearest(eye[0], eye[1], eye[2], dx, dy, dz, quads)
+    found, t = _nearest(rays.eye, (dx, dy, dz), quads)
     return found, t, dx, dy, dz
 
 
 @njit(cache=True)
-def _find(eye: Any, back: Any, quads: Any, left: int, found: Any) -> None:  # pragma: no cover
+def _find(rays: Any, quads: Any, left: int, found: Any) -> None:  # pragma: no cover
     for row in range(found.shape[0]):
         for column in range(found.shape[1]):
-            found[row, column] = _look(column - left + 0.5, row + 0.5, eye, back, quads)[0]
+            found[row, column] = _look(column - left + 0.5, row + 0.5, rays, quads)[0]
 
 
 @njit(cache=True)
@@ -86,11 +103,10 @@ def _same_around(found: Any, row: int, column: int) -> bool:  # pragma: no cover
 
 
 @njit(cache=True)
-def _shade(
-    eye: Any, back: Any, quads: Any, kinds: Any, colours: Any, tile_panel: Any, tile_arrow: Any, focal: float,
-    left: int, samples: int, found: Any, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any,
-    foot: Any,
-) -> None:  # fmt: skip  # pragma: no cover
+def _shade(rays: Any, stage: Any, samples: int, found: Any, out: Any) -> None:  # pragma: no cover
+    """Colour the picture that `out`, a `Background`, has room for; found : number of the surface in each pixel."""
+    eye, quads, left = rays.eye, stage.quads, out.left
+    colour, ground, takes, panel, glow, white = out.colour, out.ground, out.takes, out.panel, out.glow, out.white
     for row in range(found.shape[0]):
         for column in range(found.shape[1]):
             n = 1 if _same_around(found, row, column) else samples
@@ -98,7 +114,7 @@ def _shade(
             for i in range(n):
                 for j in range(n):
                     x, y = column - left + (i + 0.5) / n, row + (j + 0.5) / n
-                    q, t, dx, dy, dz = _look(x, y, eye, back, quads)
+                    q, t, dx, dy, dz = _look(x, y, rays, quads)
                     if q < 0:
                         continue
                     wx, wy, wz = eye[0] + t * dx, eye[1] + t * dy, eye[2] + t * dz
@@ -106,9 +122,9 @@ def _shade(
                     v = quads[q, 8] * wx + quads[q, 9] * wy + quads[q, 10] * wz + quads[q, 11]
                     slope = -(quads[q, 0] * dx + quads[q, 1] * dy + quads[q, 2] * dz)
                     slope = slope / np.sqrt(dx * dx + dy * dy + dz * dz)
-                    footprint = t / focal / np.sqrt(max(slope, 0.05))
+                    footprint = t / rays.focal / np.sqrt(max(slope, 0.05))
                     r, g, b, take, where, lit, hot = surface(
-                        kinds[q], wx, wz, 2.0 * v - 1.0, u, footprint, colours, tile_panel, tile_arrow
+                        stage.kinds[q], (wx, wz, 2.0 * v - 1.0, u), footprint, stage.paints
                     )
                     share = 1.0 / (n * n)
                     colour[row, column, 0] += 255.0 * r * share
@@ -122,7 +138,7 @@ def _shade(
                     ground[row, column, 0] = wx
                     ground[row, column, 1] = wy
                     ground[row, column, 2] = wz
-                    foot[row, column] = footprint
+                    out.footprint[row, column] = footprint
 
 
 @njit(cache=True)
@@ -148,25 +164,23 @@ def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, i
     # Panned to the right, the picture shows what is farther left: positive pans need room on the left.
     left, right = (max(0, round(pan * width)) for pan in (camera.pan_range[1], -camera.pan_range[0]))
     wide = width + left + right
-    eye, back = _rays(camera, size)
+    rays = _rays(camera, size)
     shape = (height, wide)
     found = np.empty(shape, np.int16)
-    quads = _quads(stage)
-    _find(eye, back, quads, left, found)
+    surfaces = _Stage(_quads(stage), stage.kinds, paints_of(look.stage, stage))
+    _find(rays, surfaces.quads, left, found)
     colour, ground = np.zeros((*shape, 3), np.float32), np.zeros((*shape, 3), np.float32)
     takes, glow, white, foot = (np.zeros(shape, np.float32) for _ in range(4))
     panel = np.empty(shape, np.int16)
-    _shade(
-        eye, back, quads, stage.kinds, palette(look.stage, stage), stage.tiles.panel, stage.tiles.arrow,
-        camera.focal * height, left, samples, found, colour, ground, takes, panel, glow, white, foot,
-    )  # fmt: skip
     picture = np.empty((*shape, 3), np.uint8)
+    drawn = Background(colour, picture, ground, takes, panel, glow, white, foot, left)
+    _shade(rays, surfaces, samples, found, drawn)
     _quantise_all(colour, picture)
-    return Background(colour, picture, ground, takes, panel, glow, white, foot, left)
+    return drawn
 
 
-def _rays(camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
-    """The eye (3,), and the matrix (3, 3) from (x, y, 1) of the unpanned picture to a direction of depth 1."""
+def _rays(camera: Camera, size: tuple[int, int]) -> _Rays:
+    """The eye (3,), the matrix (3, 3) from (x, y, 1) of the unpanned picture to a direction of depth 1."""
     width, height = size
     right, up, forward = camera.axes()
     focal = camera.focal * height
@@ -174,7 +188,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> tuple[Array, Array]:
     back[:, 0] = right / focal
     back[:, 1] = -up / focal
     back[:, 2] = forward - right * (camera.centre[0] * width / focal) + up * (camera.centre[1] * height / focal)
-    return np.array(camera.position, dtype=np.float64), back
+    return _Rays(np.array(camera.position, dtype=np.float64), back, focal)
 
 
 def _quads(stage: Stage) -> Array:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.cpu.background import quantise
 from dancetutor_cli.video.scene.cpu.kernel import kernel
 from dancetutor_cli.video.scene.cpu.surfaces import smooth
+from dancetutor_cli.video.scene.prepare import Cast
+
+Array = NDArray[np.float64]
 
 
 @njit(cache=True)
@@ -83,17 +87,37 @@ def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no co
     return float(np.sqrt(ax * ax + az * az))
 
 
+class Shadow(NamedTuple):
+    """What takes light from the floor. mask : float32 (s, s), how much; cast : where that is; dark : 0..1, of all"""
+
+    mask: NDArray[np.float32]
+    cast: Cast
+    dark: float
+
+
+class Live(NamedTuple):
+    """What changes on the floor from frame to frame.
+
+    lit, lit_colour : `prepare.panel_lights`; feet : `prepare.feet_on_floor`
+    numbers : contact darkness, its softness, strength of lit panels, sole radius
+    """
+
+    lit: Array
+    lit_colour: Array
+    feet: Array
+    numbers: Array
+
+
 @kernel
-def draw_ground(
-    out: Any, box: Any, shift: int, colour: Any, ground: Any, takes: Any, panel: Any, glow: Any, white: Any, foot: Any,
-    shadow: Any, axes: Any, origin: Any, scale: float, dark: float, lit: Any, lit_colour: Any, feet: Any, numbers: Any,
-) -> None:  # fmt: skip  # pragma: no cover
+def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live: Any) -> None:  # pragma: no cover
     """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on.
 
-    shift : columns that the standing picture is ahead; shadow with axes, origin and scale : how much of the light is
-    taken, `prepare.Cast`; dark : darkness of the shadow; lit, lit_colour : `prepare.panel_lights`;
-    feet : `prepare.feet_on_floor`; numbers : contact darkness, its softness, strength of lit panels, sole radius
+    shift : columns that the standing picture, a `Background`, is ahead; shade : `Shadow`; live : `Live`
     """
+    colour, ground, takes, panel = standing.colour, standing.ground, standing.takes, standing.panel
+    glow, white, foot = standing.glow, standing.white, standing.footprint
+    shadow, dark, axes, origin, scale = shade.mask, shade.dark, shade.cast.axes, shade.cast.origin, shade.cast.scale
+    lit, lit_colour, feet, numbers = live.lit, live.lit_colour, live.feet, live.numbers
     radius = numbers[3]
     far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
     for row in range(box[1], box[3]):

@@ -6,9 +6,10 @@ that share an edge leave no gap, and every machine finds the same samples covere
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.cpu.kernel import kernel
@@ -19,14 +20,36 @@ FRONT, BACK = 1, -1
 _AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 
+class Bound(NamedTuple):
+    """Vertices as they are bound to joints; see `geometry.Packed`."""
+
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    hull: NDArray[np.float32]
+    joints: NDArray[np.int32]
+    weights: NDArray[np.float32]
+
+
+class View(NamedTuple):
+    """How the world comes to the picture. matrix : `Camera.matrix`; eye : (3,); samples : across a pixel
+
+    near : what is nearer is left out, metres; focal : pixels
+    """
+
+    matrix: NDArray[np.float64]
+    eye: NDArray[np.float64]
+    samples: float
+    near: float
+    focal: float
+
+
 @njit(cache=True)
-def skin(
-    positions: Any, normals: Any, hull: Any, joints: Any, weights: Any, matrices: Any, world: Any
-) -> None:  # pragma: no cover
+def skin(bound: Any, matrices: Any, world: Any) -> None:  # pragma: no cover
     """Vertices in the world. matrices (j, 3, 4): binding pose to world; world (v, 9): place, normal, hull direction.
 
     Both directions get length 1.
     """
+    positions, normals, hull, joints, weights = bound
     m = np.empty(12)
     for v in range(positions.shape[0]):
         for k in range(12):
@@ -69,8 +92,9 @@ def extent(world: Any) -> Any:  # pragma: no cover
 
 
 @njit(cache=True)
-def project(world: Any, camera: Any, samples: float, near: float, points: Any) -> None:  # pragma: no cover
+def project(world: Any, view: Any, points: Any) -> None:  # pragma: no cover
     """Places in samples and 1 / depth, points (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
+    camera, samples, near = view.matrix, view.samples, view.near
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]
@@ -85,13 +109,12 @@ def project(world: Any, camera: Any, samples: float, near: float, points: Any) -
 
 
 @njit(cache=True)
-def project_hull(
-    world: Any, camera: Any, eye: Any, samples: float, near: float, width: float, focal: float, out: Any
-) -> None:  # pragma: no cover
+def project_hull(world: Any, view: Any, width: float, out: Any) -> None:  # pragma: no cover
     """As `project`, but moved outward on the picture by `width` pixels, and a centimetre away from the camera.
 
     out (v, 4): the last column is the cosine between normal and the direction to the eye
     """
+    camera, eye, samples, near, focal = view
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         w = camera[2, 0] * x + camera[2, 1] * y + camera[2, 2] * z + camera[2, 3]

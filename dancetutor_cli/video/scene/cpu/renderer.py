@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
 from dancetutor_cli.video.scene.cpu.background import Background, draw_background
-from dancetutor_cli.video.scene.cpu.ground import blur, draw_ground, occupied
+from dancetutor_cli.video.scene.cpu.ground import Live, Shadow, blur, draw_ground, occupied
 from dancetutor_cli.video.scene.cpu.raster import (
     BACK,
     FRONT,
+    Bound,
+    View,
     clear,
     extent,
     fill,
@@ -23,7 +25,16 @@ from dancetutor_cli.video.scene.cpu.raster import (
     project_light,
     skin,
 )
-from dancetutor_cli.video.scene.cpu.shade import PER_METRE, light_vertices, resolve, toon_numbers
+from dancetutor_cli.video.scene.cpu.shade import (
+    PER_METRE,
+    Drawn,
+    Light,
+    Room,
+    Surface,
+    light_vertices,
+    resolve,
+    toon_numbers,
+)
 from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.prepare import (
     SAMPLES,
@@ -54,7 +65,9 @@ class CpuRenderer:
         self._samples = SAMPLES[quality]
         self._map = SHADOW_MAP[quality]
         self._mesh = pack(scene.character)
-        self._skins = self._mesh.skins.flat()
+        mesh = self._mesh
+        self._bound = Bound(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights)
+        self._surface = Surface(mesh.uv, mesh.material, mesh.patch, mesh.density, *mesh.skins.flat())
         self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
         self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)
@@ -64,7 +77,7 @@ class CpuRenderer:
         self._nearest = np.zeros(shape, np.int64)
         self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
-        self._samples_seen = np.empty(self._samples**2, np.int64), np.empty(self._samples**2)
+        self._room = Room(np.empty(self._samples**2, np.int64), np.empty(self._samples**2))
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
         self._out = np.empty((height, width, 3), np.uint8)
         self._background: tuple[Camera, Background] | None = None
@@ -80,7 +93,7 @@ class CpuRenderer:
         mesh = self._mesh
         joints = joints_of(self._scene, state)
         matrices = skin_matrices(self._scene, joints)
-        skin(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights, matrices, self._world)
+        skin(self._bound, matrices, self._world)
         cast = place_cast(self._scene, camera, joints, self._map)
         count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
         triangles = mesh.triangles[:count]
@@ -119,31 +132,22 @@ class CpuRenderer:
         box = ground_box(self._scene, state.camera, self._size, bounds, cast)
         lit, lit_colour = panel_lights(self._scene, state)
         numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.glow, SOLE_RADIUS])
-        draw_ground(
-            self._out, box, shift, background.colour, background.ground, background.takes, background.panel,
-            background.glow, background.white, background.footprint, self._mask, cast.axes, cast.origin, cast.scale,
-            look.light.shadow if cast.scale else 0.0, lit, lit_colour, feet_on_floor(self._scene, state), numbers,
-        )  # fmt: skip
+        shade = Shadow(self._mask, cast, look.light.shadow if cast.scale else 0.0)
+        live = Live(lit, lit_colour, feet_on_floor(self._scene, state), numbers)
+        draw_ground(self._out, box, shift, background, shade, live)
 
     def _draw_dancer(self, triangles: NDArray[np.int32], joints: Array, camera: Camera, cast: Cast) -> None:
-        samples, mesh = self._samples, self._mesh
-        matrix = camera.matrix(self._size)
-        focal = camera.focal * self._size[1]
+        eye = np.array(camera.position)
+        view = View(camera.matrix(self._size), eye, float(self._samples), NEAR, camera.focal * self._size[1])
         per_metre = pixels_per_metre(camera, joints, self._size)
         outline = self._scene.look.toon.outline_width * per_metre
-        eye = np.array(camera.position)
-        project(self._world, matrix, float(samples), NEAR, self._points)
-        project_hull(self._world, matrix, eye, float(samples), NEAR, outline, focal, self._hull)
+        project(self._world, view, self._points)
+        project_hull(self._world, view, outline, self._hull)
         clear(self._nearest, self._spans)
         count = len(triangles)
         fill(self._points, triangles, FRONT, 0, self._nearest, self._spans)
         fill(self._hull, triangles, BACK, count, self._nearest, self._spans)
-        light_vertices(
-            self._world, self._points, mesh.uv, mesh.material, eye, cast.axes, cast.origin,
-            cast.scale, self._vertex,
-        )  # fmt: skip
+        light_vertices(self._world, self._points, self._surface, eye, cast, self._vertex)
         self._toon[PER_METRE] = per_metre
-        resolve(
-            self._out, samples, self._nearest, self._spans, count, triangles, mesh.patch, mesh.density,
-            self._vertex, *self._skins, self._shadow, self._toon, *self._samples_seen,
-        )  # fmt: skip
+        drawn, light = Drawn(self._nearest, self._spans, triangles), Light(self._vertex, self._shadow, self._toon)
+        resolve(self._out, self._samples, drawn, self._surface, light, self._room)

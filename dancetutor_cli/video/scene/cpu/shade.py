@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,14 +34,49 @@ def toon_numbers(toon: ToonLook, cast: bool) -> Array:
     return np.array(numbers, dtype=np.float64)
 
 
+class Surface(NamedTuple):
+    """What does not change of the triangles' look; see `geometry.Packed` and `textures.Skins.flat`."""
+
+    uv: NDArray[np.float32]
+    material: NDArray[np.int32]
+    patch: NDArray[np.int32]
+    density: NDArray[np.float32]
+    texels: NDArray[np.uint8]
+    textures: NDArray[np.int32]
+    meshes: NDArray[np.float32]
+
+
+class Drawn(NamedTuple):
+    """What `raster.fill` has drawn of which triangles; numbers from their count on are outline."""
+
+    nearest: NDArray[np.int64]
+    spans: NDArray[np.int64]
+    triangles: NDArray[np.int32]
+
+
+class Light(NamedTuple):
+    """What colours are made with. vertex : of `light_vertices`; shadow : the map; toon : `toon_numbers`"""
+
+    vertex: NDArray[np.float32]
+    shadow: NDArray[np.float32]
+    toon: Array
+
+
+class Room(NamedTuple):
+    """Room for one number a sample of a pixel: its triangle, -1 once it is coloured, and its depth."""
+
+    seen: NDArray[np.int64]
+    depths: Array
+
+
 @njit(cache=True)
-def light_vertices(
-    world: Any, points: Any, uv: Any, material: Any, eye: Any, axes: Any, origin: Any, scale: float, out: Any
-) -> None:  # pragma: no cover
+def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, out: Any) -> None:  # pragma: no cover
     """What is interpolated over a triangle, out float32 (v, 16).
 
-    world (v, 9), points (v, 3) from `raster`; axes (3, 3), origin (2,), scale: of the shadow map
+    world (v, 9), points (v, 3) from `raster`; cast : `prepare.Cast`
     """
+    uv, material = surface.uv, surface.material
+    axes, origin, scale = cast.axes, cast.origin, cast.scale
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         nx, ny, nz = world[v, 3], world[v, 4], world[v, 5]
@@ -116,11 +151,11 @@ def _sunlit(shadow: Any, u: float, v: float, height: float) -> float:  # pragma:
 
 
 @njit(cache=True, inline="always")
-def _colour(
-    a: int, b: int, c: int, px: float, py: float, dense: float, vertex: Any, texels: Any, textures: Any, meshes: Any,
-    shadow: Any, toon: Any,
-) -> Any:  # fmt: skip  # pragma: no cover
-    """Colour 0..1 of the triangle of vertices a, b, c at a place in samples; dense : texels a metre, a little less."""
+def _colour(corners: Any, px: float, py: float, dense: float, surface: Any, light: Any) -> Any:  # pragma: no cover
+    """Colour 0..1 of a triangle, by its vertices, at a place in samples; dense : texels a metre, a little less."""
+    a, b, c = corners
+    vertex, shadow, toon = light.vertex, light.shadow, light.toon
+    texels, textures, meshes = surface.texels, surface.textures, surface.meshes
     x0, y0, x1, y1 = vertex[a, _X], vertex[a, _Y], vertex[b, _X], vertex[b, _Y]
     x2, y2 = vertex[c, _X], vertex[c, _Y]
     # Weights on the picture, kept inside of the triangle (a pixel's middle may lie just outside), then in space.
@@ -160,16 +195,14 @@ def _colour(
 
 
 @kernel
-def resolve(
-    out: Any, samples: int, nearest: Any, spans: Any, count: int, triangles: Any, patch: Any,
-    density: Any, vertex: Any, texels: Any, textures: Any, meshes: Any, shadow: Any, toon: Any, seen: Any, depths: Any,
-) -> None:  # fmt: skip  # pragma: no cover
-    """Put the samples on the picture.
+def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: Any) -> None:  # pragma: no cover
+    """Put the samples on the picture. drawn : `Drawn`; surface : `Surface`; light : `Light`; room : `Room`
 
-    nearest, spans : what `raster.fill` has drawn; triangles from `count` on are outline.
-    seen, depths : room for one number a sample: its triangle, -1 once it is coloured, int64, and its depth, float64
     One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
+    nearest, spans, triangles = drawn.nearest, drawn.spans, drawn.triangles
+    patch, density, toon, seen, depths = surface.patch, surface.density, light.toon, room.seen, room.depths
+    count = triangles.shape[0]
     total = samples * samples
     share = 1.0 / total
     for row in range(out.shape[0]):
@@ -209,10 +242,8 @@ def resolve(
                 px, py = (column + 0.5) * samples, (row + 0.5) * samples
                 if weight < 0.5:
                     px, py = column * samples + k % samples + 0.5, row * samples + k // samples + 0.5
-                cr, cg, cb = _colour(
-                    triangles[t, 0], triangles[t, 1], triangles[t, 2], px, py, 0.7 * density[t], vertex, texels,
-                    textures, meshes, shadow, toon,
-                )  # fmt: skip
+                corners = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+                cr, cg, cb = _colour(corners, px, py, 0.7 * density[t], surface, light)
                 r += weight * cr
                 g += weight * cg
                 b += weight * cb

@@ -1,12 +1,8 @@
-"""Colours of the stage, one rule for each kind of surface.
-
-numba notices a changed kernel by its own file only: after a change here, `make clean` (or touch background.py and
-ground.py, which call these).
-"""
+"""Colours of the stage, one rule for each kind of surface."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +18,19 @@ COLOURS = (
 _NUMBERS = len(COLOURS)  # row of the palette with tile, pool; the next has the pad's middle and half size
 
 
-def palette(look: StageLook, stage: Stage) -> NDArray[np.float64]:
-    """Colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4)."""
+class Paints(NamedTuple):
+    """What the stage is coloured with.
+
+    palette : colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4); panel, arrow : of `stage.Tiles`
+    """
+
+    palette: NDArray[np.float64]
+    panel: NDArray[np.int32]
+    arrow: NDArray[np.float64]
+
+
+def paints_of(look: StageLook, stage: Stage) -> Paints:
+    """The colours of a stage, for kernels."""
     out = np.zeros((_NUMBERS + 3, 4))
     for row, name in enumerate(COLOURS):
         colour: RGB = getattr(look, name)
@@ -32,7 +39,7 @@ def palette(look: StageLook, stage: Stage) -> NDArray[np.float64]:
     out[_NUMBERS] = (look.tile, look.pool, PANEL, 0.0)
     out[_NUMBERS + 1] = ((low[0] + high[0]) / 2, (low[2] + high[2]) / 2, (high[0] - low[0]) / 2, (high[2] - low[2]) / 2)
     out[_NUMBERS + 2] = (*stage.tiles.corner, 0.0, 0.0)
-    return out
+    return Paints(out, stage.tiles.panel, stage.tiles.arrow)
 
 
 @njit(cache=True, inline="always")
@@ -87,8 +94,9 @@ def arrow_distance(a: float, b: float) -> float:  # pragma: no cover
 
 
 @njit(cache=True)
-def _pad(x: float, z: float, footprint: float, palette: Any, panel: Any, arrow: Any) -> Any:  # pragma: no cover
+def _pad(x: float, z: float, footprint: float, paints: Any) -> Any:  # pragma: no cover
     """Colour, column of the panel or -1, how much it glows when lit, and how white."""
+    palette, panel, arrow = paints.palette, paints.panel, paints.arrow
     size = palette[12, 2]
     across, deep = (palette[14, 0] - x) / size, (z - palette[14, 1]) / size
     i = min(max(int(np.floor(across)), 0), panel.shape[0] - 1)
@@ -126,15 +134,18 @@ def _wall(u: float, v: float, palette: Any) -> Any:  # pragma: no cover
 
 
 @njit(cache=True)
-def surface(
-    kind: int, x: float, z: float, u: float, v: float, footprint: float, palette: Any, panel: Any, arrow: Any
-) -> Any:  # pragma: no cover
-    """Colour (r, g, b), how much it takes shadows, column of the panel or -1, glow and whiteness of a lit panel."""
+def surface(kind: int, place: Any, footprint: float, paints: Any) -> Any:  # pragma: no cover
+    """Colour (r, g, b), how much it takes shadows, column of the panel or -1, glow and whiteness of a lit panel.
+
+    place : x and z in the world, u and v on the surface; footprint : metres of the surface in a pixel
+    """
+    x, z, u, v = place
+    palette = paints.palette
     if kind == 0:
         r, g, b = _floor(x, z, footprint, palette)
         return r, g, b, 1.0, -1, 0.0, 0.0
     if kind == 1:
-        r, g, b, column, glow, white = _pad(x, z, footprint, palette, panel, arrow)
+        r, g, b, column, glow, white = _pad(x, z, footprint, paints)
         return r, g, b, 1.0, column, glow, white
     if kind == 2:
         return palette[7, 0], palette[7, 1], palette[7, 2], 0.0, -1, 0.0, 0.0
