@@ -129,8 +129,15 @@ class _Loader(_Base):  # type: ignore[misc]
             )
         return number
 
+    def construct_yaml_int(self, node: Any) -> int:
+        try:
+            return int(super().construct_yaml_int(node))
+        except IndexError:  # "!!int" of nothing, or of underscores alone
+            raise yaml.MarkedYAMLError(problem="has a number without digits", problem_mark=node.start_mark) from None
+
 
 _Loader.add_constructor("tag:yaml.org,2002:float", _Loader.construct_yaml_float)
+_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
 
 
 def _without_tag(problem: str) -> str:

@@ -24,6 +24,7 @@ MAX_SKINNED = 16 * MAX_JOINTS  # joints of all skins together
 MAX_VERTICES = 500_000
 MAX_TRIANGLES = 500_000
 MAX_PRIMITIVES = 4096
+_LONGEST_NORMAL = 1e15  # its square still is a number of 32 bits
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6  # glTF's primitive modes
 
 
@@ -191,8 +192,7 @@ class _Reader:
             weights = np.tile(np.array([1, 0, 0, 0], dtype=np.float32), (count, 1))
         if normals is None:
             normals = vertex_normals(positions, triangles)
-        length = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        unit = (normals / length).astype(np.float32)
+        unit = unit_normals(normals)
 
         def optional(name: str, width: int) -> NDArray[Any] | None:
             return self._attribute(attributes, name, width, count) if name in attributes else None
@@ -248,6 +248,15 @@ class _Reader:
         placed = positions @ matrix[:3, :3].T + matrix[:3, 3]
         turned = None if normals is None else normals @ np.linalg.pinv(matrix[:3, :3])
         return placed.astype(np.float32), turned, joint
+
+
+def unit_normals(normals: NDArray[Any]) -> NDArray[np.float32]:
+    """Normals (n, 3) made 1 long; those whose squares no number holds are shortened first."""
+    longest = np.abs(normals).max(axis=1, keepdims=True, initial=0)
+    if (longest > _LONGEST_NORMAL).any():
+        normals = normals / np.where(longest > _LONGEST_NORMAL, longest, 1)
+    length = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    return np.asarray(normals / length, dtype=np.float32)
 
 
 def _in_threes(indices: NDArray[np.int32], mode: object) -> NDArray[np.int32]:

@@ -6,14 +6,17 @@ import json
 import os
 import struct
 import tracemalloc
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
+from dancetutor_cli.character.reader import unit_normals
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.resources import PACKAGE
@@ -187,3 +190,12 @@ def test_a_picture_that_unpacks_to_gigabytes(tmp_path: Path) -> None:
 def test_the_unchanged_file_loads(tmp_path: Path) -> None:
     path = edited(SOURCE, tmp_path / "x.glb", lambda d: json.dumps(d))
     assert load_character(str(path)).skeleton.names[0] == "HumanoidRoot"
+
+
+def test_normals_whose_squares_no_number_holds() -> None:
+    normals = np.array([[3e30, 0, 4e30], [0, 0, 0], [0, 2, 0], [1e-12, 0, 0]], dtype=np.float32)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        unit = unit_normals(normals)
+    assert unit.dtype == np.float32
+    assert unit == pytest.approx(np.array([[0.6, 0, 0.8], [0, 0, 0], [0, 1, 0], [1e-3, 0, 0]]), abs=1e-6)
