@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,16 +65,21 @@ def width_of_first_row(data: bytes, span: tuple[int, int]) -> int:
     return min(max(len(text.split(b"\n", 1)[0].strip(b"\r\n\t ")), 1), 64)
 
 
-def read_notes(
-    data: bytes, span: tuple[int, int], columns: int, timing: Timing, lines: LineIndex, *, routine: bool, trimmed: bool
-) -> NoteData:
-    """Read the note data in `data[start:end]` of a chart with so many columns.
+class NoteForm(NamedTuple):
+    """How note data are written.
 
-    Parameters
-    ----------
-    routine : `&` splits it between two players (elsewhere it is an unknown character)
+    routine : `&` splits them between two players (elsewhere it is an unknown character)
     trimmed : blank lines before a first `,` are no measure (as the games have it in .sm files)
     """
+
+    columns: int
+    routine: bool
+    trimmed: bool
+
+
+def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timing, lines: LineIndex) -> NoteData:
+    """Read the note data in `data[start:end]` of a chart."""
+    columns, routine, trimmed = form
     start, end = span
     value, escapes = blanked(data[start:end])
     view = np.frombuffer(value, dtype=np.uint8)

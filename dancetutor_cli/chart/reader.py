@@ -13,7 +13,7 @@ from dancetutor_cli.chart import msd, names, text, timing_tags
 from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
-from dancetutor_cli.chart.notes import LineIndex, read_notes, width_of_first_row
+from dancetutor_cli.chart.notes import LineIndex, NoteForm, read_notes, width_of_first_row
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, FileError, NoChartsError
 
@@ -141,8 +141,8 @@ class _Reader:
         elif not said:
             message = f"difficulty '{text.shown(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
-        routine, trimmed = names.is_routine(kind), self.format == "sm"
-        read = read_notes(self.data, notes, columns, timing, self.lines, routine=routine, trimmed=trimmed)
+        form = NoteForm(columns, names.is_routine(kind), trimmed=self.format == "sm")
+        read = read_notes(self.data, notes, form, timing, self.lines)
         self.charts.append(
             Chart(
                 index=len(self.charts), steps_type=text.one_line(kind), difficulty=difficulty, meter=meter,

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
+from dancetutor_cli.commands.records import into
 from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
@@ -33,6 +35,32 @@ if TYPE_CHECKING:
 
 _TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """How she shall dance; named as the fields of `jobs.bake.BakeTask`."""
+
+    preset: str | None
+    fps: float
+    section: str | None
+    rate: float
+    play_file: Path | None
+    bar: bool
+    gait: str
+    motion: Path | None
+    jobs: int
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What shall become of it."""
+
+    output: Path | None
+    report_to: str | None
+    plot: Path | None
+    character: str
+    yes: bool
 
 
 @click.command()
@@ -75,11 +103,10 @@ _FILE = click.Path(path_type=Path)
 @character_option
 @selection_options
 @preset_option
-def command(
-    file: Path, output: Path | None, fps: float, section: str | None, rate: float, play_file: Path | None, bar: bool,
-    gait: str, motion: Path | None, jobs: int, yes: bool,
-    report_to: str | None, plot: Path | None, character: str, preset: str | None, **selection: Any,
-) -> None:  # fmt: skip
+@into("selection", Selection)
+@into("dance", Wanted)
+@into("result", Result)
+def command(file: Path, selection: Selection, dance: Wanted, result: Result) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
@@ -91,28 +118,27 @@ def command(
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
 
+    output, character = result.output, result.character
     if output is not None:
         check_file(output, tuple(FORMATS))
-    if plot is not None:
-        check_file(plot, (".svg", ".png"))
-    if report_to not in (None, _TABLE):
-        check_file(Path(report_to))
+    if result.plot is not None:
+        check_file(result.plot, (".svg", ".png"))
+    if result.report_to is not None and result.report_to != _TABLE:
+        check_file(Path(result.report_to))
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
-    dances = load_character(dressed(character, gait))
-    task = BakeTask(
-        one_song(file), Selection(**selection), preset, fps, section, rate, play_file, bar, gait, jobs, motion
-    )  # fmt: skip
+    dances = load_character(dressed(character, dance.gait))
+    task = BakeTask(one_song(file), selection, **asdict(dance))
     from dancetutor_cli.library.selection import note_bytes
 
-    tell_of_compiling(choice_for(task.path, preset), note_bytes(task.path, task.selection))
+    tell_of_compiling(choice_for(task.path, task.preset), note_bytes(task.path, task.selection))
     asked = ask(task)
     for note in asked.notes:
         click.echo(f"warning: {safe(note)}", err=True)
     target = output or Path(default_name(asked.song, asked.chart))
     check_file(target, tuple(FORMATS))
-    _allow_long(asked, file, yes)
-    _write(Dance(asked, task, dances), target, report_to, plot)
+    _allow_long(asked, file, result.yes)
+    _write(Dance(asked, task, dances), target, result.report_to, result.plot)
 
 
 def _allow_long(asked: Asked, file: Path, yes: bool) -> None:

@@ -6,11 +6,12 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.records import into
 from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.targets import check_folder
@@ -35,6 +36,23 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     return tuple(name for name in STYLES if name in names)
 
 
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What the options ask for, besides the charts."""
+
+    styles: tuple[str, ...] | None
+    strip: bool
+    check: bool
+    diff: bool
+    dry_run: bool
+    output: Path | None
+    into_file: bool
+    force: bool
+    backup: bool
+    jobs: int | None
+    preset: str | None
+
+
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
 @click.option(
@@ -56,21 +74,9 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
 @preset_option
 @selection_options
-def command(
-    paths: tuple[Path, ...],
-    styles: tuple[str, ...] | None,
-    strip: bool,
-    check: bool,
-    diff: bool,
-    dry_run: bool,
-    output: Path | None,
-    into_file: bool,
-    force: bool,
-    backup: bool,
-    jobs: int | None,
-    preset: str | None,
-    **selection: Any,
-) -> int:
+@into("selection", Selection)
+@into("wish", Wish)
+def command(paths: tuple[Path, ...], selection: Selection, wish: Wish) -> int:
     """Write L/R foot markers into chart files, or take them out.
 
     PATH is a .sm or .ssc file, or a folder that is searched for them. Only comments are added, byte by byte;
@@ -82,31 +88,31 @@ def command(
     from dancetutor_cli.library import find_files
     from dancetutor_cli.lint.presets import choice_of
 
-    wanted = styles or (STYLES if strip else STYLES[:1])
-    if into_file and "edit" not in wanted:
+    wanted = wish.styles or (STYLES if wish.strip else STYLES[:1])
+    if wish.into_file and "edit" not in wanted:
         raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
     order = Order(
         styles=wanted,
-        named=styles is not None,
-        preset=preset,
-        selection=Selection(**selection),
-        strip=strip,
-        force=force,
-        into_file=into_file,
-        write=not (check or diff or dry_run),
-        backup=backup,
-        diff=diff,
+        named=wish.styles is not None,
+        preset=wish.preset,
+        selection=selection,
+        strip=wish.strip,
+        force=wish.force,
+        into_file=wish.into_file,
+        write=not (wish.check or wish.diff or wish.dry_run),
+        backup=wish.backup,
+        diff=wish.diff,
     )
-    songs = _songs(_items(paths, output, find_files(paths)))
-    talk = _Talk(order, check, dry_run)
+    songs = _songs(_items(paths, wish.output, find_files(paths)))
+    talk = _Talk(order, wish.check, wish.dry_run)
     talk.begin()
-    if not strip:
+    if not wish.strip:
         from dancetutor_cli.library.selection import note_bytes
 
         tell_of_compiling(
-            choice_of(preset), sum(note_bytes(item.source, Selection()) for song in songs for item in song)
+            choice_of(wish.preset), sum(note_bytes(item.source, Selection()) for song in songs for item in song)
         )
-    for outcome in _outcomes(songs, order, jobs):
+    for outcome in _outcomes(songs, order, wish.jobs):
         talk.tell(outcome)
     return talk.end()
 

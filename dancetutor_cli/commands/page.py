@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.records import into
 from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
@@ -25,6 +27,22 @@ if TYPE_CHECKING:
 
 _FILE = click.Path(path_type=Path)
 SUFFIXES = (".html", ".htm")
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What the options ask for, besides the charts."""
+
+    output: Path | None
+    music: bool
+    play_file: Path | None
+    bar: bool
+    gait: str
+    jobs: int
+    quiet: bool
+    beside: str | None
+    character: str
+    preset: str | None
 
 
 @click.command()
@@ -55,10 +73,9 @@ SUFFIXES = (".html", ".htm")
 @character_option
 @selection_options
 @preset_option
-def command(
-    path: Path, output: Path | None, music: bool, play_file: Path | None, bar: bool, gait: str, jobs: int, quiet: bool,
-    beside: str | None, character: str, preset: str | None, **selection: Any,
-) -> None:  # fmt: skip
+@into("selection", Selection)
+@into("wish", Wish)
+def command(path: Path, selection: Selection, wish: Wish) -> None:
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
     The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever
@@ -70,17 +87,20 @@ def command(
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
 
+    output = wish.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
-    bake = BakeTask(file, Selection(**selection), preset, play_file=play_file, bar=bar, gait=gait, jobs=jobs)
-    task = PageTask(bake, character, music, beside)
-    if not quiet:
-        tell_of_compiling(choice_for(file, preset))
+    bake = BakeTask(
+        file, selection, wish.preset, play_file=wish.play_file, bar=wish.bar, gait=wish.gait, jobs=wish.jobs
+    )
+    task = PageTask(bake, wish.character, wish.music, wish.beside)
+    if not wish.quiet:
+        tell_of_compiling(choice_for(file, wish.preset))
     if file.is_dir():
-        _pages(task, output or Path("pages"), jobs, quiet)
+        _pages(task, output or Path("pages"), wish.jobs, wish.quiet)
         return
     if output is not None:
         check_file(output, SUFFIXES)
-    _page(task, output, quiet)
+    _page(task, output, wish.quiet)
 
 
 def _page(task: PageTask, output: Path | None, quiet: bool) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,8 +122,8 @@ def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None)
         taken[at : at + length] = True
         inside = rows[(measure - measure[0] >= at) & (measure - measure[0] < at + length)]
         first = int(measure[0]) + at
-        span = (float(edges[at]), float(edges[at + length]))
-        out.append(_passage(play, inside, stepped, first, first + length, span, float(scores[at]), settings))
+        where = _Where(first, first + length, float(edges[at]), float(edges[at + length]), float(scores[at]))
+        out.append(_passage(play, inside, stepped[inside], where, settings))
     return tuple(out)
 
 
@@ -178,25 +178,31 @@ def _weights(
     return np.asarray(out + settings.unsure * _unsure(play, rows, settings.close))
 
 
+class _Where(NamedTuple):
+    """Measures and seconds of a passage, and how hard it is; as in `Passage`."""
+
+    first: int
+    last: int
+    start: float
+    end: float
+    score: float
+
+
 def _passage(
-    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], first: int, last: int,
-    span: tuple[float, float], score: float, settings: PassageSettings,
-) -> Passage:  # fmt: skip
+    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], where: _Where, settings: PassageSettings
+) -> Passage:
+    """What happens in some rows; stepped : (rows, columns), where they have steps that are seen."""
+
     def count(*names: str) -> int:
         return int(_marks(play, rows, names).sum())
 
-    start, end = span
     crossing = rows[_begins(_marks(play, rows, _CROSSED))]
     limbs = play.limb[crossing]
     by = [int((limbs == limb).any(axis=1).sum()) for limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
-    two = (stepped[rows].sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",))
+    two = (stepped.sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",))
     return Passage(
-        first=first,
-        last=last,
-        start=start,
-        end=end,
-        score=score,
-        rate=len(rows) / (end - start),
+        **where._asdict(),
+        rate=len(rows) / (where.end - where.start),
         steps=len(rows),
         crossovers=(by[0], by[1]),
         turn=float(np.abs(play.facing[rows]).max(initial=0.0)),

@@ -18,7 +18,7 @@ from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Press
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, StepRows
-from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry
+from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
@@ -100,9 +100,8 @@ class Film:
         receptor = box[1] + share * (box[3] - box[1])
         geometry = HighwayGeometry(box, lane, receptor, plan.directions, down)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
-        return Highway(
-            plan.notes, plan.presses, plan.lines, geometry, scroll, plan.fastest_bpm, self.face, plan.callouts
-        )
+        score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
+        return Highway(score, geometry, scroll, plan.fastest_bpm, self.face)
 
     def _box(self, name: str) -> PixelBox:
         return self.layout.box(name, self.size, self.columns)
@@ -163,10 +162,10 @@ class Film:
         assert self.layout.dancer is not None and plan.motions and plan.pad is not None
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
-        return dancer.Dancer(
-            plan.motions, plan.pad, self.lights, size, camera, look.quality, look.renderer, plan.character,
-            self.layout.dancer.region, stands=self.layout.screen is not None,
-        )  # fmt: skip
+        shot = dancer.Shot(
+            size, camera, look.quality, look.renderer, self.layout.dancer.region, stands=self.layout.screen is not None
+        )
+        return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character)
 
     @cached_property
     def _screen(self) -> Television | None:

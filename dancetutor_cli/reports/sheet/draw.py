@@ -115,21 +115,21 @@ def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
         if kind == Kind.MINE:
             yield _mine(sheet.style, x, y)
         elif kind == Kind.FAKE or (kind in _HEADS and not notes.judged[n]):
-            yield _arrow(sheet, lane, x, y, sheet.style.colours["fake"], opacity=0.45)
+            yield _arrow(sheet, lane, (x, y), sheet.style.colours["fake"], 0.45)
         elif kind in _HEADS:
-            yield _arrow(sheet, lane, x, y, sheet.style.note_colour(tick), lift=kind == Kind.LIFT)
+            yield _arrow(sheet, lane, (x, y), sheet.style.note_colour(tick), 0.4 if kind == Kind.LIFT else 1.0)
             if (tick, lane) in sheet.limbs:
                 marks.append(mark(sheet.style, x, y, *sheet.limbs[tick, lane]))
     yield from marks
 
 
-def _arrow(sheet: Sheet, lane: int, x: float, y: float, colour: str, opacity: float = 1.0, lift: bool = False) -> str:
+def _arrow(sheet: Sheet, lane: int, at: tuple[float, float], colour: str, opacity: float) -> str:
     angle = sheet.arrows[lane]
-    move = f"translate({number(x)} {number(y)}) scale({number(sheet.style.arrow)})"
+    move = f"translate({number(at[0])} {number(at[1])}) scale({number(sheet.style.arrow)})"
     turn = f" rotate({number(angle)})" if angle else ""
     return tag(
         "use", href="#middle" if angle is None else "#arrow", transform=move + turn, fill=colour,
-        fill_opacity=0.4 if lift else opacity, stroke=sheet.style.colours["ink"], stroke_width="0.045",
+        fill_opacity=opacity, stroke=sheet.style.colours["ink"], stroke_width="0.045",
     )  # fmt: skip
 
 

@@ -101,5 +101,6 @@ class Calls:
             share = min(1.0, max(0.0, left / self.style.callout_seconds))
             bar = (label.shape[1] - 8 * self.scale) * share
             edge = x + 4 * self.scale
-            rectangle(frame, edge, y, edge + bar, y + 4 * self.scale, self.style.callout[one.severity], 0.9 * fade)
+            line = (edge, y, edge + bar, y + 4 * self.scale)
+            rectangle(frame, line, self.style.callout[one.severity], 0.9 * fade)
             y += 14 * self.scale

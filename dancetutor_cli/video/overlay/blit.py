@@ -7,7 +7,7 @@ the sRGB values, as image editors do; everything is integer arithmetic, so that 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,34 @@ from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.picture import Frame
 
 Sprite = NDArray[np.uint8]
+Box = tuple[float, float, float, float]  # left, top, right, bottom
+
+
+class Ink(NamedTuple):
+    """How a sprite is drawn. opacity : 0..1; gain : brightens, 1 leaves colours as they are"""
+
+    opacity: float = 1.0
+    gain: float = 1.0
+
+
+class Run(NamedTuple):
+    """Where a tile is repeated downwards: from `top` to `bottom`, a first row of it at `phase`; pixels."""
+
+    top: float
+    bottom: float
+    phase: float
 
 
 @njit(cache=True)
-def _blit(
-    frame: Any, sprite: Any, x: int, y: int, fraction: int, opacity: int, low: int, high: int, gain: int
-) -> None:  # pragma: no cover
-    """Sprite row i covers frame rows y + i and, by `fraction` of 256, y + i + 1. Rows low..high of the frame only."""
+def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pragma: no cover
+    """Draw a sprite, all in whole numbers.
+
+    at : x, y and `fraction`: sprite row i covers frame rows y + i and, by `fraction` of 256, y + i + 1
+    shown : the frame's rows low..high only; ink : opacity and gain, of 256
+    """
+    x, y, fraction = at
+    low, high = shown
+    opacity, gain = ink
     height, width = frame.shape[0], frame.shape[1]
     rows, columns = sprite.shape[0], sprite.shape[1]
     first = max(0, -x)
@@ -47,10 +68,10 @@ def _blit(
 
 
 @njit(cache=True)
-def _strip(
-    frame: Any, tile: Any, x: int, top: int, bottom: int, phase: int, opacity: int, low: int, high: int
-) -> None:  # pragma: no cover
-    """Repeat `tile` downwards; top, bottom and phase in 1/256 pixels. End rows are covered by their share."""
+def _strip(frame: Any, tile: Any, x: int, run: Any, shown: Any, opacity: int) -> None:  # pragma: no cover
+    """Repeat `tile` downwards; run : top, bottom and phase in 1/256 pixels. End rows are covered by their share."""
+    top, bottom, phase = run
+    low, high = shown
     height, width = frame.shape[0], frame.shape[1]
     rows, columns = tile.shape[0], tile.shape[1]
     first = max(0, -x)
@@ -79,8 +100,9 @@ def _strip(
 
 
 @njit(cache=True)
-def _rectangle(frame: Any, left: int, top: int, right: int, bottom: int, colour: Any, opacity: int) -> None:
-    """Edges in 1/256 pixels; border pixels are covered by their share."""  # pragma: no cover
+def _rectangle(frame: Any, box: Any, colour: Any, opacity: int) -> None:  # pragma: no cover
+    """Edges in 1/256 pixels; border pixels are covered by their share."""
+    left, top, right, bottom = box
     height, width = frame.shape[0], frame.shape[1]
     for y in range(max(0, top >> 8), min(height, (bottom + 255) >> 8)):
         vertical = min(bottom, (y + 1) << 8) - max(top, y << 8)
@@ -96,57 +118,49 @@ def blit(
     sprite: Sprite,
     x: float,
     y: float,
-    opacity: float = 1.0,
+    ink: Ink | float = 1.0,
     rows: tuple[int, int] | None = None,
-    gain: float = 1.0,
 ) -> None:
     """Draw `sprite` with its top left at (x, y), y with sub-pixel accuracy, x rounded.
 
-    opacity : 0..1; rows : draw only on these frame rows [low, high); gain : brightens (1 leaves colours as they are)
+    ink : how, or only its opacity; rows : draw only on these frame rows [low, high)
     """
+    opacity, gain = ink if isinstance(ink, Ink) else Ink(ink)
     level = round(256 * min(1.0, opacity))
     if level <= 0:
         return
     whole = math.floor(y)
     fraction = round(256 * (y - whole))
     low, high = rows if rows is not None else (0, frame.shape[0])
-    _blit(frame, sprite, round(x), whole, fraction, level, low, high, round(256 * gain))
+    _blit(frame, sprite, (round(x), whole, fraction), (low, high), (level, round(256 * gain)))
 
 
 def strip(
     frame: Frame,
     tile: Sprite,
     x: float,
-    top: float,
-    bottom: float,
-    phase: float,
+    run: Run,
     opacity: float = 1.0,
     rows: tuple[int, int] | None = None,
 ) -> None:
     """Fill [top, bottom) with `tile` repeated downwards, its first row at `phase`; all with sub-pixel accuracy."""
+    top, bottom, phase = run
     low, high = rows if rows is not None else (0, frame.shape[0])
     if bottom <= low or top >= high:
         return
     top, bottom = max(top, low - 1.0), min(bottom, high + 1.0)  # also keeps absurdly long holds inside integers
     phase = math.fmod(phase, tile.shape[0])
-    args = (round(256 * top), round(256 * bottom), round(256 * phase))
-    _strip(frame, tile, round(x), *args, round(256 * min(1.0, opacity)), low, high)
+    edges = (round(256 * top), round(256 * bottom), round(256 * phase))
+    _strip(frame, tile, round(x), edges, (low, high), round(256 * min(1.0, opacity)))
 
 
-def rectangle(
-    frame: Frame,
-    left: float,
-    top: float,
-    right: float,
-    bottom: float,
-    colour: tuple[int, int, int],
-    opacity: float = 1.0,
-) -> None:
+def rectangle(frame: Frame, box: Box, colour: tuple[int, int, int], opacity: float = 1.0) -> None:
     """Fill a rectangle, edges with sub-pixel accuracy."""
+    left, top, right, bottom = box
     height, width = frame.shape[:2]
     left, right = max(left, 0.0), min(right, float(width))
     top, bottom = max(top, 0.0), min(bottom, float(height))
     if right <= left or bottom <= top:
         return
     edges = (round(256 * left), round(256 * top), round(256 * right), round(256 * bottom))
-    _rectangle(frame, *edges, np.array(colour, dtype=np.int64), round(256 * min(1.0, opacity)))
+    _rectangle(frame, edges, np.array(colour, dtype=np.int64), round(256 * min(1.0, opacity)))

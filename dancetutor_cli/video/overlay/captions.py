@@ -175,11 +175,12 @@ class Progress:
         colour = style.accent if bright else (92, 98, 128)
         for x, height in enumerate(heights):
             base = 1.5 * self.scale
-            rectangle(picture, a + x, floor - base - (room - base) * height, a + x + 1, floor, colour, 0.88)
+            rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
         for edge in self.song.section:
             at = a + self._position(edge) * (b - a)
             if a < at < b:
-                rectangle(picture, at - self.scale, 0, at + self.scale, bottom - top, style.difficulty["Medium"], 0.8)
+                box = (at - self.scale, 0, at + self.scale, bottom - top)
+                rectangle(picture, box, style.difficulty["Medium"], 0.8)
         return picture
 
     def _position(self, second: float) -> float:
@@ -193,9 +194,8 @@ class Progress:
         split = max(0, min(right - left, int(x) - left))
         frame[top:bottom, left:right] = self.ahead
         frame[top:bottom, left : left + split] = self.played[:, :split]
-        rectangle(
-            frame, x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale, WHITE
-        )
+        here = (x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale)
+        rectangle(frame, here, WHITE)
         words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
         blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
 

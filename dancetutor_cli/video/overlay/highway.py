@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites
-from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle, strip
+from dancetutor_cli.video.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
 from dancetutor_cli.video.scroll import Scroll
@@ -63,30 +64,31 @@ class _Now:
     spacing: float
 
 
+class Score(NamedTuple):
+    """What a highway shows of a chart."""
+
+    notes: NoteTrack
+    presses: Presses
+    lines: BeatLines
+    callouts: tuple[Callout, ...] = ()
+
+
 class Highway:
     """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
 
     def __init__(
-        self,
-        notes: NoteTrack,
-        presses: Presses,
-        lines: BeatLines,
-        geometry: HighwayGeometry,
-        scroll: Scroll,
-        fastest_bpm: float,
-        face: Typeface,
-        callouts: tuple[Callout, ...] = (),
+        self, score: Score, geometry: HighwayGeometry, scroll: Scroll, fastest_bpm: float, face: Typeface
     ) -> None:
-        self.notes, self.presses, self.lines = notes, presses, lines
-        self.geometry, self.face, self.callouts = geometry, face, callouts
-        self._callout_seconds = np.array([c.second for c in callouts])
-        self._callout_beats = np.array([c.beat for c in callouts])
+        self.notes, self.presses, self.lines, self.callouts = score
+        self.geometry, self.face = geometry, face
+        self._callout_seconds = np.array([c.second for c in self.callouts])
+        self._callout_beats = np.array([c.beat for c in self.callouts])
         self.by_time = scroll.mode == "C"
         self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
         self.size = max(8, round(geometry.lane * self.style.arrow))
         self.limb_colours = limb_colours().by_limb
-        self.lights = PanelLights(presses, len(geometry.directions), self.style.flash_seconds)
+        self.lights = PanelLights(self.presses, len(geometry.directions), self.style.flash_seconds)
         self._number = lru_cache(maxsize=256)(self._draw_number)
         self._flag = lru_cache(maxsize=64)(self._draw_flag)
         self._make_sprites()
@@ -123,16 +125,16 @@ class Highway:
 
     def background(self, frame: Frame) -> None:
         """The still part, drawn once: panel and lanes."""
-        left, top, right, bottom = self.geometry.box
-        rectangle(frame, left, top, right, bottom, self.style.background, 0.82)
+        _, top, _, bottom = self.geometry.box
+        rectangle(frame, self.geometry.box, self.style.background, 0.82)
         lane, x0 = self.geometry.lane, self.geometry.left
         edge = 0.14 * lane
         x1 = x0 + lane * len(self.geometry.directions)
-        rectangle(frame, x0 - edge, top, x1 + edge, bottom, (0, 0, 0), 0.35)
+        rectangle(frame, (x0 - edge, top, x1 + edge, bottom), (0, 0, 0), 0.35)
         for x in (x0 - edge, x1 + edge):
-            rectangle(frame, x - 1, top, x + 1, bottom, self.style.lane_line, 0.3)
+            rectangle(frame, (x - 1, top, x + 1, bottom), self.style.lane_line, 0.3)
         for i in range(1, len(self.geometry.directions)):
-            rectangle(frame, x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom, self.style.lane_line, 0.08)
+            rectangle(frame, (x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom), self.style.lane_line, 0.08)
 
     def draw(self, frame: Frame, second: float, beat: float, speed: float = 1.0) -> None:
         """Draw everything that moves at `second` of the music.
@@ -167,7 +169,7 @@ class Highway:
         for i in shown:
             strong = i % BEATS_PER_MEASURE == 0
             half = (1.25 if strong else 0.6) * lane / 84
-            rectangle(frame, x0, y[i] - half, x1, y[i] + half, self.style.lane_line, 0.42 if strong else 0.13)
+            rectangle(frame, (x0, y[i] - half, x1, y[i] + half), self.style.lane_line, 0.42 if strong else 0.13)
             if strong and abs(y[i] - last_label) > 0.3 * lane:
                 last_label = y[i]
                 number = self._number(int(i) // BEATS_PER_MEASURE)
@@ -207,7 +209,7 @@ class Highway:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
         for column, direction in enumerate(self.geometry.directions):
             x, y = self._corner(column, self.geometry.receptor, self.size)
-            blit(frame, self.receptors[direction], x, y, 0.95, self._rows, pulse)
+            blit(frame, self.receptors[direction], x, y, Ink(0.95, pulse), self._rows)
             light, limb = self.lights.at(column, second)
             if light > 0:
                 glow = self.glows[direction, limb if limb >= 0 else 4]
@@ -240,7 +242,7 @@ class Highway:
         x, _ = self._corner(int(self.notes.column[i]), 0, tile.shape[1])
         opacity = 1.0 if active else 0.78
         upper, lower = min(head, tail), max(head, tail)
-        strip(frame, tile, x, upper, lower, phase, opacity, self._rows)
+        strip(frame, tile, x, Run(upper, lower, phase), opacity, self._rows)
         if tail >= head:
             blit(frame, end, x, tail, opacity, self._rows)
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,12 +31,27 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.scene.camera import Camera
 
 
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """How the dancer is taken. size : (width, height); camera : by name or place; kind : the renderer
+
+    region : share of the picture that she fills
+    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    """
+
+    size: tuple[int, int]
+    camera: str
+    quality: Quality
+    kind: RendererKind
+    region: Region = WHOLE
+    stands: bool = False
+
+
 class Dancer:
     """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
 
     motions : hers at each rate, in seconds of the music as it is heard at that rate
-    region : share of the picture that she fills
-    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    character : who dances; None: the project's own dancer
     """
 
     def __init__(
@@ -43,21 +59,16 @@ class Dancer:
         motions: Mapping[float, Motion],
         pad: PadLike,
         lights: PanelLights,
-        size: tuple[int, int],
-        camera: str,
-        quality: Quality,
-        kind: RendererKind,
+        shot: Shot,
         character: Character | None = None,
-        region: Region = WHOLE,
-        stands: bool = False,
     ) -> None:
         self.motions, self.lights = motions, lights
         self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
         floor = -default_look().stage.pad_height
         self.scene = Scene(with_bar(character or load_dancer(), self._bar, floor), pad)
-        self.camera: Camera = self.scene.camera(camera, size, region)
-        self._follow = {} if stands else self._followers(camera, size, region)
-        self.renderer = renderer.create(self.scene, size, quality, kind)
+        self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
+        self._follow = {} if shot.stands else self._followers(shot.camera, shot.size, shot.region)
+        self.renderer = renderer.create(self.scene, shot.size, shot.quality, shot.kind)
         skeleton = self.scene.character.skeleton
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
         self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +15,21 @@ if TYPE_CHECKING:
 
 FRAME = (14, 15, 24)
 RIM = (96, 104, 150)
+THICK = 0.035  # of the rim, as a part of the screen's sides
+
+
+class _Place(NamedTuple):
+    """Where the screen is. inverse : (3, 3), pixels to places on it, 0..1; box : pixels around it; rim : thickness."""
+
+    inverse: NDArray[np.float64]
+    box: NDArray[np.int64]
+    rim: float
 
 
 @njit(cache=True)
-def _warp(
-    frame: Any, picture: Any, still: Any, inverse: Any, box: Any, rim: float, colours: Any
-) -> None:  # pragma: no cover
-    """Draw `picture` where the frame still shows `still`; `inverse` takes pixels to picture places, 0..1."""
+def _warp(frame: Any, picture: Any, still: Any, place: Any, colours: Any) -> None:  # pragma: no cover
+    """Draw `picture` where the frame still shows `still`; place : `_Place`; colours : of screen and rim, (2, 3)."""
+    inverse, box, rim = place
     rows, columns = picture.shape[0], picture.shape[1]
     for y in range(box[1], box[3]):
         for x in range(box[0], box[2]):
@@ -68,16 +76,15 @@ class Television:
         # She looks to +Z, so the screen looks to -Z, and its left edge, as she sees it, is at greater x.
         corners = np.array([(x + w, y + h, z), (x - w, y + h, z), (x - w, y - h, z), (x + w, y - h, z)])
         places = camera.project(corners, (width, height))[:, :2]
-        self.inverse = np.linalg.inv(_homography(places))
-        self.rim = 0.035
-        grown = places.mean(0) + (places - places.mean(0)) * (1 + 3 * self.rim)
+        grown = places.mean(0) + (places - places.mean(0)) * (1 + 3 * THICK)
         low, high = np.floor(grown.min(0)), np.ceil(grown.max(0))
-        self.box = np.array([max(0, low[0]), max(0, low[1]), min(width, high[0]), min(height, high[1])], dtype=np.int64)
+        box = np.array([max(0, low[0]), max(0, low[1]), min(width, high[0]), min(height, high[1])], dtype=np.int64)
+        self.place = _Place(np.linalg.inv(_homography(places)).astype(np.float64), box, THICK)
 
     def draw(self, frame: Frame, picture: Frame) -> None:
         """Show `picture` on the screen."""
         colours = np.array([FRAME, RIM], dtype=np.int64)
-        _warp(frame, picture, self.still, self.inverse, self.box, self.rim, colours)
+        _warp(frame, picture, self.still, self.place, colours)
 
 
 def _homography(places: NDArray[np.float64]) -> NDArray[np.float64]:

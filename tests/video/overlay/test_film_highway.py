@@ -18,7 +18,7 @@ from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, Callout, Presses, quantisation
 from dancetutor_cli.video.overlay import sprites
-from dancetutor_cli.video.overlay.blit import blit, rectangle, strip
+from dancetutor_cli.video.overlay.blit import Run, blit, rectangle, strip
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.scroll import parse_scroll
 from dancetutor_cli.video.settings import load
@@ -46,10 +46,10 @@ def test_sprites_are_cut_at_edges_and_rows() -> None:
 
 def test_half_opacity_is_half_way_and_strips_cover_their_share() -> None:
     frame = np.full((4, 1, 3), 100, dtype=np.uint8)
-    strip(frame, np.full((2, 1, 4), 255, dtype=np.uint8), 0, 1.5, 3.0, 0.0)
+    strip(frame, np.full((2, 1, 4), 255, dtype=np.uint8), 0, Run(1.5, 3.0, 0.0))
     assert frame[:, 0, 0].tolist() == [100, 178, 255, 100]
     frame[:] = 100
-    rectangle(frame, 0, 0, 1, 2, (200, 200, 200), 0.5)
+    rectangle(frame, (0, 0, 1, 2), (200, 200, 200), 0.5)
     assert frame[:, 0, 0].tolist() == [150, 150, 100, 100]
 
 

@@ -15,7 +15,7 @@ from dancetutor_cli.rig.skeleton import dancer_skeleton
 from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import Presses
-from dancetutor_cli.video.scene.dancer import Dancer
+from dancetutor_cli.video.scene.dancer import Dancer, Shot
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 ASKED = [
@@ -43,7 +43,7 @@ def dancer(pad_name: str, camera: str, stands: bool = False) -> Dancer:
     assert pad is not None
     lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
     motions = {rate: Motion(skeleton, 10.0, times / rate, rotations, root, ()) for rate in (0.5, 1.0)}
-    return Dancer(motions, pad, lights, (96, 96), camera, "draft", "cpu", stands=stands)
+    return Dancer(motions, pad, lights, Shot((96, 96), camera, "draft", "cpu", stands=stands))
 
 
 @pytest.mark.parametrize("rate", [1.0, 0.5])
