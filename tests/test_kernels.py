@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import importlib.util
 import os
 import shutil
@@ -120,6 +121,23 @@ def test_a_damaged_file_is_compiled_again_and_mended(tmp_path: Path, monkeypatch
             again = loaded(source)
             assert again.double(4) == 8
             assert again.double.stats.cache_hits  # ... and kept
+
+
+def test_a_full_disk_only_means_that_nothing_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    source = tmp_path / "some_kernels.py"
+    source.write_text(MODULE)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(kernels._File, "save", full)
+    module = loaded(source)
+    assert module.double(4) == 8
+    assert not list((tmp_path / "cache").glob("*/*"))
+    monkeypatch.undo()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    assert loaded(source).double(4) == 8
 
 
 def test_kernels_that_came_with_a_read_only_installation_are_used(

@@ -1,0 +1,64 @@
+"""A segment of a film that cannot be finished leaves nothing behind, whatever it is made of."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs.film_work import Segment, render_segment
+from dancetutor_cli.video.media import encoder
+from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.media.film_formats import PICTURES
+
+
+class _NoFilm:
+    """A film whose frames nobody looks at."""
+
+    def frames(self, first: int, last: int) -> Any:
+        return iter(range(first, last))
+
+
+def _fails(write: Callable[[Path], None], error: BaseException) -> Callable[..., None]:
+    def encode(frames: object, encoding: object, target: Path, first: int) -> None:
+        write(target)
+        raise error
+
+    return encode
+
+
+@pytest.fixture(autouse=True)
+def no_film(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film_work, "_film", lambda plan: _NoFilm())
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt(), SystemExit()])
+def test_half_a_segment_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
+    half = _fails(lambda target: (target.write_bytes(b"half"), None)[1], error)
+    monkeypatch.setattr(encoder, "encode_segment", half)
+    whole = tmp_path / "segment_00000.mp4"
+    whole.write_bytes(b"done before")
+    segment = Segment(1, 24, 48, tmp_path / "segment_00001.mp4")
+    with pytest.raises(type(error)):
+        render_segment(print, tmp_path / "plan", segment, Encoding("mp4", (64, 36), 30))
+    assert [path.name for path in tmp_path.iterdir()] == ["segment_00000.mp4"]
+
+
+def test_its_own_pictures_are_removed_and_no_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    frames = tmp_path / "frames"
+    frames.mkdir()
+    (frames / "frame_000023.png").write_bytes(b"of the segment before")
+    (frames / "frame_000048.png").write_bytes(b"of the segment after")
+
+    def two(target: Path) -> None:
+        for number in (24, 25):
+            (target / f"frame_{number:06d}.png").write_bytes(b"half")
+
+    monkeypatch.setattr(encoder, "encode_segment", _fails(two, OSError(errno.ENOSPC, "No space left on device")))
+    with pytest.raises(OSError, match="No space left"):
+        render_segment(print, tmp_path / "plan", Segment(1, 24, 48, frames), Encoding(PICTURES, (64, 36), 30))
+    assert sorted(path.name for path in frames.iterdir()) == ["frame_000023.png", "frame_000048.png"]
