@@ -31,10 +31,14 @@ MOST = 60.0  # of any weight, in units of SCALE
 KNOTS = np.array([50, 80, 110, 150, 200, 270, 370, 500, 700, 1000, 1500])  # of every curve, milliseconds
 SMALL, SMOOTH = 3e-6, 3e-5  # what the square of a weight costs, and of the difference of neighbouring knots, a row
 
-# a foot that goes to a panel apart within 50 ms while the other one is free: no label may make that cheap
-_LEAST = np.zeros((len(CURVES), len(KNOTS)))
-_LEAST[CURVES.index("doublestep"), 0] = FORBIDDEN
-_LEAST = np.concatenate([np.zeros(len(WEIGHTS)), _LEAST.ravel()])
+# what a foot cannot do is no label's business
+_GIVEN = {"teleport": np.where(KNOTS <= 80, FORBIDDEN, 0.0)}
+_LOW = np.concatenate(
+    [np.zeros(len(WEIGHTS)), *(_GIVEN.get(name, np.zeros(len(KNOTS))) for name in CURVES)]
+)  # fmt: skip
+_HIGH = np.concatenate(
+    [np.full(len(WEIGHTS), MOST), *(_GIVEN.get(name, np.full(len(KNOTS), MOST)) for name in CURVES)]
+)  # fmt: skip
 _FREE = np.array([name not in FIXED for name in WEIGHTS])
 _UNIT = np.array([DISTANCE_UNIT if name in BY_SIZE else 1 for name in WEIGHTS])
 _HAT = np.stack([np.interp(np.arange(MOST_MS + 1), KNOTS, row) for row in np.eye(len(KNOTS))], axis=1)
@@ -144,8 +148,8 @@ def likelihood(
         return value, gradient / scale
 
     found = minimize(
-        scaled, np.maximum(start, _LEAST) * scale, jac=True, method="L-BFGS-B",
-        bounds=[(least * s, MOST * s) for least, s in zip(_LEAST, scale, strict=True)],
+        scaled, start.clip(_LOW, _HIGH) * scale, jac=True, method="L-BFGS-B",
+        bounds=[(low * s, high * s) for low, high, s in zip(_LOW, _HIGH, scale, strict=True)],
         options={"maxiter": rounds, "maxcor": 30},
     )  # fmt: skip
     return np.asarray(found.x / scale)
@@ -179,7 +183,7 @@ def perceptron(start: Floats, data: Sequence[Share], rounds: int = 6, rate: floa
     ]
     for _ in range(rounds):
         for number in order.permutation(len(some)):
-            found = np.clip(found - rate * _mistakes(some[number], found), _LEAST, MOST)
+            found = np.clip(found - rate * _mistakes(some[number], found), _LOW, _HIGH)
             mean += found
             count += 1
     return mean / count

@@ -15,6 +15,7 @@ from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_moves import expand_itg
 from dancetutor_cli.play.jit import borrowed, njit
+from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
     COST,
@@ -58,6 +59,8 @@ from dancetutor_cli.play.store import (
 from dancetutor_cli.play.tables import MOST_MOVES, Geometry, Moves
 from dancetutor_cli.play.thesis_moves import expand_thesis
 
+_RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
+_PLACE = (1 << PLACE_BITS) - 1
 _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
 
 
@@ -109,6 +112,15 @@ def _room(t):  # type: ignore[no-untyped-def]
 
 
 @njit
+def _rank(key):  # type: ignore[no-untyped-def]
+    """Where a state stands in its layer, above `_RANK_SHIFT`. Of ways as cheap the first is taken, as people choose:
+    the left foot steps first, and in a jump it is on the column further to the left.
+    """
+    left, right, rest = key & _PLACE, key >> PLACE_BITS & _PLACE, key >> 2 * PLACE_BITS
+    return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
+
+
+@njit
 def _sort(values, count):  # type: ignore[no-untyped-def]
     """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
     gap = 1
@@ -129,7 +141,7 @@ def _connect(key, layer, packed, found, reached, slot, t):  # type: ignore[no-un
     """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
 
     key : layer << 32 | pattern; packed : of each state of the layer, what `Tables.pair` says
-    reached : key << 32 | number of each of the `found` next states, in any order; slot : scratch, by state
+    reached : rank and number of each of the `found` next states, in any order; slot : scratch, by state
     """
     counts, moves, ends, transition = t.counts, t.move, t.ends, t.transition
     size, total = t.layer[layer, LAYER_SIZE], 0
@@ -145,7 +157,7 @@ def _connect(key, layer, packed, found, reached, slot, t):  # type: ignore[no-un
         return MORE_LAYER_STATES
     _sort(reached, found)
     for i in range(found):
-        reached[i] &= 0xFFFFFFFF
+        reached[i] &= (1 << _RANK_SHIFT) - 1
         slot[reached[i]] = i
     e = counts[EDGES]
     number = counts[TRANSITIONS]
@@ -216,7 +228,7 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
                     state = np.int64(t.move[move, NEXT])
                     if seen[state] != r:
                         seen[state] = r
-                        reached[found] = keys[state] << 32 | state
+                        reached[found] = _rank(keys[state]) | state
                         found += 1
             wanted = _connect(layer << 32 | pattern[r], layer, packed, found, reached, slot, t)
             if wanted != DONE:

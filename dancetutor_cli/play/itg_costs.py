@@ -38,7 +38,7 @@ _DISTANCE_BITS = 10
 _WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
 (
     _F_DOUBLESTEP, _F_NEAR, _F_RELEASED, _F_FREED, _F_EARLY_FREED, _F_FORCED, _F_GROWN, _F_JACK, _F_SWITCH, _F_BRACKET,
-    _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_CROSSOVER, _F_CROSSOVER_START,
+    _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_TELEPORT, _F_CROSSOVER, _F_CROSSOVER_START,
 ) = (1 << _DISTANCE_BITS + i for i in range(_CURVES - 1))  # fmt: skip
 _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner leaps
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
@@ -74,6 +74,12 @@ def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-unty
         old = g.mask[before[foot]]
         if ended[0] & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
+        if (
+            before[LAST] in (0, foot + 1)
+            and not before[LEFT_HELD + 1 - foot]
+            and _is_apart(old, pressed[foot], g.place)
+        ):
+            facts |= _F_TELEPORT
     if left and right:
         events |= EVENT_JUMP
         facts |= _F_BRACKET_JUMP if brackets else _F_JUMP
@@ -91,6 +97,16 @@ def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-unty
         facts |= more
         events |= happened
     return facts | min(distance, (1 << _DISTANCE_BITS) - 1), events
+
+
+@njit
+def _is_apart(stands, pressed, place):  # type: ignore[no-untyped-def]
+    """Whether none of the pressed panels is one that the foot stood on, or its neighbour. place : of `Geometry`"""
+    for a in range(len(place)):
+        for b in range(len(place)):
+            if stands >> a & 1 and pressed >> b & 1 and place[a, b] >= 0:
+                return False
+    return True
 
 
 @njit
@@ -155,11 +171,8 @@ def _charge_doublestep(before, foot, pressed, ended, terms, g, w):  # type: igno
         return 0, EVENT_DOUBLESTEP
     if pressed & stands:
         return _F_GROWN, EVENT_DOUBLESTEP
-    for a in range(len(g.arrow)):
-        for b in range(len(g.arrow)):
-            if stands >> a & 1 and pressed >> b & 1 and g.place[a, b] >= 0:
-                return _F_NEAR, EVENT_DOUBLESTEP
-    return _F_DOUBLESTEP, EVENT_DOUBLESTEP
+    near = not _is_apart(stands, pressed, g.place)
+    return _F_NEAR if near else _F_DOUBLESTEP, EVENT_DOUBLESTEP
 
 
 @njit(inline="always")

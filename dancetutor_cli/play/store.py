@@ -53,7 +53,7 @@ class Tables(NamedTuple):
     terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
     timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
-    layer : int32 (, 2), where its states start in `layer_state`, and their number; they are in order of their keys
+    layer : int32 (, 2), where its states start in `layer_state`, and their number; in the order of `explore`
     layer_key : int64, hash of the states; layer_hash : int32
     transition : int32 (, 3), layer it leads to, first edge, number of edges
     transition_key : int64, layer << 32 | pattern; transition_hash : int32

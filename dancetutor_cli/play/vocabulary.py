@@ -39,7 +39,7 @@ _ITG = (
 _ITG_CURVES = (
     "doublestep", "near-doublestep", "released-doublestep", "freed-doublestep", "early-freed-doublestep",
     "forced-doublestep", "grown-bracket", "jack", "footswitch", "bracket", "held-bracket", "bracket-jump", "jump",
-    "after-jump", "crossover", "crossover-start", "distance",
+    "after-jump", "teleport", "crossover", "crossover-start", "distance",
 )  # fmt: skip
 
 MODELS = {

@@ -73,6 +73,9 @@ def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
         ("bracket-jump", "1... ...1 11.1", "L... ...R LL.R"),
         ("jump", "1..1 .11.", "L..R .LR."),
         ("after-jump", "1..1 .1..", "L..R .L.."),
+        ("teleport", "1... ...1", "L... ...L"),
+        ("teleport", "1..1 ...1", "L..R ...L"),
+        ("teleport", "1... 1..1", "L... R..L"),
         ("crossover", "1... .1.. ...1", "L... .R.. ...L"),
         ("crossover-start", "1... .1.. ...1", "L... .R.. ...L"),
     ],
@@ -110,6 +113,9 @@ def test_a_doublestep_after_the_other_foot_was_freed() -> None:
         ("doublestep", "1... M... ...1", "L... .... ...L"),  # the author asks for it
         ("footswitch", ".1.. .M.. .1..", ".R.. .... .L.."),
         ("after-jump", "1..1 1...", "L..R L..."),  # where the foot is
+        ("teleport", "1... .1..", "L... .L.."),  # beside where it is
+        ("teleport", "1... .1.. ...1", "L... .R.. ...L"),  # it had a row more
+        ("teleport", "2... ..1. .1.. 3...", "L... ..R. .R.."),  # the other foot holds
         ("jump", "1... ...1 11.1", "L... ...R LL.R"),
         ("bracket", "1... ...1 11.1", "L... ...R LL.R"),
         ("bracket-in-front", "1... ...1 .1.1", "L... ...R .R.R"),  # behind the middle
@@ -117,6 +123,21 @@ def test_a_doublestep_after_the_other_foot_was_freed() -> None:
 )
 def test_what_costs_nothing(term: str, picture: str, feet: str) -> None:
     assert price(picture, feet, term) == 0
+
+
+def test_no_foot_is_in_two_places_where_a_bracket_would_do() -> None:
+    """Down with the right foot, then left and up 56 ms later: the left foot takes both."""
+    found = play.solve(rows_of("...1 1... .1.. 1.1.", 6, 270.0), pad_of("dance-single"), ITG)
+    assert found.limb.tolist()[2:] == [[-1, Limb.RIGHT_FOOT, -1, -1], [Limb.LEFT_FOOT, -1, Limb.LEFT_FOOT, -1]]
+
+
+@pytest.mark.parametrize("name", ["itg", "pump", "ddr", "stamina"])
+def test_a_foot_that_has_just_stepped_is_nowhere_else_within_80_ms(name: str) -> None:
+    """Single steps to chance panels, too fast for any foot: the feet can always take turns."""
+    rng, pad = np.random.default_rng(6), pad_of("pump-single" if name == "pump" else "dance-single")
+    words = ["".join("1" if p == step else "." for p in range(len(pad))) for step in rng.integers(0, len(pad), 300)]
+    found = play.solve(rows_of(" ".join(words), 6, 210.0), pad, play.load_preset(name))  # 71 ms a row
+    assert not found.cost[:, found.terms.index("teleport")].any()
 
 
 def test_time_is_counted_from_the_last_row_with_steps() -> None:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from play_rows import pad_of, rows_of
+from play_rows import first, letters, pad_of, rows_of
 
 from dancetutor_cli import play
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import Ambiguity, Preset, Rows
-from dancetutor_cli.play.engine import engine_for
+from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.store import ACTION, COST, FACTS, LIMBS, NEXT
 
 PRESETS = {name: play.load_preset(name) for name in play.preset_names()}
@@ -119,6 +119,28 @@ def test_cost_terms_add_up_to_the_cost(corpus_rows: list[tuple[str, Rows]]) -> N
             found = play.solve(rows, pad_of(steps_type), preset)
             assert found.total == play.alternatives(rows, pad_of(steps_type), preset, 1)[0].play.total
             assert len(found.terms) == found.cost.shape[1] and (found.cost >= 0).all()
+
+
+def test_of_ways_as_cheap_the_left_foot_begins_and_stands_left() -> None:
+    pad, preset = pad_of("dance-single"), PRESETS["itg"]
+    assert letters(play.solve(rows_of("..1."), pad, preset)) == "..L."
+    assert play.solve(rows_of(".11."), pad, preset).limb.tolist() == [[-1, 0, 1, -1]]
+
+
+def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:
+    """Not even which of the ways as cheap is taken: the numbers of states, but not their order, come from before."""
+    preset = PRESETS["itg"]
+    for steps_type, rows in corpus_rows:
+        pad = pad_of(steps_type)
+        backwards = Rows(
+            rows.tick, rows.second, rows.line, *(getattr(rows, name)[::-1] for name in ("steps", "hold_end", "mines")),
+            rows.milliseconds,
+        )  # fmt: skip
+        fresh, used = Engine(pad, preset), Engine(pad, preset)
+        used.cheapest(backwards)
+        assert (used.cheapest(rows).limb == fresh.cheapest(rows).limb).all()
+        assert used.tables.state_key[:40].tolist() != fresh.tables.state_key[:40].tolist()
+        assert (used.cheapest(first(rows, 99)).limb == Engine(pad, preset).cheapest(first(rows, 99)).limb).all()
 
 
 @pytest.fixture(scope="module")
