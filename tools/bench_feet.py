@@ -1,5 +1,6 @@
 """How many rows of labelled charts get the right feet: with the presets as they are, and by fits that had not seen the
-song; and how true the confidence is on such songs. The cross-validation takes some minutes.
+song; how true the confidence is on such songs; and how often a foot is asked to be in two places. The cross-validation
+takes some minutes.
 """
 
 from __future__ import annotations
@@ -7,7 +8,7 @@ from __future__ import annotations
 import feet_data
 import fit_weights
 
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.play import Preset, load_preset, solve
 
 GOALS = {"song": "99", "pattern": "97", "pump-single": "97", "pump-double": "97", "pump-halfdouble": "97"}
 PEERS = {  # on songs, patterns and Pump charts that are not here; see docs/feet.md
@@ -34,8 +35,16 @@ def measure() -> list[Row]:
         table = fit_weights.reliability(unseen, feet_data.folds)
         many = [(said, right) for said, right, rows in table if rows >= 200]
         off = max(abs(said - right) for said, right in many)
+        rows, steps = zip(*(_teleports(label, preset) for label in (*task.judged, *task.guard)), strict=True)
+        out.append((f"{task.preset}, a foot in two places", sum(rows), f"of {sum(steps):,} rows", "0", ""))
         out.append((f"{task.preset}, confidence off by, largest bin of 200 rows", off, "% points", "2", ""))
     return out
+
+
+def _teleports(label: feet_data.Labelled, preset: Preset) -> tuple[int, int]:
+    """Rows in which a foot is on a panel apart from the one it has stepped on within 80 ms; and all rows."""
+    found = solve(label.rows, label.pad, preset, margins=False)
+    return int((found.cost[:, found.terms.index("teleport")] >= preset.curve("teleport")[0][1]).sum()), len(label.rows)
 
 
 def _rows(what: str, results: fit_weights.Outcome, *, judged: bool) -> list[Row]:
