@@ -27,6 +27,7 @@ class FileError(DancetutorError):
     """
 
     def __init__(self, path: Path | str, message: str, line: int | None = None, column: int | None = None) -> None:
+        message = " ".join(message.splitlines())  # what it quotes of a file may have several
         super().__init__(path, message, line, column)  # all arguments, so that the error survives pickling
         self.path = Path(path)
         self.message = message

@@ -273,9 +273,9 @@ def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
     }
     for key, value in given.items():
         if key not in defaults:
-            raise SettingError((*place, key), f"{code} has no setting '{key}'; it has {', '.join(defaults)}")
+            raise SettingError((*place, key), f"{code} has no setting '{shown_key(key)}'; it has {', '.join(defaults)}")
         if key == "severity" and value not in SEVERITIES:
-            raise SettingError((*place, key), f"'{value}' is no severity; they are {', '.join(SEVERITIES)}")
+            raise SettingError((*place, key), f"'{shown_key(value)}' is no severity; they are {', '.join(SEVERITIES)}")
         if not _same_kind(value, defaults[key]):
             said = shown_key(repr(value))
             raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {said}")
