@@ -16,6 +16,7 @@ from dancetutor_cli.commands.selection import (
     Selection,
     character_option,
     gait_option,
+    motion_option,
     preset_option,
     selection_options,
 )
@@ -38,6 +39,7 @@ class Wish:
     play_file: Path | None
     bar: bool
     gait: str
+    motion: Path | None
     jobs: int
     quiet: bool
     beside: str | None
@@ -62,6 +64,7 @@ class Wish:
     help="A second dancer beside her: the next best play, another preset's, or one of a JSON file.",
 )
 @gait_option
+@motion_option
 @click.option(
     "--jobs",
     type=click.IntRange(1, 256),
@@ -90,8 +93,9 @@ def command(path: Path, selection: Selection, wish: Wish) -> None:
     output = wish.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     bake = BakeTask(
-        file, selection, wish.preset, play_file=wish.play_file, bar=wish.bar, gait=wish.gait, jobs=wish.jobs
-    )
+        file, selection, wish.preset, play_file=wish.play_file, bar=wish.bar, gait=wish.gait, motion=wish.motion,
+        jobs=wish.jobs,
+    )  # fmt: skip
     task = PageTask(bake, wish.character, wish.music, wish.beside)
     if not wish.quiet:
         tell_of_compiling(choice_for(file, wish.preset))
