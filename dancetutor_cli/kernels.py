@@ -111,7 +111,7 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
         return stamp_of(self._source)
 
 
-_KERNEL = re.compile(rb"njit|@kernel\b")  # the second is `video.scene.cpu.kernel`
+_KERNEL = re.compile(rb"njit|@kernel\b")  # the second is `video.scene.cpu.uncounted`
 
 
 @cache

@@ -20,7 +20,7 @@ from build_character_parts import Part, heel_parts, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
 
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.formats.glb import write_glb
 

@@ -17,7 +17,7 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.annotate import Item, Order, Outcome, annotate_song
 from dancetutor_cli.library import find_files
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.markers.model import STYLES
+from dancetutor_cli.markers.changes import STYLES
 
 ROOT = Path(__file__).resolve().parent.parent
 DEFAULT = (ROOT / "build" / "corpus" / "dev", ROOT / "tests" / "data" / "hostile")

@@ -25,7 +25,7 @@ from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.lint_run import LintRun, Request
 from dancetutor_cli.library import find_files
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import Part, Play
 

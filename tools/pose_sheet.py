@@ -15,8 +15,8 @@ import yaml
 from numba import njit
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.character.model import Character
-from dancetutor_cli.character.reader import read_character
+from dancetutor_cli.character.gltf_reader import read_character
+from dancetutor_cli.character.mesh import Character
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = 3

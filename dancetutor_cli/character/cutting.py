@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Mesh
+from dancetutor_cli.character.mesh import Mesh
 
 _SMALL = 0.003  # metres: about a pixel of her at 720p; shorter triangles are not split
 _LEVELS = 7  # at most this many times

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, read_container
+from dancetutor_cli.character.gltf_reader import character_with_nodes
 from dancetutor_cli.character.humanoid import find_humanoid
-from dancetutor_cli.character.model import Character, rest_vertices
+from dancetutor_cli.character.mesh import Character, rest_vertices
 from dancetutor_cli.character.nodes import Nodes, read_nodes
-from dancetutor_cli.character.reader import character_with_nodes
 from dancetutor_cli.character.surfaces import drawable
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.rig import quaternion as quat

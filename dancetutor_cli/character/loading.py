@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import fields, replace
 from pathlib import Path
 
-from dancetutor_cli.character.model import Character, Material, Mesh
-from dancetutor_cli.character.reader import read_character
+from dancetutor_cli.character.gltf_reader import read_character
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.colours import LimbColours, limb_colours
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.resources import PACKAGE

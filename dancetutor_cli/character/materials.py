@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, as_dict
-from dancetutor_cli.character.model import Material
+from dancetutor_cli.character.mesh import Material
 
 MAX_SIDE = 2048  # texels; at 1080p a dancer is half as high
 ALL_TEXELS = 16 * 1024 * 1024  # of a character's textures; larger ones are halved until they fit

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import local_rotations, world_transforms

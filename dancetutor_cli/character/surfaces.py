@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.cutting import cut_out
 from dancetutor_cli.character.materials import linear_from_srgb, srgb_from_linear
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 
 _BLOCK = 8  # texels a side that a colour fills: pure in three halvings of the texture
 _MOST_COLORS = 4096  # on a palette; more become 16 steps of red, green and blue

@@ -9,11 +9,12 @@ from fractions import Fraction
 from pathlib import Path
 
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
-from dancetutor_cli.chart import msd, names, text, timing_tags
+from dancetutor_cli.chart import decoding as text
+from dancetutor_cli.chart import msd, names, timing_tags
 from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
-from dancetutor_cli.chart.notes import LineIndex, NoteForm, read_notes, width_of_first_row
+from dancetutor_cli.chart.note_data import LineIndex, NoteForm, read_notes, width_of_first_row
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, FileError, NoChartsError
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from dancetutor_cli.chart.decimals import beat, number, tick_of
+from dancetutor_cli.chart.decoding import shown
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
-from dancetutor_cli.chart.text import shown
 from dancetutor_cli.chart.timing import Segments
 
 FAST_BPM = 9_999_999  # anything faster is a warp, as the games have it

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from dancetutor_cli.chart import negatives, segments
 from dancetutor_cli.chart.decimals import number
+from dancetutor_cli.chart.decoding import shown
 from dancetutor_cli.chart.model import ReadWarning
-from dancetutor_cli.chart.text import shown
 from dancetutor_cli.chart.timing import Timing
 
 TIMING_TAGS = frozenset({

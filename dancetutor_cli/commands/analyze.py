@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
 from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
-from dancetutor_cli.targets import check_file
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import Task

@@ -10,10 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.long_work import LONG, confirm_long
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.commands.selection import (
+from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
     gait_option,
@@ -23,10 +20,13 @@ from dancetutor_cli.commands.selection import (
     section_option,
     selection_options,
 )
+from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.long_work import LONG, confirm_long
+from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.lint.part import FASTEST, SLOWEST
-from dancetutor_cli.targets import check_file, one_of
+from dancetutor_cli.outputs import check_file, one_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import Report

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.records import into
-from dancetutor_cli.commands.selection import Selection, preset_option, selection_options
 from dancetutor_cli.errors import UsageError, did_you_mean
-from dancetutor_cli.targets import check_folder
+from dancetutor_cli.outputs import check_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.annotate import Item, Order, Outcome
@@ -193,7 +193,7 @@ class _Talk:
 
     def begin(self) -> None:
         if "rows" in self.order.styles and not self.order.strip:
-            from dancetutor_cli.markers.rows import WARNING
+            from dancetutor_cli.markers.row_comments import WARNING
 
             click.echo(f"warning: {WARNING}", err=True)
 

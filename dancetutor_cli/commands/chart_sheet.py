@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.files import write_atomic
-from dancetutor_cli.targets import check_file
+from dancetutor_cli.outputs import check_file
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import Task
@@ -47,7 +47,7 @@ def write_sheet(path: Path, tasks: list[Task]) -> str:
 
 def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
     from dancetutor_cli.reports.sheet.draw import unsure_rows
-    from dancetutor_cli.reports.sheet.page import facts_of, length_of
+    from dancetutor_cli.reports.sheet.whole import facts_of, length_of
 
     subject, dense = chart.subject, chart.density
     numbers = [f"{len(subject.step_rows)} rows", f"{length_of(subject)} long"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.selection import (
+from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
     gait_option,

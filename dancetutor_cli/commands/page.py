@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.commands.selection import (
+from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
     gait_option,
@@ -20,8 +18,10 @@ from dancetutor_cli.commands.selection import (
     preset_option,
     selection_options,
 )
+from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.targets import check_file, check_folder, make_folder
+from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.page import PageTask

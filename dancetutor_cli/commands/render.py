@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.chart_options import preset_option, selection_options
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
-from dancetutor_cli.commands.selection import preset_option, selection_options
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.targets import check_file, check_folder, make_folder
+from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song

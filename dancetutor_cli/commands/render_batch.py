@@ -14,7 +14,7 @@ import click
 from dancetutor_cli.commands.film_options import film_request
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.files import encoded
-from dancetutor_cli.targets import check_file, check_folder, make_folder
+from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import Outcome

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.feet.model import FeetProblem, Ignores, Overrides
+from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -21,9 +21,9 @@ def overrides_for(song: Song, chart: Chart) -> tuple[Overrides, Ignores, tuple[F
     Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
     FileError : dancetutor.yaml cannot be read
     """
+    from dancetutor_cli.feet.configured import read_settings
     from dancetutor_cli.feet.contradictions import contradictions
     from dancetutor_cli.feet.pins import pinned
-    from dancetutor_cli.feet.settings import read_settings
     from dancetutor_cli.feet.sme import read_sme
 
     pins, problems = pinned(song, chart)

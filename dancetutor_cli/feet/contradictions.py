@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.model import FeetProblem
+from dancetutor_cli.feet.overrides import FeetProblem
 
 _NAMES = {
     Limb.LEFT_FOOT: "the left foot",

@@ -9,8 +9,8 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.contradictions import Said, contradictions
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.measures import markers_in, measure_lines, step_rows
-from dancetutor_cli.feet.model import FeetProblem, Overrides
 from dancetutor_cli.feet.notation import MEANING, NotationError, Token, parse
+from dancetutor_cli.feet.overrides import FeetProblem, Overrides
 
 
 @dataclass(frozen=True, slots=True)

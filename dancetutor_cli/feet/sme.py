@@ -11,7 +11,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet.contradictions import Said
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.model import FeetProblem
+from dancetutor_cli.feet.overrides import FeetProblem
 from dancetutor_cli.library.feet_files import EDITOR_FILE, song_stems
 
 FILE_NAME = EDITOR_FILE

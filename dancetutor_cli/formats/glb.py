@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.gltf_reader import read_character
 from dancetutor_cli.character.materials import linear_from_srgb
-from dancetutor_cli.character.model import Character, Mesh
-from dancetutor_cli.character.reader import read_character
+from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.formats.thinning import clocks
 from dancetutor_cli.motion.model import Motion

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
 

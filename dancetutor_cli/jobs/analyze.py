@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.errors import FileError, NoChartsError
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.figures import AlternativeResult, Cause, Figures
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.settings import Settings
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.lint_run import LintRun
     from dancetutor_cli.markers.beside import Planned
-    from dancetutor_cli.markers.model import Change, Lack
-    from dancetutor_cli.markers.plan import Plan
+    from dancetutor_cli.markers.changes import Change, Lack
+    from dancetutor_cli.markers.planning import Plan
     from dancetutor_cli.play.preset import Preset
 
 
@@ -98,7 +98,7 @@ def _attempt(item: Item, order: Order, second: bool) -> Outcome:
 
 def _annotate(item: Item, order: Order, second: bool) -> Outcome:
     from dancetutor_cli import chart as reader
-    from dancetutor_cli.markers.model import BESIDE, EDIT, SIDECAR
+    from dancetutor_cli.markers.changes import BESIDE, EDIT, SIDECAR
 
     beside = [style for style in order.styles if style in BESIDE and (style == SIDECAR or not second)]
     if order.into_file and not order.strip and EDIT in beside:
@@ -125,9 +125,8 @@ class _Work:
 
     def write(self) -> None:
         """Plan all styles that are asked for."""
-        from dancetutor_cli.markers import beside
-        from dancetutor_cli.markers import plan as planning
-        from dancetutor_cli.markers.model import EDIT
+        from dancetutor_cli.markers import beside, planning
+        from dancetutor_cli.markers.changes import EDIT
 
         choice = _configured(self.order.preset).presets(self.item.source)
         added = EDIT in self.order.styles and self.order.into_file
@@ -154,9 +153,8 @@ class _Work:
 
     def strip(self) -> None:
         """Plan the removal of all styles that are asked for."""
-        from dancetutor_cli.markers import beside
-        from dancetutor_cli.markers import plan as planning
-        from dancetutor_cli.markers.model import EDIT, Lack
+        from dancetutor_cli.markers import beside, planning
+        from dancetutor_cli.markers.changes import EDIT, Lack
 
         base = self._without_added() if EDIT in self.order.styles else self.song
         charts = self._charts(base)
@@ -213,7 +211,7 @@ class _Work:
         return reader.parse(apply(self.song.data, splices), self.song.path) if splices else self.song
 
     def _take(self, plan: Plan) -> None:
-        from dancetutor_cli.markers.model import Change
+        from dancetutor_cli.markers.changes import Change
 
         self.changes.append(Change(self.item.target, self.song.data, plan.data))
         self.lacks += plan.lacks

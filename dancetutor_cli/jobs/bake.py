@@ -15,7 +15,7 @@ from dancetutor_cli.lint.part import check_part, part_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Bar, Motion
     from dancetutor_cli.motion.plan import Plan

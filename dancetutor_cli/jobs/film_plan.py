@@ -25,7 +25,7 @@ from dancetutor_cli.video.scroll import segments_of, speeds_of
 from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play

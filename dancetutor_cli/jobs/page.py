@@ -12,7 +12,7 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.bake import Asked
     from dancetutor_cli.motion.model import Motion

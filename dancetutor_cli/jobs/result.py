@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from dancetutor_cli.lint.figures import AlternativeResult, Cause, Figures
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
+from dancetutor_cli.lint.finding import Finding
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,8 @@ from operator import attrgetter
 from typing import Any
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.figures import AlternativeResult, Cause, DifferentRun, Figures
-from dancetutor_cli.lint.model import ExcerptRow, Finding
+from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, DifferentRun, Figures
+from dancetutor_cli.lint.finding import ExcerptRow, Finding
 
 _HEAD = b"dancetutor result 1\n"  # another number whenever the form below changes
 _DIGEST = 32  # bytes of SHA-256

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from dancetutor_cli.chart.density import Density, density
 from dancetutor_cli.jobs.analyze import Task, load_song, solved
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 
 

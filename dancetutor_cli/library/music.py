@@ -6,9 +6,9 @@ import os
 import unicodedata
 from pathlib import Path
 
+from dancetutor_cli.chart.decoding import shown
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.reader import suspicious_music
-from dancetutor_cli.chart.text import shown
 from dancetutor_cli.errors import FileError, MissingFileError
 
 SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")

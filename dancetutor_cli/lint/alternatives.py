@@ -8,7 +8,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.feet.notation import letter
-from dancetutor_cli.lint.figures import AlternativeResult, DifferentRun
+from dancetutor_cli.lint.chart_figures import AlternativeResult, DifferentRun
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play import Play, StepKind, alternatives
 from dancetutor_cli.play.preset import Preset

@@ -13,7 +13,7 @@ from typing import Any
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.files import encoded, write_atomic
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 
 SCHEMA = 1
 # path of the chart file relative to the baseline's folder, chart, rule, beat in 1/48 (the line, for a file's finding)

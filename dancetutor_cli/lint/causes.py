@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.lint.figures import Cause
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.chart_figures import Cause
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play import blame
 from dancetutor_cli.play.preset import Preset

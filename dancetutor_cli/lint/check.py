@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule
 from dancetutor_cli.lint.settings import Options, Settings

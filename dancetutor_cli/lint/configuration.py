@@ -241,7 +241,7 @@ def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
 
 def _check_feet(data: Mapping[str, Any], folder: Path) -> None:
     """What `feet` says is read where feet are found; here it is only checked, for it knows no rules."""
-    from dancetutor_cli.feet.settings import entries_of
+    from dancetutor_cli.feet.configured import entries_of
 
     for number, entry in enumerate(entries_of(data, folder)):
         for rule in {rule for rules in entry.ignore.values() for rule in rules}:

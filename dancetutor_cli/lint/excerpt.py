@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.lint.model import ExcerptRow, Finding
+from dancetutor_cli.lint.finding import ExcerptRow, Finding
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.model import Part, Play
 

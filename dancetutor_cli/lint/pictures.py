@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.rule import FileRule
 
 if TYPE_CHECKING:

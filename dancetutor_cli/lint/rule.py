@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject

@@ -9,7 +9,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject

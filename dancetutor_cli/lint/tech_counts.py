@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.lint.figures import TECH_COUNTS
+from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.model import Part, Play, StepKind

@@ -11,7 +11,7 @@ from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet import sme
 from dancetutor_cli.library.feet_files import song_stems
 from dancetutor_cli.markers import edit, sidecar, smeditor
-from dancetutor_cli.markers.model import EDIT, SIDECAR, SMEDITOR, Change, ChartFeet, Lack
+from dancetutor_cli.markers.changes import EDIT, SIDECAR, SMEDITOR, Change, ChartFeet, Lack
 
 Planned = tuple[Change, list[Lack]]
 

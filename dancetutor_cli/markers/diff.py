@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from dancetutor_cli.chart.text import decode, encoding_of
+from dancetutor_cli.chart.decoding import decode, encoding_of
 
 CONTEXT = 3
 

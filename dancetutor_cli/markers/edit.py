@@ -12,7 +12,7 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.markers import lanes
-from dancetutor_cli.markers.model import ChartFeet
+from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.splice import Splice
 
 LIMIT = 60 * 1024  # bytes of a .edit file that the games still read

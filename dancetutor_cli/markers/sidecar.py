@@ -12,8 +12,8 @@ from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import encoded
+from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.letters import limbs_of
-from dancetutor_cli.markers.model import ChartFeet
 from dancetutor_cli.play.model import Limb, Part
 
 SUFFIX = ".dancetutor.json"

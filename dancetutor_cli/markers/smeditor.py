@@ -15,8 +15,8 @@ from dancetutor_cli.bounded import parse_json
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet.sme import FEET, OURS, overrides_of, place_in_type, tick_of
+from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.letters import limbs_of
-from dancetutor_cli.markers.model import ChartFeet
 
 _Key = tuple[str, int]  # steps type, place among the charts of that type
 _VALUES: dict[tuple[int, int], str | int] = {(limb, part): value for value, (limb, part) in FEET.items()}

@@ -10,14 +10,14 @@ import numpy as np
 
 from dancetutor_cli.colours import hex_colour, limb_colours
 from dancetutor_cli.page.blob import Blob
-from dancetutor_cli.page.body import pack_body, pack_motion
+from dancetutor_cli.page.packing import pack_body, pack_motion
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.scene.scene import SOLE_RADIUS, Scene
 from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
-    from dancetutor_cli.lint.model import Finding
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.lint.finding import Finding
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play

@@ -30,20 +30,24 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None) -> 
     data = base64.b64encode(zlib.compress(struct.pack("<I", len(head)) + head + blob.whole(), 9)).decode("ascii")
     script, style = bundle(HERE / "js", "main"), (HERE / "page.css").read_text("utf-8")
     title = " - ".join(part for part in (doc["words"]["title"], doc["words"]["badge"], "dancetutor") if part)
-    return fill(
-        "page.html",
-        {
-            "policy": policy(script, style),
-            "title": html.escape(title),
-            "style": style,
-            "data": data,
-            "music": "" if music is None else base64.b64encode(music).decode("ascii"),
-            "script": script,
-        },
-    ).encode("utf-8")
+    music_text = "" if music is None else base64.b64encode(music).decode("ascii")
+    body = _fill("page.html", {"data": data, "music": music_text, "script": script})
+    return whole(policy(script, style), title, style, body)
 
 
-def fill(template: str, values: Mapping[str, str]) -> str:
+def whole(policy: str, title: str, style: str, body: str) -> bytes:
+    """An HTML file with this Content-Security-Policy; body : markup, title : text."""
+    parts = {"policy": policy, "title": html.escape(title), "style": style, "body": body}
+    return _fill("shell.html", parts).encode("utf-8")
+
+
+def listed(title: str, items: str, style: str) -> bytes:
+    """A page without script: a heading and markup below it."""
+    rules = f"default-src 'none'; style-src '{hash_of(style)}'; img-src data:; base-uri 'none'; form-action 'none'"
+    return whole(rules, title, style, _fill("index.html", {"title": html.escape(title), "songs": items}))
+
+
+def _fill(template: str, values: Mapping[str, str]) -> str:
     """A template of this room with each {{name}} replaced, once: what is filled in is not looked at again."""
     return _PLACE.sub(lambda found: values[found[1]], (HERE / template).read_text("utf-8"))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.play.model import Play, StepKind
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from urllib.parse import quote
 
-from dancetutor_cli.page.document import HERE, fill, hash_of
+from dancetutor_cli.page.document import HERE, listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,5 +29,4 @@ def index_page(entries: Sequence[Entry], title: str) -> bytes:
         by = f" <small>{html.escape(artist)}</small>" if artist else ""
         links = "".join(f'<li><a href="{quote(one.file)}">{html.escape(one.label)}</a></li>' for one in group)
         songs.append(f"<h2>{html.escape(name)}{by}</h2>\n<ul>{links}</ul>")
-    values = {"hash": hash_of(style), "title": html.escape(title), "style": style, "songs": "\n".join(songs)}
-    return fill("index.html", values).encode("utf-8")
+    return listed(title, "\n".join(songs), style)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.engine import Engine, Layers, engine_for
 from dancetutor_cli.play.model import Play, Rows

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Chart
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play.curves import cost_at
 from dancetutor_cli.play.engine import Engine, engine_for

@@ -12,10 +12,10 @@ from typing import IO
 from rich.style import Style
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.text import STYLES, colours, make_console
+from dancetutor_cli.reports.text_report import STYLES, colours, make_console
 
 _COLOUR = re.compile("\x1b\\[[0-9;]*m")
 _RANK = {"error": 0, "warning": 1, "info": 2}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import IO, Any
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.figures import TECH_COUNTS
+from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.structured import relative
 from dancetutor_cli.reports.tally import Tally

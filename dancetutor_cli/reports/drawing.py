@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from dancetutor_cli.colours import hex_colour, limb_colours
-from dancetutor_cli.lint.model import ExcerptRow
+from dancetutor_cli.lint.finding import ExcerptRow
 
 _ASCII = str.maketrans("←↓↑→↙↖■↗↘│·●", "<v^>/\\o/\\|.*")
 _LIMB_OF = {"L": 0, "l": 0, "R": 1, "r": 1, "<": 2, ">": 3}

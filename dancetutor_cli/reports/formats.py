@@ -23,7 +23,7 @@ class Format(NamedTuple):
 
 
 FORMATS = {
-    "text": Format("text", "TextReport", ("terminal", "errors")),
+    "text": Format("text_report", "TextReport", ("terminal", "errors")),
     "json": Format("json_report", "JsonReport", ("bytes", "preset")),
     "jsonl": Format("jsonl", "JsonLinesReport"),
     "csv": Format("csv_report", "CsvReport", ("text", "errors")),

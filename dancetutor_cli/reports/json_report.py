@@ -8,7 +8,7 @@ from typing import IO, Any
 
 import dancetutor_cli
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.tally import Tally
 
 SCHEMA = 1

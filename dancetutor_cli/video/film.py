@@ -26,7 +26,7 @@ from dancetutor_cli.video.scene.television import Television
 from dancetutor_cli.video.scroll import parse_scroll
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.video.picture import PadLike
     from dancetutor_cli.video.scene.dancer import Dancer

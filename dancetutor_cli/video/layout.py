@@ -8,8 +8,8 @@ from pathlib import Path
 from dancetutor_cli.errors import FileError, UsageError, did_you_mean
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE
+from dancetutor_cli.video.from_yaml import Box, load
 from dancetutor_cli.video.scroll import parse_scroll
-from dancetutor_cli.video.settings import Box, load
 
 PixelBox = tuple[int, int, int, int]
 WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes

@@ -15,7 +15,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import read_container
 from dancetutor_cli.character.humanoid import find_humanoid
-from dancetutor_cli.character.model import rest_vertices
+from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.jobs.film_key import film_key

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.character import dressed, load_character, load_dancer
-from dancetutor_cli.character.model import Character, Mesh
+from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.rig import quaternion as quat

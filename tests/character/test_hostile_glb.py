@@ -16,7 +16,7 @@ import pytest
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
-from dancetutor_cli.character.reader import unit_normals
+from dancetutor_cli.character.gltf_reader import unit_normals
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.resources import PACKAGE

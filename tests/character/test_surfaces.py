@@ -13,7 +13,7 @@ from glb_edit import edited, joined, parts_of
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import Container
 from dancetutor_cli.character.materials import srgb_from_linear
-from dancetutor_cli.character.model import Character, Material, Mesh, rest_vertices
+from dancetutor_cli.character.mesh import Character, Material, Mesh, rest_vertices
 from dancetutor_cli.character.surfaces import drawable, open_pieces
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb

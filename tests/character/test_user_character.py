@@ -12,7 +12,7 @@ from glb_edit import edited, joined, parts_of
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import read_container
 from dancetutor_cli.character.humanoid import REQUIRED, find_humanoid, words_of
-from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.errors import FileError

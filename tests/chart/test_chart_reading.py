@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli import chart
-from dancetutor_cli.chart import msd, text
+from dancetutor_cli.chart import decoding as text
+from dancetutor_cli.chart import msd
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.errors import ChartError, FileError
 

@@ -14,7 +14,7 @@ import pytest
 from glb_channels import channels_of
 
 from dancetutor_cli.character import load_character, load_dancer
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb, write_glb
 from dancetutor_cli.motion.model import Motion

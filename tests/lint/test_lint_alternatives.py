@@ -14,7 +14,7 @@ from dancetutor_cli.feet import Overrides
 from dancetutor_cli.feet.notation import MEANING
 from dancetutor_cli.lint.alternatives import alternatives_of
 from dancetutor_cli.lint.causes import causes_of, with_causes
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart

@@ -12,7 +12,7 @@ from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.suggest import _edits
 from dancetutor_cli.play import load_preset, solve_chart

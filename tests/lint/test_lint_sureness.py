@@ -12,7 +12,7 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.feet import Ignores, Overrides
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart

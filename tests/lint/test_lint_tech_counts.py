@@ -18,8 +18,8 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet import Overrides
 from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.figures import TECH_COUNTS
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.lint.tech_counts import tech_counts

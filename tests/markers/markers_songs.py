@@ -13,7 +13,8 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet.measures import StepRows, step_rows
 from dancetutor_cli.feet.notation import LETTERS
-from dancetutor_cli.markers import measure, rows
+from dancetutor_cli.markers import measure
+from dancetutor_cli.markers import row_comments as rows
 from dancetutor_cli.markers.splice import apply
 
 HEADER = b"#TITLE:Song;\n#OFFSET:0;\n#BPMS:0=120;\n"

@@ -16,8 +16,8 @@ from dancetutor_cli.chart.model import Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet.measures import step_rows
 from dancetutor_cli.markers import sidecar, smeditor
+from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.letters import row_letters
-from dancetutor_cli.markers.model import ChartFeet
 from dancetutor_cli.play import load_preset, solve_chart
 
 MEASURES = b"\n1000\n0001\n0110\n0M00\n,\n2002\n0000\n0010\n3003\n;\n"

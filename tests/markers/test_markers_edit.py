@@ -11,8 +11,8 @@ from markers_songs import chart_files, readable, sm, song_of
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.markers import edit, lanes
-from dancetutor_cli.markers.model import ChartFeet
-from dancetutor_cli.markers.plan import solve_charts
+from dancetutor_cli.markers.changes import ChartFeet
+from dancetutor_cli.markers.planning import solve_charts
 from dancetutor_cli.markers.splice import apply
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.play.model import Limb

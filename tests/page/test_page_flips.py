@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli import chart as charts
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.page.flips import flips_of
 from dancetutor_cli.play import StepKind, load_preset, prepare, solve

@@ -7,7 +7,7 @@ import pytest
 from play_rows import pad_of, rows_of
 
 from dancetutor_cli import play
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.play import Limb
 from dancetutor_cli.play.curves import cost_at
 

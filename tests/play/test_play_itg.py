@@ -11,7 +11,7 @@ from play_rows import letters, pad_of, rows_of
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli import play
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.play import Limb, Part, Play, Preset
 
 ITG, DDR, STAMINA = (play.load_preset(name) for name in ("itg", "ddr", "stamina"))

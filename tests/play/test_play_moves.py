@@ -9,7 +9,7 @@ import pytest
 from play_rows import letters, pad_of, rows_of
 
 from dancetutor_cli import play
-from dancetutor_cli.feet.model import Overrides
+from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.play import Play
 from dancetutor_cli.play.vocabulary import EVENTS

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.sarif import SarifReport, uri
 from dancetutor_cli.reports.tally import Tally
 

@@ -16,12 +16,12 @@ from PIL import Image
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.colours import hex_colour, limb_colours
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
-from dancetutor_cli.reports.sheet.layout import lay_out
+from dancetutor_cli.reports.sheet.places import lay_out
 from dancetutor_cli.reports.sheet.style import sheet_style
 
 SVG = "{http://www.w3.org/2000/svg}"

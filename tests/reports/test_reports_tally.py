@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dancetutor_cli.jobs.result import FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.tally import Tally
 
 

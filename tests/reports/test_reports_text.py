@@ -9,11 +9,11 @@ import pytest
 from rich.console import Console
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports import table
 from dancetutor_cli.reports.table import chart_table
 from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.text import TextReport, clock
+from dancetutor_cli.reports.text_report import TextReport, clock
 
 FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
 CHART = ChartResult(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.pads.pad import load_pad
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.rig.skeleton import dancer_skeleton

@@ -1,5 +1,5 @@
 """The chart sheet: a chart as columns of measures, like a musical score, on paper or on a page."""
 
-from dancetutor_cli.reports.sheet.page import html_page, make_sheet, svg_sheet
+from dancetutor_cli.reports.sheet.whole import html_page, make_sheet, svg_sheet
 
 __all__ = ["html_page", "make_sheet", "svg_sheet"]

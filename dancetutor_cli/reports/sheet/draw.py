@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play.model import Part
-from dancetutor_cli.reports.sheet.layout import Layout
+from dancetutor_cli.reports.sheet.places import Layout
 from dancetutor_cli.reports.sheet.style import LETTERS, Style
 from dancetutor_cli.reports.sheet.svg import number, tag, text, title
-from dancetutor_cli.reports.text import clock
+from dancetutor_cli.reports.text_report import clock
 
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.targets import one_of
+from dancetutor_cli.outputs import one_of
 from dancetutor_cli.video.media import ffmpeg
 
 

@@ -10,8 +10,8 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.from_yaml import load
 from dancetutor_cli.video.notes import Cue
-from dancetutor_cli.video.settings import load
 
 HOLD = "hold"  # the one move that has a name here, and none among `EVENTS`
 _GAP = 0.1  # seconds; the same words again so soon are left standing, without a flicker

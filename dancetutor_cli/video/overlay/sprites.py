@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.from_yaml import RGB, load
 from dancetutor_cli.video.overlay import shapes
 from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.text import Typeface
-from dancetutor_cli.video.settings import RGB, load
 
 CENTRE = None  # the direction of a panel in the middle of the pad
 

@@ -23,7 +23,7 @@ from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_m
 from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.video.choices import Quality, RendererKind
     from dancetutor_cli.video.lights import PanelLights

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character
+from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.scene.textures import Skins, density, skins_of
 

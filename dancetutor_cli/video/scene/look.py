@@ -8,7 +8,7 @@ from pathlib import Path
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.resources import config_path
-from dancetutor_cli.video.settings import Box, load
+from dancetutor_cli.video.from_yaml import Box, load
 
 RGB = tuple[int, int, int]
 

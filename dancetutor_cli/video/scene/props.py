@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character, Material, Mesh
+from dancetutor_cli.character.mesh import Character, Material, Mesh
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Bar

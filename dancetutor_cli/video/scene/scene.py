@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Character, rest_vertices
+from dancetutor_cli.character.mesh import Character, rest_vertices
 from dancetutor_cli.colours import LimbColours, limb_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.picture import PadLike

@@ -1,7 +1,7 @@
 """The stage: floor, wall and pad as flat surfaces, each with a kind that says how it is coloured.
 
-They are coloured (by `cpu.surfaces`) from the position on the surface alone; there are no textures, so the stage is
-sharp at any size.
+They are coloured (by `cpu.stage_colours`) from the position on the surface alone; there are no textures, so the stage
+is sharp at any size.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.model import Mesh
+from dancetutor_cli.character.mesh import Mesh
 
 Image = NDArray[np.uint8]
 LEVELS = 4  # the texture itself, and three halvings

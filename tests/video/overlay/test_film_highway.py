@@ -14,6 +14,7 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.from_yaml import load
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, Callout, Presses, quantisation
@@ -21,7 +22,6 @@ from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import Run, blit, rectangle, strip
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.scroll import parse_scroll
-from dancetutor_cli.video.settings import load
 
 
 def test_a_sprite_between_pixels_is_shared_by_both() -> None:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
-from dancetutor_cli.video.scene.cpu.background import quantise
-from dancetutor_cli.video.scene.cpu.kernel import kernel
-from dancetutor_cli.video.scene.cpu.surfaces import smooth
+from dancetutor_cli.video.scene.cpu.stage_colours import smooth
+from dancetutor_cli.video.scene.cpu.standing import quantise
+from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.prepare import Cast
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
-from dancetutor_cli.video.scene.cpu.kernel import kernel
+from dancetutor_cli.video.scene.cpu.uncounted import kernel
 
 SNAP = 16.0
 DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
-from dancetutor_cli.video.scene.cpu.background import Background, draw_background
 from dancetutor_cli.video.scene.cpu.ground import Live, Shadow, blur, draw_ground, occupied
 from dancetutor_cli.video.scene.cpu.raster import (
     BACK,
@@ -35,6 +34,7 @@ from dancetutor_cli.video.scene.cpu.shade import (
     resolve,
     toon_numbers,
 )
+from dancetutor_cli.video.scene.cpu.standing import Background, draw_background
 from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.prepare import (
     SAMPLES,

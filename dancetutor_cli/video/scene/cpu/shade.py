@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
-from dancetutor_cli.video.scene.cpu.kernel import kernel
+from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.look import ToonLook
 from dancetutor_cli.video.scene.textures import LEVELS
 

@@ -1,4 +1,4 @@
-"""The standing part of the picture as textures. Drawn by cpu/background.py, once a camera, so that it cannot differ.
+"""The standing part of the picture as textures. Drawn by cpu/standing.py, once a camera, so that it cannot differ.
 
 Import only after `compat.load_pyrender`.
 """
@@ -9,13 +9,13 @@ import numpy as np
 from OpenGL import GL
 
 from dancetutor_cli.video.scene.camera import Camera
-from dancetutor_cli.video.scene.cpu.background import draw_background
-from dancetutor_cli.video.scene.gl.targets import Target, refill, texture
+from dancetutor_cli.video.scene.cpu.standing import draw_background
+from dancetutor_cli.video.scene.gl.framebuffers import Target, refill, texture
 from dancetutor_cli.video.scene.scene import Scene
 
 
 class Standing:
-    """What `cpu.background.Background` holds, for the shader ground.frag; `target` has the picture to copy."""
+    """What `cpu.standing.Background` holds, for the shader ground.frag; `target` has the picture to copy."""
 
     def __init__(self, scene: Scene, camera: Camera, size: tuple[int, int], samples: int) -> None:
         drawn = draw_background(scene.stage, scene.look, camera, size, samples)

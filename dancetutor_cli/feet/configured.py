@@ -18,8 +18,8 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet.contradictions import Said
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.model import FeetProblem
 from dancetutor_cli.feet.notation import LETTERS, MEANING, UNKNOWN
+from dancetutor_cli.feet.overrides import FeetProblem
 from dancetutor_cli.library.settings_file import (
     FILE_NAME,
     Condition,

@@ -10,10 +10,11 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.markers import edit, lanes, measure, rows
+from dancetutor_cli.markers import edit, lanes, measure
+from dancetutor_cli.markers import row_comments as rows
+from dancetutor_cli.markers.changes import MEASURE, ROWS, ChartFeet, Lack
 from dancetutor_cli.markers.letters import row_letters
 from dancetutor_cli.markers.measure import MeasureState, State
-from dancetutor_cli.markers.model import MEASURE, ROWS, ChartFeet, Lack
 from dancetutor_cli.markers.splice import Splice, apply
 from dancetutor_cli.markers.verify import unchanged
 from dancetutor_cli.play.preset import Preset

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.camera import Camera
-from dancetutor_cli.video.scene.cpu.surfaces import Paints, paints_of, surface
+from dancetutor_cli.video.scene.cpu.stage_colours import Paints, paints_of, surface
 from dancetutor_cli.video.scene.look import Look
 from dancetutor_cli.video.scene.stage import Stage
 

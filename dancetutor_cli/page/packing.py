@@ -17,7 +17,7 @@ from dancetutor_cli.video.scene.geometry import Packed, pack
 from dancetutor_cli.video.scene.props import JOINT, bar_matrix, with_bar
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.model import Character
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Bar, Motion
 
 TICK = 1e-5  # seconds and metres of the smallest step of a time and of a place

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, as_dict, read_container
 from dancetutor_cli.character.materials import Materials
-from dancetutor_cli.character.model import Character, Mesh
+from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.character.nodes import Nodes, read_nodes
 from dancetutor_cli.rig.skeleton import Skeleton
 

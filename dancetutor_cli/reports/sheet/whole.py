@@ -9,14 +9,14 @@ from html import escape
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.sheet.draw import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
-from dancetutor_cli.reports.sheet.layout import lay_out
+from dancetutor_cli.reports.sheet.places import lay_out
 from dancetutor_cli.reports.sheet.style import Style, sheet_style
 from dancetutor_cli.reports.sheet.svg import tag, text, title
-from dancetutor_cli.reports.text import clock, moment
+from dancetutor_cli.reports.text_report import clock, moment
 
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are

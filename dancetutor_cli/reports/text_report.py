@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.style import Style
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.model import Finding
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.drawing import draw
 from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.table import chart_table
