@@ -16,7 +16,7 @@ from click.testing import CliRunner, Result
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.errors import DancetutorError
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
 CLEAN = "#TITLE:Walk;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:{}:1::\n{};\n"
 # Left, down, up, right as any beginner walks it; and one row no one can play.

@@ -15,7 +15,7 @@ import pytest
 
 from dancetutor_cli.commands import COMMANDS
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 DANCETUTOR = Path(sys.executable).with_name("dancetutor.exe" if os.name == "nt" else "dancetutor")
 SONG = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
 WORKERS = ("analyze", "annotate", "animate", "render")

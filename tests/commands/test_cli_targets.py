@@ -9,8 +9,8 @@ import pytest
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.outputs import check_file, check_folder, make_folder
 from dancetutor_cli.resources import charts_path
-from dancetutor_cli.targets import check_file, check_folder, make_folder
 
 FILM = ("--size", "64x64", "--layout", "highway", "--fps", "10", "--jobs", "1", "--mute", "--section", "4:5")
 ONE = ("--index", "3")
