@@ -100,6 +100,12 @@ _OPTIONS = (
         metavar="MS",
         help="Play the music this much later (ITG charts: 9).",
     ),
+    click.option(
+        "--call-ahead",
+        metavar="TIME",
+        help="How long before a move it is called out: seconds, or beats as b2 [default: 0.9].",
+    ),
+    click.option("--show-findings", is_flag=True, help="Call out what the linter found, too: for authors."),
     click.option("--font", type=click.Path(path_type=Path), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
 )
@@ -116,6 +122,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
     from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.video.ahead import parse_ahead
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
     from dancetutor_cli.video.media.encoder import even_size
@@ -140,6 +147,8 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
         scroll,
         options["down"],
         options["font"],
+        parse_ahead(options["call_ahead"]) if options["call_ahead"] else None,
+        options["show_findings"],
     )
     return Request(
         path=file,

@@ -10,12 +10,13 @@ import numpy as np
 from dancetutor_cli.chart.tempo import fastest_bpm
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import Request, Subject
-from dancetutor_cli.video.film import FilmPlan
+from dancetutor_cli.video.ahead import parse_ahead
+from dancetutor_cli.video.film import FilmPlan, turned
 from dancetutor_cli.video.media.clicks import clicks_of
 from dancetutor_cli.video.media.cues import cues_of
 from dancetutor_cli.video.media.sound import SoundPlan
 from dancetutor_cli.video.media.subtitles import subtitle_style
-from dancetutor_cli.video.overlay.callouts import callouts_of
+from dancetutor_cli.video.overlay.callouts import CallStyle, callouts_of
 from dancetutor_cli.video.overlay.captions import SongShape
 from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.overlay.sprites import highway_style
@@ -29,6 +30,10 @@ if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.model import Play
+    from dancetutor_cli.video.film_look import FilmLook
+
+
+HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +66,9 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
     character, motions = _fitted(dressed(request.character, request.gait), _motions(request, subject, play, pad))
+    look = _seen(request.look, character, pad)
     plan = FilmPlan(
-        look=request.look,
+        look=look,
         clock=clock,
         words=words_of(song, chart, request.look.font),
         song=SongShape(np.unique(presses.start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
@@ -77,7 +83,7 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         pad=pad,
         rows=step_rows(play),
         character=character,
-        callouts=callouts_of(replace(solved, play=play), highway_style().callouts, scrolls),
+        callouts=callouts_of(replace(solved, play=play), _calls(look), scrolls),
         cues=cues_of(play, chart.timing, subtitle_style().moves),
     )
     fade = 0.0 if request.section else 1.0
@@ -86,6 +92,23 @@ def prepare(request: Request, subject: Subject) -> Prepared:
     sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
     return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+
+
+def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
+    """The look, with a camera that shows the feet of who hides them from behind, where no camera is asked for."""
+    part = look.layout.dancer
+    if character is None or part is None or look.camera is not None or look.layout.screen is not None:
+        return look
+    from dancetutor_cli.video.scene.hidden import feet_hidden
+    from dancetutor_cli.video.scene.scene import Scene
+
+    camera = Scene(character, pad).camera(part.camera, look.size, part.region)
+    return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
+
+
+def _calls(look: FilmLook) -> CallStyle:
+    style = highway_style()
+    return CallStyle(style.callouts, look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
 
 
 def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
@@ -123,7 +146,8 @@ def _fitted(name: str, motions: dict[float, Motion]) -> tuple[Character | None, 
 
     if not motions or name == DANCER:
         return None, motions
+    from dancetutor_cli.character.feet import with_foot_colours
     from dancetutor_cli.character.retarget import retarget
 
-    character = load_character(name)
+    character = with_foot_colours(load_character(name))
     return character, {rate: retarget(motion, character) for rate, motion in motions.items()}

@@ -54,10 +54,11 @@ class Page:
 def make_page(task: PageTask) -> Page:
     """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli.character import dressed, load_character
+    from dancetutor_cli.character.feet import with_foot_colours
     from dancetutor_cli.lint.presets import choice_for, preset_for
     from dancetutor_cli.page import document, pack_content
 
-    character = load_character(dressed(task.character, task.bake.gait))
+    character = with_foot_colours(load_character(dressed(task.character, task.bake.gait)))
     asked = ask(task.bake)
     preset = preset_for(asked.chart, task.bake.path, choice_for(task.bake.path, task.bake.preset))
     music, warnings = _music(asked.song, asked.chart) if task.music else (None, ())

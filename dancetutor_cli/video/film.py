@@ -17,11 +17,13 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
-from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, StepRows
+from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, FeetDiagram, NextRows, PadMap, PadView, StepRows
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
+from dancetutor_cli.video.scene.camera import seen_from_front
+from dancetutor_cli.video.scene.look import default_look
 from dancetutor_cli.video.scene.television import Television
 from dancetutor_cli.video.scroll import parse_scroll
 
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.scene.dancer import Dancer
 
 BACKGROUND = (11, 12, 22)
+FACING = "she faces you"  # said where the arrows are turned with her
 LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
 BLOCK = 64  # frames whose joints are made at once
 
@@ -68,6 +71,14 @@ class FilmPlan:
     character: Character | None = None
 
 
+def turned(look: FilmLook) -> bool:
+    """Does the dancer of this look face who looks on?"""
+    part = look.layout.dancer
+    if part is None or look.layout.screen is not None:
+        return False
+    return seen_from_front(look.camera or part.camera, default_look())
+
+
 class Film:
     """Draws frames of a plan, in any order; the same frame always has the same bytes with the "cpu" renderer."""
 
@@ -98,10 +109,20 @@ class Film:
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
-        geometry = HighwayGeometry(box, lane, receptor, plan.directions, down)
+        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
         return Highway(score, geometry, scroll, plan.fastest_bpm, self.face)
+
+    @cached_property
+    def turned(self) -> bool:
+        """Does she face who looks on? Then all arrows turn with her pad: none says the opposite of what she does."""
+        return turned(self.plan.look)
+
+    @property
+    def _directions(self) -> tuple[float | None, ...]:
+        turn = 180.0 if self.turned else 0.0
+        return tuple(None if way is None else (way + turn) % 360.0 for way in self.plan.directions)
 
     def _box(self, name: str) -> PixelBox:
         return self.layout.box(name, self.size, self.columns)
@@ -118,7 +139,9 @@ class Film:
         if (part := self.layout.legend) is None:
             return None
         limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
-        return captions.Legend(limbs, self._box("legend"), self.scale * part.text, self.face)
+        return captions.Legend(
+            limbs, self._box("legend"), self.scale * part.text, self.face, FACING if self.turned else ""
+        )
 
     @cached_property
     def _progress(self) -> captions.Progress | None:
@@ -178,12 +201,14 @@ class Film:
         if plan.pad is None:
             return None, None
         large, small = None, None
+        view = PadView(plan.pad, self._directions, self.turned)
         if feet:
-            pads = PadMap(plan.pad, plan.directions, self._box("feet"))
+            pads = PadMap(view, self._box("feet"))
             large = FeetDiagram(pads, self.lights, self.face)
         if after and plan.rows is not None:
             box = self._box("next")
-            small = NextRows(plan.rows, plan.pad, plan.directions, box, after.count, self.face)
+            least = NEXT_LEAST * self.scale
+            small = NextRows(plan.rows, view, box, after.count, self.face, least)
         return large, small
 
     def frame(self, number: int) -> Frame:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from dancetutor_cli.video.ahead import Ahead
 from dancetutor_cli.video.choices import Quality, RendererKind
 from dancetutor_cli.video.layout import Layout
 from dancetutor_cli.video.scroll import Scroll
@@ -15,6 +16,7 @@ class FilmLook:
     """What does not change in a film. size : (width, height), even.
 
     camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
+    ahead : how long before a move it is called out, None as configured; findings : call out the linter's, too
     """
 
     layout: Layout
@@ -25,3 +27,5 @@ class FilmLook:
     scroll: Scroll | None = None
     down: bool = False
     font: Path | None = None
+    ahead: Ahead | None = None
+    findings: bool = False

@@ -49,12 +49,19 @@ class Presses:
 
 @dataclass(frozen=True, slots=True)
 class Callout:
-    """Words for a moment. second : of the music; beat : as drawn; severity : "move", "info", "warning" or "error"."""
+    """Words for a passage. second : of the music, where it begins; beat : the same as drawn
+
+    severity : "move", "info", "warning" or "error"; begin : second from which it is called out; end : where it is over
+    tag : fewer words, for the place beside the notes
+    """
 
     second: float
     beat: float
     text: str
     severity: str
+    begin: float
+    end: float
+    tag: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from dancetutor_cli.jobs.lint_run import LintRun
 from dancetutor_cli.jobs.lint_run import Request as LintRequest
 from dancetutor_cli.library.feet_files import places_of_feet
 from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.encoder import Encoding
@@ -69,6 +70,8 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "scroll": parse_scroll("C500"),
         "down": True,
         "font": folder / "font.ttf",
+        "ahead": parse_ahead("b2"),
+        "findings": True,
     }
     practices = {"rates": (0.5,), "loop": 2, "count_in": 4, "claps": True, "metronome": True}
     assert set(looks) == {f.name for f in fields(FilmLook)}

@@ -102,7 +102,7 @@ def capsule_character() -> Character:
 
 
 def pose(character: Character, kind: str = "stand"):
-    """World matrices of the joints in a pose: stand, step (left foot on the left panel), jump (both, in the air)."""
+    """World matrices of the joints in a pose: stand, step (left foot on the left panel), jump, leap (in the air)."""
     skeleton = character.skeleton
     rotations = np.zeros((1, len(skeleton.names), 4))
     rotations[..., 0] = 1.0
@@ -123,6 +123,11 @@ def pose(character: Character, kind: str = "stand"):
         for side, sign in (("l", 1), ("r", -1)):
             turn(f"{side}_hip", "z", 14 * sign)
             turn(f"{side}_shoulder", "z", 120 * sign)
+    if kind == "leap":  # higher than she jumps (8 cm), arms wider than she holds them (wrists 0.45 m aside)
+        root[0, 1] += 0.11
+        for side, sign in (("l", 1), ("r", -1)):
+            turn(f"{side}_hip", "z", 14 * sign)
+            turn(f"{side}_shoulder", "z", 25 * sign)
     return joint_matrices(skeleton, rotations, root)[0]
 
 

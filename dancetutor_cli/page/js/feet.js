@@ -28,7 +28,9 @@ export function marksOf(doc, pose) {
     const height = Math.max(0, Math.min(heel[1], toe[1]) - ground);
     if (height >= (limb < 2 ? 1 : reach)) return none;
     const near = Math.max(0, 1 - height / reach);
-    const strength = look.stage.mark * (limb < 2 ? 0.25 + 0.75 * near : near);
+    const t = Math.min(1, Math.max(0, (near - 0.88) / 0.07));
+    const planted = t * t * (3 - 2 * t);
+    const strength = look.stage.mark * (limb < 2 ? planted + (1 - planted) * (0.12 + 0.38 * near) : near);
     return { line: [heel[0], heel[2], toe[0], toe[2]], ground, near, strength, colour };
   });
 }

@@ -308,7 +308,7 @@ export class Highway {
   shape(column, x, y, size, mirror) {
     const c = this.context;
     const way = this.directions[column];
-    const angle = (((way ?? 0) * Math.PI) / 180) * (mirror ? -1 : 1);
+    const angle = (((way ?? 0) + (mirror ? 180 : 0)) * Math.PI) / 180; // as her panels are seen then
     const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
     c.beginPath();
     for (const [px, py] of way === null ? SQUARE : ARROW) {

@@ -124,7 +124,9 @@ void main() {
         }
         float d = from_foot(world.xz, foot[f]) - radius;
         keep *= 1.0 - contact.x * near * (1.0 - smoothstep(0.0, contact.y * (1.6 - 0.6 * near), d));
-        float band = clamp((0.0085 - abs(d - 0.020)) / footprint + 0.5, 0.0, 1.0) * foot_state[f].z;
+        float planted = smoothstep(0.88, 0.95, near);
+        float band = clamp((0.0040 + 0.0060 * planted - abs(d - (0.0220 - 0.0090 * planted))) / footprint + 0.5, 0.0, 1.0);
+        band *= foot_state[f].z;
         if (band > ring) {
             ring = band;
             ring_colour = foot_colour[f];
@@ -133,7 +135,7 @@ void main() {
     value *= keep;
     vec4 lit = column >= 0 ? texelFetch(lights, ivec2(column, 0), 0) : vec4(0.0);
     float shine = glow * lit.a * contact.z;
-    value = mix(value, lit.rgb * (0.35 + 0.65 * keep), shine);
+    value = mix(value, lit.rgb * (0.80 + 0.20 * keep), shine);
     value = mix(value, vec3(1.0), white * lit.a * contact.z * step(1e-6, shine));
     colour = vec4(mix(value, ring_colour, ring), 1.0);
 }

@@ -76,8 +76,8 @@ def _webp(parts: Joining) -> None:
 PICTURES = "png"  # not a file but a folder of them
 FORMATS: Mapping[str, FilmFormat] = {
     "mp4": FilmFormat(_mp4, ".mp4", h264=True, has_sound=True),
-    "gif": FilmFormat(_gif, ".mkv", fps=25, side=480, largest=20.0),
-    "webp": FilmFormat(_webp, ".mkv", fps=25, side=480, largest=20.0),
+    "gif": FilmFormat(_gif, ".mkv", fps=25, side=720, largest=20.0),
+    "webp": FilmFormat(_webp, ".mkv", fps=25, side=720, largest=20.0),
     PICTURES: FilmFormat(None, ""),
 }
 FILES = tuple(f".{name}" for name, form in FORMATS.items() if form.join is not None)

@@ -11,9 +11,9 @@ from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle
-from dancetutor_cli.video.overlay.captions import WHITE, pill
+from dancetutor_cli.video.overlay.captions import WHITE, pill, plate
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
-from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
 
 CALL_STAYS = 0.35  # seconds that a call stays after its note
@@ -61,9 +61,9 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 
 
 class Calls:
-    """Moves called out before they come, at the top right of `box`, with the time left as a bar.
+    """Passages called out before they come, at the top right of `box`, with the time left as a bar.
 
-    The same words stand there once: for the move that comes next, and until a moment after it.
+    The words stand until the passage is over: one that goes on has its count beside it all the time.
     """
 
     SHOWN = 2  # at a time, the nearest on top
@@ -72,33 +72,29 @@ class Calls:
         self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
     ) -> None:
         self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
-        self.seconds = np.array([one.second for one in callouts])
-        self._sprite = lru_cache(maxsize=32)(self._pill)
+        self._begins = np.array([one.begin for one in callouts])
+        self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
+        self._sprite = lru_cache(maxsize=32)(self._plate)
 
-    def _pill(self, text: str, severity: str) -> Sprite:
+    def _plate(self, text: str, severity: str) -> Sprite:
         size = 24 * self.scale
-        text, size = self.face.shrink(text, size, self.box[2] - self.box[0] - 0.8 * size)
-        return pill(text, size, self.style.callout[severity], self.face)
+        lines, size = fitted(text, size, self.box[2] - self.box[0] - 0.8 * size, self.face, most=2)
+        return plate(lines, size, self.style.callout[severity], self.face)
 
     def _shown(self, second: float) -> list[Callout]:
-        first, last = np.searchsorted(self.seconds, (second - CALL_STAYS, second + self.style.callout_seconds))
-        by_text: dict[str, Callout] = {}
-        for one in self.callouts[int(first) : int(last)]:
-            if one.text not in by_text or by_text[one.text].second < second:
-                by_text[one.text] = one
-        return sorted(by_text.values(), key=lambda one: one.second)[: self.SHOWN]
+        shown = np.flatnonzero((self._begins <= second) & (second < self._ends))
+        return [self.callouts[k] for k in shown[: self.SHOWN]]
 
     def draw(self, frame: Frame, second: float) -> None:
-        """Draw what comes within the next `callout_seconds` after `second`."""
+        """Draw what goes on at `second`, and what comes next."""
         y = float(self.box[1])
         for one in self._shown(second):
-            left = one.second - second
             label = self._sprite(one.text, one.severity)
             x = self.box[2] - label.shape[1]
-            fade = min(1.0, (self.style.callout_seconds - left) / 0.15, 1.0 + left / CALL_STAYS)
+            fade = min(1.0, (second - one.begin) / 0.12, (max(one.end, one.second) + CALL_STAYS - second) / CALL_STAYS)
             blit(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
-            share = min(1.0, max(0.0, left / self.style.callout_seconds))
+            share = min(1.0, max(0.0, (one.second - second) / max(one.second - one.begin, 1e-9)))
             bar = (label.shape[1] - 8 * self.scale) * share
             edge = x + 4 * self.scale
             line = (edge, y, edge + bar, y + 4 * self.scale)

@@ -1,62 +1,150 @@
-"""What the picture calls out beside the notes: the moves a learner has to know, and what the linter found."""
+"""What the picture calls out beside the notes: the moves a learner has to know, a passage at a time.
+
+What the linter found is for authors; it stands there only where it is asked for.
+"""
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.lint.check import findings_of
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.pads import Pad
+    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.video.ahead import Ahead
     from dancetutor_cli.video.scroll import ScrollSegments
 
-_FOR_AUTHORS = ("unsure-feet",)  # nothing that a dancer does
+JOIN = 2 * TICKS_PER_BEAT  # moves that follow so closely are called out together,
+LONGEST = 16 * TICKS_PER_BEAT  # but nothing is called out for longer than four measures
+KINDS = 2  # different moves in one call at most: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
+_WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.model.Limb`
+_OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
+_CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
 
-def callouts_of(subject: ChartSubject, words: Mapping[str, str], scrolls: ScrollSegments) -> tuple[Callout, ...]:
-    """Everything to call out, one entry per moment, in order of time.
+@dataclass(frozen=True, slots=True)
+class CallStyle:
+    """What is called out, and when. words : name of a move -> what is said, with {who} and {places} to be filled in;
+    moves that are not in it are not. findings : the linter's, too; turned : she faces who looks on, and panels are
+    named as they are seen then"""
 
-    words : name of a move -> what is called; moves that are not in it are not. A move that goes on over several rows is
-    called once, where it begins.
+    words: Mapping[str, str]
+    ahead: Ahead
+    findings: bool = False
+    turned: bool = False
+
+
+@dataclass
+class _Passage:
+    """Moves that follow each other closely. words : what is said -> how often, in order"""
+
+    first: int
+    last: int
+    words: dict[str, int] = field(default_factory=dict)
+    weight: int = 0
+
+    def takes(self, tick: int, said: str, weight: int) -> bool:
+        """Is a move at `tick` part of it?"""
+        near = tick - self.last <= JOIN and tick - self.first <= LONGEST
+        return near and weight == self.weight and (said in self.words or len(self.words) < KINDS)
+
+    def text(self) -> str:
+        return ", ".join(said if count == 1 else f"{said} ×{count}" for said, count in self.words.items())
+
+    def tag(self) -> str:
+        """What it begins with, for the narrow place beside the notes, whose markers say which foot it is."""
+        said, count = next(iter(self.words.items()))
+        short = said.partition(": ")[2] or said
+        return short if count == 1 else f"{short} ×{count}"
+
+
+def callouts_of(subject: ChartSubject, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
+    """Everything to call out, a passage at a time, in order of time.
+
+    Moves in a row, such as one crossover after the other, are one passage with a count.
     """
-    found: dict[int, tuple[set[str], int]] = {}
-    for tick, text, weight in (*_moves(subject, words), *_findings(subject)):
-        texts, most = found.setdefault(tick, (set(), 0))
-        texts.add(text)
-        found[tick] = (texts, max(most, weight))
-    ticks = np.array(sorted(found), dtype=np.int64)
-    seconds = subject.chart.timing.seconds(ticks)
-    beats = scrolls.shown(ticks / TICKS_PER_BEAT)
+    found = [*_moves(subject, style), *(_findings(subject) if style.findings else ())]
+    passages: list[_Passage] = []
+    for first, last, said, weight in sorted(found):
+        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight)), None)
+        if here is None:
+            here = _Passage(first, last, weight=weight)
+            passages.append(here)
+        here.last = max(here.last, last)
+        here.words[said] = here.words.get(said, 0) + 1
+    timing = subject.chart.timing
+    ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
+    starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
+    beats = scrolls.shown(ticks[:, 0] / TICKS_PER_BEAT)
+    if style.ahead.in_beats:
+        begins = timing.seconds(ticks[:, 0] - round(style.ahead.length * TICKS_PER_BEAT))
+    else:
+        begins = starts - style.ahead.length
     return tuple(
-        Callout(float(second), float(beat), ", ".join(sorted(found[int(tick)][0])), _ORDER[found[int(tick)][1]])
-        for tick, second, beat in zip(ticks, seconds, beats, strict=True)
+        Callout(
+            float(start), float(beat), passage.text(), _ORDER[passage.weight], float(begin), float(end), passage.tag()
+        )
+        for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
 
 
-def _moves(subject: ChartSubject, words: Mapping[str, str]) -> list[tuple[int, str, int]]:
-    out = []
-    before: set[str] = set()
-    play = subject.play
-    for tick, names in zip(play.rows.tick.tolist(), play.moves, strict=True) if play else ():
-        now = {words[name] for name in names if name in words}
-        out += [(tick, word, 0) for word in sorted(now - before)]
-        before = now
-    return out
+def _moves(subject: ChartSubject, style: CallStyle) -> Iterator[tuple[int, int, str, int]]:
+    """First and last tick of each move, what is said, and that it is no finding."""
+    play, pad, words = subject.play, subject.pad, style.words
+    if play is None or pad is None:
+        return
+    ticks = play.rows.tick.tolist()
+    crossed: list[int] = []  # where each crossover began, of those that go on
+    kind = ""
+    for row, names in enumerate(play.moves):
+        now = next((name for name in _CROSSED if name in names), "")
+        if crossed and now != kind:
+            if kind in words:
+                yield crossed[0], ticks[row - 1], words[kind], 0
+            crossed = []
+        if now and not crossed:
+            crossed = [ticks[row]]
+        kind = now
+        for name in sorted({n for n in names if n in words and n not in _CROSSED}):
+            yield ticks[row], ticks[row], _filled(style, name, play, pad, row), 0
+    if crossed and kind in words:
+        yield crossed[0], ticks[-1], words[kind], 0
 
 
-def _findings(subject: ChartSubject) -> list[tuple[int, str, int]]:
-    return [
-        (round(finding.beat * TICKS_PER_BEAT), finding.name.replace("-", " "), _ORDER.index(finding.severity))
-        for finding in findings_of(subject)
-        if finding.beat is not None
-        and finding.note_column is not None
-        and finding.severity in _ORDER
-        and finding.name not in _FOR_AUTHORS
-    ]
+def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
+    """The words of a move with who does it and where: "right foot: heel right, toe up"."""
+    limbs = play.limb[row].tolist()
+    who = next((limb for limb in range(4) if limbs.count(limb) > 1), -1) if name == "bracket" else -1
+    if who < 0:
+        wanted = range(2, 4) if name == "hand" else range(2)
+        who = next((limb for limb in wanted if limb in limbs), -1)
+    columns = [column for column, limb in enumerate(limbs) if limb == who]
+    heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
+    parts = [(column != heel, panel_words(pad.names[column], style.turned)) for column in columns]
+    places = ", ".join(f"{'toe' if toe else 'heel'} {panel}" for toe, panel in sorted(parts))
+    return style.words[name].replace("{who}", _WHO[who] if who >= 0 else "foot").replace("{places}", places)
+
+
+def panel_words(name: str, turned: bool = False) -> str:
+    """A panel's name as it is said, whichever pad of a double it is on: "up-left"; turned : as seen from before her."""
+    plain = re.sub(r"-\d+$", "", name)
+    return "-".join(_OPPOSITE.get(word, word) for word in plain.split("-")) if turned else plain
+
+
+def _findings(subject: ChartSubject) -> Iterator[tuple[int, int, str, int]]:
+    from dancetutor_cli.lint.check import findings_of
+
+    for finding in findings_of(subject):
+        if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
+            tick = round(finding.beat * TICKS_PER_BEAT)
+            yield tick, tick, finding.name.replace("-", " "), _ORDER.index(finding.severity)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -80,10 +81,19 @@ class Header:
 
 def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
     """Dark words on a coloured lozenge."""
-    words = face.sprite(text, size, INK, weight=size / 62)
-    height = max(8, round(1.55 * size))
-    width = max(words.shape[1] + height // 2 + 2, height)
-    return lozenge(height, width, height / 2 - 1, colour, words)
+    return plate([text], size, colour, face)
+
+
+def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
+    """Lines of dark words on a coloured plate with round ends."""
+    words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]
+    one, step = max(8, round(1.55 * size)), round(1.2 * size)
+    height = one + step * (len(lines) - 1)
+    width = max(max(line.shape[1] for line in words) + one // 2 + 2, one)
+    out = lozenge(height, width, one / 2 - 1, colour)
+    for number, line in enumerate(words):
+        sprites.centre(out[number * step : number * step + one], line)
+    return out
 
 
 def lozenge(
@@ -107,14 +117,14 @@ def lozenge(
 class Legend:
     """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them.
 
-    A dark plate below keeps them readable over a panel of the pad.
+    A dark plate below keeps them readable over a panel of the pad. note : words below the last one
     """
 
-    def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface) -> None:
+    def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface, note: str = "") -> None:
         names = ("left foot", "right foot", "left hand", "right hand")
         shown = sorted({0, 1} | limbs)
         step, edge = 31 * scale, 8 * scale
-        top = box[3] - step * len(shown)
+        top = box[3] - step * (len(shown) + bool(note))
         lines: list[tuple[Sprite, float, float]] = []
         right = float(box[0])
         for row, limb in enumerate(shown):
@@ -124,6 +134,10 @@ class Legend:
             x = box[0] + mark.shape[1] + 5 * scale
             lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
             right = max(right, x + text.shape[1])
+        if note:
+            text = face.sprite(note, 16 * scale, WHITE, weight=0.2 * scale)
+            lines.append((text, box[0], box[3] - 0.5 * step - text.shape[0] / 2))
+            right = max(right, float(box[0] + text.shape[1]))
         size = round(box[3] - top + 1.2 * edge), round(right - box[0] + 2 * edge)
         plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
         self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.picture import PadLike
 
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
+NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
+LETTER = 0.46  # height of the letters on the soles of those, in sizes of a panel
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,21 +49,38 @@ def step_rows(play: Play) -> StepRows:
     return StepRows(play.rows.second[keep], limb[keep], play.feet[keep])
 
 
+class PadView(NamedTuple):
+    """A pad as it is seen. directions : per column, degrees clockwise from up, None for a middle panel
+
+    turned : it is seen from the screen, as she is; `directions` are as they are seen then
+    """
+
+    pad: PadLike
+    directions: tuple[float | None, ...]
+    turned: bool = False
+
+
 class PadMap:
     """A pad from above in a box: maps panel widths to pixels and draws its panels."""
 
-    def __init__(self, pad: PadLike, directions: tuple[float | None, ...], box: PixelBox) -> None:
-        self.panels = np.asarray(pad.panels, dtype=np.float64)
-        self.directions = directions
+    def __init__(self, view: PadView, box: PixelBox) -> None:
+        self.turned, self._way = view.turned, -1.0 if view.turned else 1.0
+        self.panels = np.asarray(view.pad.panels, dtype=np.float64)
+        self.directions = view.directions
         low, high = self.panels.min(0) - 0.5, self.panels.max(0) + 0.5
         room = (box[2] - box[0], box[3] - box[1])
         self.unit = 0.98 * min(room[0] / (high[0] - low[0]), room[1] / (high[1] - low[1]))
-        middle = (low + high) / 2
+        middle = self._way * (low + high) / 2
         self.origin = ((box[0] + box[2]) / 2 - middle[0] * self.unit, (box[1] + box[3]) / 2 + middle[1] * self.unit)
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Pixels of a place in panel widths."""
-        return self.origin[0] + x * self.unit, self.origin[1] - y * self.unit
+        return self.origin[0] + self._way * x * self.unit, self.origin[1] - self._way * y * self.unit
+
+    @property
+    def smaller(self) -> float:
+        """Pixels of the pad's shorter side."""
+        return float((np.ptp(self.panels, axis=0) + 1.0).min() * self.unit)
 
     def nearness(self, x: float, y: float) -> float:
         """1 for a place on the pad, 0 for one more than half a panel beside it."""
@@ -94,7 +113,7 @@ def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite
 
 
 @lru_cache(maxsize=512)
-def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool) -> Sprite:
+def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool, letter: float = 0.3) -> Sprite:
     """A sole from above, its toe turned `degrees` clockwise from the screen, with its letter."""
     p = shapes.Painter(size, size)
     a = np.radians(degrees)
@@ -110,7 +129,7 @@ def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool)
     p.paint(shapes.cover(d + 0.005 * size), (255, 255, 255), 0.95 if not ghost else 0.5)
     p.paint(shapes.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
     out = p.sprite()
-    sprites.centre(out, face.sprite("LR"[limb], 0.3 * size, (10, 11, 20), weight=0.012 * size))
+    sprites.centre(out, face.sprite("LR"[limb], letter * size, (10, 11, 20), weight=0.04 * letter * size))
     return out
 
 
@@ -127,7 +146,7 @@ class FeetDiagram:
             if foot is None:
                 continue
             dx, dy = foot.toe[0] - foot.heel[0], foot.toe[1] - foot.heel[1]
-            degrees = round(np.degrees(np.arctan2(dx, dy)) / 3) * 3 % 360
+            degrees = (round(np.degrees(np.arctan2(dx, dy)) / 3) * 3 + 180 * self.pads.turned) % 360
             size = max(8, 2 * round(0.5 * self.pads.unit * (1.12 + 0.6 * min(foot.height, 0.3))))
             shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035)
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
@@ -153,22 +172,27 @@ def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
 class NextRows:
     """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
 
-    They lie beside or below each other, whichever makes them larger.
+    They lie beside or below each other, whichever makes them larger. least : pixels of a pad's shorter side; where so
+    many rows would be smaller, there are fewer
     """
 
     def __init__(
         self,
         rows: StepRows,
-        pad: PadLike,
-        directions: tuple[float | None, ...],
+        view: PadView,
         box: PixelBox,
         count: int,
         face: Typeface,
+        least: float = 0.0,
     ) -> None:
         self.rows, self.face = rows, face
-        beside = [PadMap(pad, directions, one) for one in cut(box, count, 0)]
-        below = [PadMap(pad, directions, one) for one in cut(box, count, 1)]
-        self.pads = max(beside, below, key=lambda pads: pads[0].unit)
+        while True:
+            beside = [PadMap(view, one) for one in cut(box, count, 0)]
+            below = [PadMap(view, one) for one in cut(box, count, 1)]
+            self.pads = max(beside, below, key=lambda pads: pads[0].unit)
+            if count == 1 or self.pads[0].smaller >= least:
+                return
+            count -= 1
 
     def draw(self, frame: Frame, second: float) -> None:
         """Draw the rows that come after `second`."""
@@ -189,6 +213,6 @@ class NextRows:
                 blit(frame, mark, round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
 
     def _shoe(self, frame: Frame, pads: PadMap, size: int, column: int, foot: int, resting: bool) -> None:
-        shoe = shoe_sprite(size, 0, foot, self.face, resting)
+        shoe = shoe_sprite(size, 180 * pads.turned, foot, self.face, resting, LETTER)
         x, y = pads.place(*pads.panels[column])
         blit(frame, shoe, round(x - size / 2), round(y - size / 2), 0.75 if resting else 1.0)

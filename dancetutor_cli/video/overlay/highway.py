@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -15,24 +16,12 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
-from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
 from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
-FLAG_LEAST = 0.7  # of its size a label may shrink to before its words are cut off
-
-
-def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
-    """Words in lines of at most `width` pixels where a word is not wider itself; three lines at most."""
-    lines = [words[0]]
-    for word in words[1:]:
-        longer = f"{lines[-1]} {word}"
-        if len(lines) == 3 or face.width(longer, size) <= width:
-            lines[-1] = longer
-        else:
-            lines.append(word)
-    return lines
+FLAG_LEAST = 10.0  # pixels of a label's letters: smaller ones are not read
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +29,7 @@ class HighwayGeometry:
     """Where the highway lies, in pixels: box (left, top, right, bottom); lane width; y of the receptors' middle.
 
     directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
+    turned : she faces who looks on; the lanes stand the other way round, and `directions` are as they are seen then
     """
 
     box: tuple[int, int, int, int]
@@ -47,6 +37,11 @@ class HighwayGeometry:
     receptor: float
     directions: tuple[float | None, ...]
     down: bool = False
+    turned: bool = False
+
+    def lane_of(self, column: int) -> int:
+        """Which lane from the left a column has."""
+        return len(self.directions) - 1 - column if self.turned else column
 
     @property
     def left(self) -> float:
@@ -108,7 +103,8 @@ class Highway:
         self.bodies = {k: sprites.hold_body(body, c, k == Kind.ROLL) for k, c in self._hold_colours()}
         self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
         mark = max(6, round(style.mark * self.geometry.lane))
-        self.marks = [sprites.marker(mark, limb, self.face) for limb in range(4)]
+        self.marks = [sprites.marker(mark, limb, self.face) for limb in (0, 1, 2, 3, -1)]  # -1 is the last one
+        self._danced = bool((self.notes.limb >= 0).any())
         self.mark_shade = sprites.shade(round(1.35 * mark))
 
     def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
@@ -188,22 +184,22 @@ class Highway:
         y = self._y(self._callout_seconds, self._callout_beats, now)
         x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
         for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):
-            flag = self._flag(self.callouts[i].text, self.callouts[i].severity)
+            flag = self._flag(self.callouts[i].tag, self.callouts[i].severity)
             blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
         room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
-        size = 0.24 * geometry.lane
-        room -= 0.8 * size + 5  # what the label adds to its words
-        whole, low = self.face.shrink(text, size, room, FLAG_LEAST)
-        words = text.split()
-        if len(words) == 1 or (whole == text and low > 0.95 * size):
-            return sprites.flag([whole], low, self.style.callout[severity], self.face)
-        lines = wrapped(words, size, room, self.face)
-        fitted = [self.face.shrink(line, size, room, FLAG_LEAST) for line in lines]
-        size = min(size for _, size in fitted)
-        return sprites.flag([line for line, _ in fitted], size, self.style.callout[severity], self.face)
+        size = max(0.24 * geometry.lane, FLAG_LEAST)
+        lines, size = fitted(text, size, room - 0.8 * size - 5, self.face)
+        return sprites.flag(lines, size, self.style.callout[severity], self.face)
+
+    def _behind(self, direction: float | None) -> tuple[float, float]:
+        """Where a marker stands on its arrow, pixels from the middle: on a diagonal it would hide which way that is."""
+        if direction is None or direction % 90 == 0:
+            return 0.0, 0.0
+        far = self.style.mark_aside * self.geometry.lane
+        return -far * math.sin(math.radians(direction)), far * math.cos(math.radians(direction))
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
@@ -217,7 +213,8 @@ class Highway:
                 blit(frame, glow, gx, gy, light, self._rows)
 
     def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
-        return self.geometry.left + (column + 0.5) * self.geometry.lane - size / 2, y - size / 2
+        lane = self.geometry.lane_of(column)
+        return self.geometry.left + (lane + 0.5) * self.geometry.lane - size / 2, y - size / 2
 
     def _draw_notes(self, frame: Frame, now: _Now) -> None:
         notes, second = self.notes, now.second
@@ -261,7 +258,10 @@ class Highway:
         x, top = self._corner(column, y, self.size)
         blit(frame, sprite, x, top, 1.0 if notes.judged[i] else 0.55, self._rows)
         limb = int(notes.limb[i])
-        if limb >= 0 and notes.judged[i] and kind != Kind.MINE:
+        stepped = notes.judged[i] and kind not in (Kind.MINE, Kind.FAKE)
+        if stepped and (limb >= 0 or self._danced):
+            aside, below = self._behind(direction)
             for mark in (self.mark_shade, self.marks[limb]):
                 mx, my = self._corner(column, y, mark.shape[0])
+                mx, my = mx + aside, my + below
                 blit(frame, mark, mx, my, 1.0, self._rows)

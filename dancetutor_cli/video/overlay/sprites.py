@@ -26,6 +26,9 @@ _ARROW = np.array([
 _SQUARE = np.array([(-0.7, -0.7), (0.7, -0.7), (0.7, 0.7), (-0.7, 0.7)])
 
 
+NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
+
+
 @dataclass(frozen=True, slots=True)
 class HighwayStyle:
     """configs/highway.yaml: colours sRGB 0..255; sizes in lane widths; times in seconds."""
@@ -40,10 +43,11 @@ class HighwayStyle:
     lane_line: RGB
     arrow: float
     mark: float
+    mark_aside: float
     flash_seconds: float
     panel_seconds: float
     callouts: dict[str, str]
-    callout_seconds: float
+    callout_ahead: str
     callout: dict[str, RGB]
     difficulty: dict[str, RGB]
     accent: RGB
@@ -154,10 +158,10 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
 def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> Sprite:
     """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
 
-    limb : value of `play.model.Limb`, 0..3
+    limb : value of `play.model.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
     """
     p = shapes.Painter(size, size)
-    paint = limb_colours().by_limb[limb] if colour is None else colour
+    paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour
     unit = size / 32
     radius = 0.5 * size - 1
     right = limb in (1, 3)
@@ -171,6 +175,13 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> S
     if limb >= 2:
         p.paint(shapes.cover(np.abs(d + 5.2 * unit) - 0.9 * unit), (10, 11, 20))
     out = p.sprite()
+    if limb < 0:
+        cross = np.minimum(np.abs(p.x - p.y), np.abs(p.x + p.y)) * 0.7071 - 2.2 * unit
+        p = shapes.Painter(size, size)
+        p.paint(shapes.cover(d), (10, 11, 20))
+        p.paint(shapes.cover(d + 2.2 * unit), paint)
+        p.paint(shapes.cover(np.maximum(cross, d + 6.0 * unit)), (10, 11, 20))
+        return p.sprite()
     letter = face.sprite("R" if right else "L", (0.66 if limb < 2 else 0.52) * size, (10, 11, 20), weight=0.035 * size)
     centre(out, letter)
     return out

@@ -18,6 +18,7 @@ from dancetutor_cli.video.overlay.fonts import font, has_all, has_glyph, system_
 
 RGB = tuple[int, int, int]
 FINE = 4  # text is drawn so many times larger and made smaller: letters need not stand on whole pixels then
+LEAST = 4.0  # pixels of letters; nobody reads them, but hostile words end there
 LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
 _FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
          "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
@@ -137,3 +138,28 @@ def clean(text: str) -> str:
     """Without control characters and escapes, which metadata of hostile files carries; whitespace runs become one."""
     kept = "".join(c if unicodedata.category(c)[0] != "C" else (" " if c in "\t\r\n" else "") for c in text)
     return " ".join(kept.split())
+
+
+def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
+    """Words in lines of at most `width` pixels, where a word is not wider itself."""
+    lines = [words[0]]
+    for word in words[1:]:
+        longer = f"{lines[-1]} {word}"
+        if face.width(longer, size) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
+    """A text in at most `most` lines of at most `width` pixels, and the size that makes it fit: nothing is cut off.
+
+    It is wrapped before it is made smaller.
+    """
+    words = text[:LONGEST].split() or [""]
+    while True:
+        lines = wrapped(words, size, width, face)
+        if size <= LEAST or (len(lines) <= most and max(face.width(line, size) for line in lines) <= width):
+            return lines, size
+        size = max(LEAST, 0.96 * size)

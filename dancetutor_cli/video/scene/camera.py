@@ -19,6 +19,7 @@ from dancetutor_cli.video.scene.look import CameraLook, Look
 Array = NDArray[np.float64]
 Region = tuple[float, float, float, float]
 WHOLE: Region = (0.0, 0.0, 1.0, 1.0)
+_FACING, _STRAIGHT_DOWN = -0.35, 85.0  # cosine of the azimuth, degrees of the elevation
 NEAR = 0.05  # metres; nothing nearer is drawn
 
 
@@ -169,6 +170,16 @@ def parse(
         raise UsageError(f"camera '{text}' is neither a name nor POSITION/TARGET, for example 1.5,1.8,-4/0,0.9,0")
     (a, b, c), (d, e, f) = numbers
     return free((a, b, c), (d, e, f), look, region)
+
+
+def seen_from_front(text: str, look: Look) -> bool:
+    """Does she face this camera, given as on the command line? Then her left is on the right of the picture."""
+    if text in look.cameras:
+        about = look.cameras[text]
+        return math.cos(math.radians(about.azimuth)) < _FACING and about.elevation < _STRAIGHT_DOWN
+    (px, _, pz), (tx, _, tz) = ([float(n) for n in part.split(",")] for part in text.split("/"))
+    away = math.hypot(px - tx, pz - tz)
+    return away > 1e-3 and (tz - pz) / away < _FACING
 
 
 def with_pan_range(camera: Camera, low: float, high: float) -> Camera:

@@ -18,7 +18,7 @@ from dancetutor_cli.video.scene.stage import Stage, build_stage, pad_extent
 
 Array = NDArray[np.float64]
 FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
-_JUMP = 0.22  # metres above her own height that a camera shows
+_JUMP = 0.10  # metres above her own height that a camera shows: a jump
 SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
 _HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # how far that line reaches beyond ankle and ball, (x, z) at rest
 

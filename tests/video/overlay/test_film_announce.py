@@ -68,26 +68,44 @@ def test_numbers_are_counted_down_inside_their_box() -> None:
     assert not frame.any(), "counted in"
 
 
-def calls(*moments: tuple[float, str]) -> Calls:
-    found = tuple(Callout(second, second * 2, text, "move") for second, text in moments)
+def calls(*passages: tuple[float, float, str]) -> Calls:
+    """Calls of passages (begin, end, words), called out a second before."""
+    found = tuple(Callout(begin, 2 * begin, text, "move", begin - 1.0, end, text) for begin, end, text in passages)
     return Calls(found, (300, 10, 630, 350), 1.0, FACE, highway_style())
 
 
-def test_the_same_words_stand_once() -> None:
-    twice = calls((5.0, "crossover"), (5.4, "crossover"))
-    for second in (4.0, 4.9, 5.1, 5.3, 5.6):
-        frame, alone = black(), black()
-        twice.draw(frame, second)
-        calls((5.0 if second <= 5.0 else 5.4, "crossover")).draw(alone, second)
-        assert alone.any() and (frame == alone).all(), second
+def test_a_passage_is_called_out_before_it_begins_and_until_it_is_over() -> None:
+    one = calls((5.0, 7.0, "crossover ×3"))
+    for second, shown in ((3.99, False), (4.5, True), (5.5, True), (7.2, True), (7.0 + CALL_STAYS + 0.01, False)):
+        frame = black()
+        one.draw(frame, second)
+        assert frame.any() == shown, second
 
 
-def test_two_moves_stand_below_each_other_and_end_after_their_notes() -> None:
-    both = calls((5.0, "crossover"), (5.4, "spin"), (5.5, "crossover"), (5.6, "bracket"))
-    frame, one = black(), black()
-    both.draw(frame, 4.0)
-    calls((5.0, "crossover")).draw(one, 4.0)
-    assert drawn(frame)[3] > drawn(one)[3] + 20
+def test_what_comes_next_stands_below_what_goes_on() -> None:
+    both = calls((5.0, 6.0, "crossover"), (6.5, 6.5, "spin"))
+    frame, alone = black(), black()
+    both.draw(frame, 5.9)
+    calls((5.0, 6.0, "crossover")).draw(alone, 5.9)
+    assert drawn(frame)[3] > drawn(alone)[3] + 20
     late = black()
-    both.draw(late, 5.6 + CALL_STAYS + 0.01)
+    both.draw(late, 6.5 + CALL_STAYS + 0.01)
     assert not late.any()
+
+
+@pytest.mark.parametrize("width", [90, 200, 330])
+def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    ink = Typeface.sprite
+
+    def sprite(self: Typeface, text: str, *rest: object, **more: object) -> object:
+        written.append(text)
+        return ink(self, text, *rest, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Typeface, "sprite", sprite)
+    said = "right foot: heel down-right, toe centre, footswitch"
+    found = (Callout(5.0, 10.0, said, "move", 4.0, 5.0, said),)
+    frame = black()
+    Calls(found, (300, 10, 300 + width, 350), 1.0, FACE, highway_style()).draw(frame, 4.5)
+    assert " ".join(written) == said
+    assert drawn(frame)[0] >= 300 - 2, "inside of its box"

@@ -117,7 +117,7 @@ def test_frames_do_not_depend_on_what_was_drawn_before() -> None:
     seconds = np.arange(8) * 0.25 + 0.5
     ends = seconds + np.where(np.isin(kinds, (Kind.HOLD, Kind.ROLL)), 1.0, 0.0)
     plan = film_plan(seconds, kinds=kinds, ends=ends)
-    plan = replace(plan, callouts=(Callout(1.5, 3.0, "spin", "warning"),))
+    plan = replace(plan, callouts=(Callout(1.5, 3.0, "spin", "warning", 0.6, 1.5, "spin"),))
     forwards, backwards = Film(plan), Film(plan)
     frames = {k: forwards.frame(k).copy() for k in range(0, 80, 9)}
     for k in reversed(range(0, 80, 9)):

@@ -11,8 +11,7 @@ import pytest
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.overlay import text
 from dancetutor_cli.video.overlay.fonts import system_fonts
-from dancetutor_cli.video.overlay.highway import wrapped
-from dancetutor_cli.video.overlay.text import Typeface, clean
+from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, wrapped
 
 
 @pytest.fixture
@@ -56,7 +55,22 @@ def test_labels_wrap_before_they_become_small() -> None:
     width = face.width("full crossover", 14)
     assert wrapped(["full", "crossover"], 14, width + 1, face) == ["full crossover"]
     assert wrapped(["full", "crossover"], 14, 0.7 * width, face) == ["full", "crossover"]
-    assert wrapped(["a", "b", "c", "d"], 14, 1.0, face) == ["a", "b", "c d"]
+    lines, size = fitted("full crossover", 14, 0.75 * width, face)
+    assert lines == ["full", "crossover"] and size == 14
+
+
+@pytest.mark.parametrize("room", [30, 55, 80, 300])
+def test_labels_are_never_cut(room: int) -> None:
+    face = Typeface()
+    said = "heel down-right, toe centre, footswitch ×12"
+    lines, size = fitted(said, 16, room, face)
+    assert " ".join(lines) == said and len(lines) <= 4
+    assert max(face.width(line, size) for line in lines) <= room
+
+
+def test_titles_shrink() -> None:
+    face = Typeface()
+    width = face.width("full crossover", 14)
     words, size = face.shrink("full crossover", 14, 0.9 * width)
     assert words == "full crossover" and size == pytest.approx(0.9 * 14, rel=0.03)
     words, size = face.shrink("full crossover", 14, 0.5 * width)

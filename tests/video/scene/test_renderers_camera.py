@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.resources import config_path
-from dancetutor_cli.video.scene.camera import Camera, free, parse, preset, with_pan_range
+from dancetutor_cli.video.scene.camera import Camera, free, parse, preset, seen_from_front, with_pan_range
 from dancetutor_cli.video.scene.look import default_look, read_look
 
 LOOK = default_look()
@@ -29,7 +29,7 @@ def _all_vertices(character, joints):
 
 @settings(max_examples=40, deadline=None)
 @given(
-    st.sampled_from(BODY_CAMERAS), st.sampled_from(["stand", "step", "jump"]), st.sampled_from(["single", "double"]),
+    st.sampled_from(BODY_CAMERAS), st.sampled_from(["stand", "step", "leap"]), st.sampled_from(["single", "double"]),
     st.tuples(st.integers(200, 2000), st.integers(200, 2000)),
 )  # fmt: skip
 def test_presets_show_all_of_her_at_any_aspect(name, kind, pad, size):
@@ -56,6 +56,30 @@ def test_left_is_left_from_the_back_and_right_from_the_front():
     for name, side in (("back", -1), ("front", 1), ("top", -1)):
         x = preset(name, PAD, (1280, 720), LOOK).project(left_panel, (1280, 720))[0, 0]
         assert (x - 640) * side > 50
+
+
+def test_a_foot_fills_more_of_the_side_by_side_box_than_it_did():
+    """The box of the default layout, 838 x 672: before, a foot was 69 pixels long sideways and 24 wide."""
+    camera = rs.scene("dance-single").camera("back", (838, 672))
+    places = camera.project(
+        np.array([[0.27, 0, 0.0], [0.01, 0, 0.0], [0.14, 0.0, -0.08], [0.14, 0.0, 0.18]]), (838, 672)
+    )
+    assert abs(places[0, 0] - places[1, 0]) > 72
+    assert abs(places[2, 1] - places[3, 1]) > 47
+
+
+@pytest.mark.parametrize(
+    ("text", "turned"),
+    [("back", False), ("front", True), ("front-high", True), ("side", False), ("three-quarter", False), ("top", False),
+     ("1.5,1.8,-4/0,0.9,0", False), ("1.5,1.8,4/0,0.9,0", True), ("0,3,0/0,0,0", False)],
+)  # fmt: skip
+def test_who_sees_her_face_sees_the_pad_turned(text, turned):
+    """Arrows turn with the pad where, and only where, her left panel is on the right of the picture."""
+    assert seen_from_front(text, LOOK) == turned
+    camera = parse(text, PAD, (1280, 720), LOOK)
+    left, right = camera.project(np.array([[0.28, 0.0, 0.0], [-0.28, 0.0, 0.0]]), (1280, 720))[:, 0]
+    if abs(left - right) > 100:
+        assert (left > right) == turned
 
 
 def test_the_screen_side_is_far_from_the_back_and_up_from_the_top():
@@ -123,7 +147,7 @@ def test_bad_cameras_are_usage_errors(text):
 
 
 def test_an_unknown_camera_lists_those_that_exist():
-    with pytest.raises(UsageError, match="back, front, side, three-quarter, top"):
+    with pytest.raises(UsageError, match="back, front, front-high, side, three-quarter, top"):
         parse("behind", PAD, (640, 360), LOOK)
 
 

@@ -18,7 +18,7 @@ from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.video.choices import QUALITIES
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import with_pan_range
-from dancetutor_cli.video.scene.scene import foot_marks, hand_marks
+from dancetutor_cli.video.scene.scene import SOLE_RADIUS, foot_marks, hand_marks
 
 SIZE = (320, 180)
 
@@ -133,8 +133,9 @@ def test_light_grows_with_the_level(cpu, scene):
     assert red[0] < red[1] < red[2] < red[3] == red[4]
 
 
-def test_a_jump_parts_the_feet_from_their_shadows(scene):
-    """The floor beside a standing foot is darker than below one in the air, and the mark around it stronger."""
+def test_a_standing_foot_has_a_tight_solid_ring_and_a_lifted_one_a_trace(scene):
+    """Along a line from the sole outwards: solid and 2 cm wide, in the foot's colour, no black between it and the sole;
+    in the air farther out, half as wide and faded."""
     size = (1280, 720)
     cpu = renderer.create(scene, size, "draft", "cpu")
     camera = scene.camera("top", size)
@@ -142,16 +143,36 @@ def test_a_jump_parts_the_feet_from_their_shadows(scene):
     jumping[:, 1, 3] += 0.12
     foot = foot_marks(scene, ground)[0]
     x, z = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
-    places = camera.project(np.array([[x - 0.072, 0.0, z], [x - 0.090, 0.0, z]]), size)[:, :2].astype(int)
+    away = SOLE_RADIUS + np.arange(0.0, 0.036, 0.0005)
+    line = np.stack([x - away, np.zeros(len(away)), np.full(len(away), z)], axis=1)
+    places = camera.project(line, size)[:, :2].astype(int)
     state = rs.state(scene, None, "top", size)
     colours = []
     for joints in (ground, jumping, None):
         frame = cpu.frame(replace(state, joints=joints)).astype(int)
-        colours.append([frame[row, column] for column, row in places])
-    (mark, beside), (mark_up, beside_up), (_, bare) = colours
+        colours.append(np.array([frame[row, column] for column, row in places]))
+    stands, lifted, bare = colours
     orange = np.array(scene.colours.left_foot)
-    assert np.abs(mark - orange).sum() < 60 < np.abs(mark_up - orange).sum()
-    assert beside.sum() < 0.8 * bare.sum() and beside.sum() + 15 < beside_up.sum()
+    solid = np.abs(stands - orange).sum(axis=1) < 40
+    assert 0.012 < 0.0005 * solid.sum() < 0.024 and away[solid].max() - SOLE_RADIUS < 0.026
+    between = away < away[solid].min() - 0.003
+    assert (stands[between].sum(axis=1) > 0.6 * bare[between].sum(axis=1)).all(), "no black fill"
+    assert np.abs(lifted - orange).sum(axis=1).min() > 100
+    trace = np.abs(lifted - bare).sum(axis=1) > 25
+    assert 0 < trace.sum() < 0.6 * solid.sum() and away[trace].min() > away[solid].mean()
+
+
+def test_a_lit_panel_stays_lit_under_her_shadow(scene):
+    cpu = renderer.create(scene, SIZE, "good", "cpu")
+    camera = scene.camera("back", SIZE)
+    state = rs.state(scene, "stand", "back", SIZE, [(k, 1.0) for k in range(4)], [(k, 0) for k in range(4)])
+    cast, bare = cpu.frame(state).astype(int).copy(), cpu.frame(replace(state, joints=None)).astype(int)
+    floor = [(x, z) for x in np.arange(-0.38, 0.4, 0.02) for z in np.arange(-0.38, 0.4, 0.02)]
+    places = camera.project(np.array([(x, 0.0, z) for x, z in floor]), SIZE)[:, :2].astype(int)
+    lit = [(c, r) for c, r in places if bare[r, c, 0] > 150 > bare[r, c, 2]]
+    shaded = [cast[r, c, 0] / bare[r, c, 0] for c, r in lit if 8 < abs(cast[r, c] - bare[r, c]).sum() < 150]
+    assert len(shaded) > 5, "her shadow lies on a lit panel"
+    assert np.median(shaded) > 0.8
 
 
 def test_a_cast_shadow_from_good_on(scene):

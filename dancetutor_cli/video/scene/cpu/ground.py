@@ -11,9 +11,12 @@ from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.cpu.stage_colours import smooth
 from dancetutor_cli.video.scene.cpu.standing import quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
-from dancetutor_cli.video.scene.prepare import Cast
+from dancetutor_cli.video.scene.prepare import PLANTED, Cast
 
 Array = NDArray[np.float64]
+# Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
+RING = (0.0040, 0.0060, 0.0220, -0.0090)
+LIT = 0.80  # of its light that a lit panel keeps in the deepest shadow: hers must not hide what she presses
 
 
 @njit(cache=True)
@@ -149,7 +152,9 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                 if d < reach:
                     keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
                 soft = 0.5 * foot[row, c]
-                band = min(1.0, max(0.0, (0.0085 - abs(d - 0.020)) / (2.0 * soft) + 0.5))
+                planted = smooth(PLANTED[0], PLANTED[1], near)
+                wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
+                band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
                 band *= feet[f, 9]
                 if band > ring:
                     ring, owner = band, f
@@ -160,7 +165,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
             for k in range(3):
                 value = colour[row, c, k] * keep
                 if shine > 0.0:
-                    bright = lit_colour[p, k] * (0.35 + 0.65 * keep)
+                    bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
                     value += (bright - value) * shine
                     value += (255.0 - value) * hot
                 value += (feet[owner, 6 + k] - value) * ring * take

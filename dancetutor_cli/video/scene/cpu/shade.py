@@ -173,7 +173,7 @@ def _colour(corners: Any, px: float, py: float, dense: float, surface: Any, ligh
         sv = vertex[a, _SV] * w0 + vertex[b, _SV] * w1 + vertex[c, _SV] * w2
         height = vertex[a, _HEIGHT] * w0 + vertex[b, _HEIGHT] * w1 + vertex[c, _HEIGHT] * w2
         sun = _sunlit(shadow, su, sv, height + 100.0)
-    half = _step((to_light - toon[_BANDS]) * toon[_STEEP]) * sun
+    half = _step((to_light - toon[_BANDS]) * toon[_STEEP]) * (0.5 + 0.5 * sun)  # a cast shadow is lighter than shade
     full = _step((to_light - toon[_BANDS + 1]) * toon[_STEEP]) * sun
     level = toon[_LEVELS] + (toon[_LEVELS + 1] - toon[_LEVELS]) * half
     level = (level + (toon[_LEVELS + 2] - toon[_LEVELS + 1]) * full) * (0.95 + 0.05 * up)

@@ -30,7 +30,7 @@ void main() {
         return;
     }
     float sun = terms.x > bands.x - bands.z ? sunlit() : 1.0;
-    float half_light = smoothstep(bands.x - bands.z, bands.x + bands.z, terms.x) * sun;
+    float half_light = smoothstep(bands.x - bands.z, bands.x + bands.z, terms.x) * (0.5 + 0.5 * sun);
     float full_light = smoothstep(bands.y - bands.z, bands.y + bands.z, terms.x) * sun;
     float level = levels.x + (levels.y - levels.x) * half_light + (levels.z - levels.y) * full_light;
     level *= 0.95 + 0.05 * terms.z;

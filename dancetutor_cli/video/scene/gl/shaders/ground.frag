@@ -62,7 +62,9 @@ void main() {
         float d = from_foot(at.xz, foot[f]) - radius;
         float reach = contact.y * (1.6 - 0.6 * near);
         keep *= 1.0 - contact.x * near * (1.0 - smoothstep(0.0, reach, d));
-        float band = clamp((0.0085 - abs(d - 0.020)) / at.w + 0.5, 0.0, 1.0) * foot_state[f].z;
+        float planted = smoothstep(0.88, 0.95, near);
+        float band = clamp((0.0040 + 0.0060 * planted - abs(d - (0.0220 - 0.0090 * planted))) / at.w + 0.5, 0.0, 1.0);
+        band *= foot_state[f].z;
         if (band > ring) {
             ring = band;
             ring_colour = foot_colour[f];
@@ -76,7 +78,7 @@ void main() {
     keep = 1.0 - (1.0 - keep) * base.a;
     vec3 value = base.rgb * keep;
     if (shine > 0.0) {
-        value = mix(value, lit.rgb * (0.35 + 0.65 * keep), shine);
+        value = mix(value, lit.rgb * (0.80 + 0.20 * keep), shine);
         value = mix(value, vec3(1.0), info.z * lit.a * contact.z);
     }
     value = mix(value, ring_colour, ring * base.a);

@@ -1,0 +1,123 @@
+"""What is called out beside the notes: passages with a count, in a dancer's words, as long before as is asked for."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.video.ahead import Ahead, parse_ahead
+from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.overlay.callouts import CallStyle, callouts_of
+from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.scroll import parse_segments
+
+WORDS = highway_style().callouts
+SECOND = 1.0  # before
+
+
+def subject(*rows: tuple[float, tuple[str, ...], dict[int, int], dict[int, int]], steps: str = "dance-single") -> Any:
+    """Rows of (beat, moves, column -> limb, foot -> column it stands on), at 120 BPM."""
+    pad = load_pad(steps)
+    assert pad is not None
+    limb = np.full((len(rows), len(pad)), -1, dtype=np.int8)
+    feet = np.full((len(rows), 2), -1, dtype=np.int16)
+    for number, (_, _, pressed, stands) in enumerate(rows):
+        for column, who in pressed.items():
+            limb[number, column] = who
+        for foot, column in stands.items():
+            feet[number, foot] = column
+    ticks = np.array([round(beat * 48) for beat, *_ in rows], dtype=np.int64)
+    play = SimpleNamespace(
+        rows=SimpleNamespace(tick=ticks), moves=tuple(moves for _, moves, _, _ in rows), limb=limb, feet=feet
+    )
+    timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 96.0)
+    return SimpleNamespace(play=play, pad=pad, chart=SimpleNamespace(timing=timing))
+
+
+def called(what: Any, **how: Any) -> tuple[Callout, ...]:
+    return callouts_of(what, CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how), parse_segments(""))
+
+
+def moves(*beats_and_names: tuple[float, str]) -> Any:
+    return subject(*((beat, tuple(name.split()), {0: 0}, {0: 0}) for beat, name in beats_and_names))
+
+
+def test_crossovers_in_a_row_are_one_passage_with_a_count() -> None:
+    rows = [(beat, "crossover-half" if beat % 2 else "") for beat in range(8)]
+    (one,) = called(moves(*((float(beat), name) for beat, name in rows)))
+    assert (one.text, one.tag) == ("crossover ×4", "crossover ×4")
+    assert (one.second, one.end) == (0.5, 3.5)
+
+
+def test_a_crossover_that_goes_on_is_counted_once() -> None:
+    (one,) = called(moves((0.0, ""), (1.0, "crossover-half"), (1.5, "crossover-half"), (2.0, "")))
+    assert (one.text, one.second, one.end) == ("crossover", 0.5, 0.75)
+
+
+def test_moves_that_follow_closely_are_joined_and_others_are_not() -> None:
+    found = called(moves((0.0, "crossover-half"), (1.0, "footswitch-up"), (20.0, "footswitch-up")))
+    assert [one.text for one in found] == ["crossover, footswitch", "footswitch"]
+    assert found[0].tag == "crossover", "the place beside the notes is narrow"
+
+
+def test_nothing_is_called_out_for_longer_than_four_measures() -> None:
+    found = called(moves(*((float(beat), "footswitch-up") for beat in range(40))))
+    assert [one.text for one in found] == ["footswitch ×17", "footswitch ×17", "footswitch ×6"]
+
+
+def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
+    row = (4.0, ("bracket",), {2: 1, 3: 1}, {0: 0, 1: 3})
+    (one,) = called(subject(row))
+    assert (one.text, one.tag) == ("right foot: heel right, toe up", "heel right, toe up")
+    (one,) = called(subject(row), turned=True)
+    assert one.text == "right foot: heel left, toe down", "as her panels are seen by whom she faces"
+
+
+def test_panels_of_a_double_have_no_number() -> None:
+    (one,) = called(subject((4.0, ("bracket",), {0: 0, 2: 0}, {0: 0, 1: 4}), steps="pump-double"))
+    assert one.text == "left foot: heel down-left, toe centre"
+
+
+def test_the_foot_and_the_hand_are_named() -> None:
+    found = called(
+        subject((0.0, ("doublestep",), {3: 1}, {0: 0, 1: 3}), (9.0, ("hand",), {0: 0, 2: 1, 1: 2}, {0: 0, 1: 2}))
+    )
+    assert [one.text for one in found] == ["right foot again", "left hand down"]
+
+
+def test_a_note_that_is_let_go_is_said() -> None:
+    (one,) = called(moves((4.0, "unplayable")))
+    assert one.text == "no foot left"
+
+
+@pytest.mark.parametrize(("ahead", "begin"), [("0.5", 1.5), ("b1", 1.5), ("b2.5", 0.75)])
+def test_how_long_before_is_a_setting_in_seconds_or_beats(ahead: str, begin: float) -> None:
+    (one,) = called(moves((4.0, "footswitch")), ahead=parse_ahead(ahead))
+    assert one.second == 2.0
+    assert one.begin == pytest.approx(begin)
+
+
+def test_the_default_is_a_second_or_a_little_less() -> None:
+    assert 0.5 <= parse_ahead(highway_style().callout_ahead).length <= 1.0
+
+
+@pytest.mark.parametrize("text", ["", "b", "-1", "0", "2b", "nan", "1e3", "99999", "b31"])
+def test_other_words_for_a_time_are_refused_in_one_line(text: str) -> None:
+    with pytest.raises(UsageError, match=r"0\.9 \(seconds\) or b2 \(beats\)"):
+        parse_ahead(text)
+
+
+def test_findings_are_for_authors_who_ask_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", name="fast-step")
+    monkeypatch.setattr("dancetutor_cli.lint.check.findings_of", lambda _: [finding])
+    what = moves((8.0, "footswitch"))
+    assert [one.text for one in called(what)] == ["footswitch"]
+    assert [(one.text, one.severity) for one in called(what, findings=True)] == [
+        ("fast step", "warning"),
+        ("footswitch", "move"),
+    ]

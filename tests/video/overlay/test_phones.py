@@ -1,0 +1,126 @@
+"""What is read on a phone: free zones, sizes of pads, badges beside an arrow's tip, arrows that turn with her."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from film_plans import film_plan
+
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.video.film import Film, turned
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.media.film_formats import FORMATS
+from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, NextRows, PadView, StepRows
+from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.scene.scene import Scene
+from dancetutor_cli.video.scroll import parse_scroll
+
+FACE = Typeface()
+
+
+@pytest.mark.parametrize("columns", [4, 5, 8, 10])
+def test_vertical_keeps_free_what_short_video_apps_lay_buttons_over(columns: int) -> None:
+    """The right 0.12 and the lower 0.18 have buttons and captions, the upper 0.07 tabs: no words or receptors there."""
+    layout = load_layout("vertical")
+    width, height = layout.size
+    for name in ("header", "calls", "legend", "progress", "count"):
+        _, top, right, bottom = layout.box(name, layout.size, columns)
+        assert top >= 0.07 * height and bottom <= 0.82 * height and right <= 0.88 * width, name
+    _, top, right, bottom = layout.box("highway", layout.size, columns)
+    assert right <= 0.88 * width
+    part = layout.highway
+    assert part is not None and top + part.receptor * (bottom - top) < 0.7 * height
+
+
+@pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single", "pump-double", "pump-halfdouble"])
+def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
+    pad, layout = load_pad(steps), load_layout("practice")
+    assert pad is not None and layout.next is not None
+    rows = StepRows(np.zeros(0), np.zeros((0, len(pad)), np.int8), np.zeros((0, 2), np.int16))
+    box = layout.box("next", layout.size, len(pad))
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
+    assert len(small.pads) >= 2
+    assert min(one.smaller for one in small.pads) >= 90
+
+
+def test_a_gif_is_at_least_640_pixels_wide() -> None:
+    assert min(FORMATS[name].side or 0 for name in ("gif", "webp")) >= 640
+
+
+@pytest.mark.parametrize("direction", [45.0, 135.0, 225.0, 315.0])
+def test_a_badge_leaves_the_tip_of_a_diagonal_arrow_free(direction: float) -> None:
+    """Of the arrow's half towards which it points, at least two thirds are to be seen beside the badge."""
+    plan = film_plan(np.array([1.0]))
+    geometry = HighwayGeometry((0, 0, 100, 100), 80.0, 50.0, (direction,))
+    alone = np.zeros(1, np.int16)
+    score = Score(replace(plan.notes, column=alone), replace(plan.presses, column=alone), plan.lines)
+    highway = Highway(score, geometry, parse_scroll("M300"), 120.0, FACE)
+    alone = np.zeros((100, 100), dtype=bool)
+    arrow = sprites.arrow(highway.size, direction, (200, 60, 60))
+    top = round(50 - highway.size / 2)
+    left = round(geometry.left + 40 - highway.size / 2)
+    alone[top : top + highway.size, left : left + highway.size] = arrow[..., 3] > 128
+    frame = np.zeros((100, 100, 3), dtype=np.uint8)
+    highway._draw_head(frame, 0, 50.0)
+    mark = highway.marks[0]
+    aside, below = highway._behind(direction)
+    y, x = np.mgrid[:100, :100] + 0.5
+    middle = geometry.left + 40
+    badge = np.hypot(x - middle - aside, y - 50 - below) < mark.shape[0] / 2
+    a = np.radians(direction)
+    ahead = (x - middle) * np.sin(a) - (y - 50) * np.cos(a) > 0
+    assert (alone & ahead & ~badge).sum() > 0.66 * (alone & ahead).sum()
+    assert frame[badge].any()
+
+
+@pytest.mark.parametrize("camera", ["back", "front", "front-high"])
+@pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single"])
+def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: str, steps: str) -> None:
+    from dancetutor_cli.character import load_dancer
+
+    pad = load_pad(steps)
+    assert pad is not None
+    columns = len(pad)
+    plan = film_plan(np.arange(1.0, 1.0 + columns), columns=np.arange(columns))
+    look = FilmLook(load_layout("side-by-side"), (1280, 720), camera=camera)
+    film = Film(replace(plan, look=look, directions=pad.directions))
+    assert film.turned == turned(look) == (camera != "back")
+    assert film.highway is not None
+    scene = Scene(load_dancer(), pad)
+    size = (838, 672)
+    view = scene.camera(camera, size)
+    lanes, places = [], []
+    for column in range(columns):
+        at = np.asarray(pad.panels[column]) - pad.centre
+        middle = np.array([-at[0], 0.0, at[1]]) * 0.28
+        places.append(view.project(middle[None], size)[0, 0])
+        lanes.append(film.highway._corner(column, 0.0, 0.0)[0])
+        way = np.asarray(pad.arrows[column], dtype=float)
+        if not way.any():
+            continue
+        tip = middle + np.array([-way[0], 0.0, way[1]]) * 0.05
+        seen = view.project(np.array([middle, tip]), size)[:, :2]
+        a = np.radians(film.highway.geometry.directions[column])
+        drawn = np.array([np.sin(a), -np.cos(a)])
+        assert float((seen[1] - seen[0]) @ drawn) > 0
+    order = np.argsort(np.round(places, 3), kind="stable")
+    for a, b in pairwise(order):
+        assert lanes[b] > lanes[a] or abs(places[a] - places[b]) < 20
+
+
+def test_a_note_that_no_foot_is_left_for_has_a_mark_of_its_own() -> None:
+    plan = film_plan(np.array([1.0, 2.0, 3.0]))
+    notes = replace(plan.notes, limb=np.array([0, -1, 1], dtype=np.int8))
+    film, all_stepped = Film(replace(plan, notes=notes)), Film(plan)
+    nobody = Film(replace(plan, notes=replace(plan.notes, limb=np.full(3, -1, dtype=np.int8))))
+    frame, usual, bare = (one.frame(45) for one in (film, all_stepped, nobody))
+    assert (frame != usual).any()
+    assert (bare != frame).any(), "a chart without feet has no such marks"
+    grey = np.abs(sprites.marker(32, -1, FACE)[..., :3].astype(int) - np.array(sprites.NOBODY)).sum(axis=-1) < 12
+    assert grey.sum() > 100
