@@ -126,35 +126,46 @@ class Feet:
 
         A foot whose hold ended after the row before these two has just been let go.
         """
-        rows = self._play.rows
-        if row == 0 or not (self._lone[row] and self._lone[row - 1]) or rows.mines[row].any():
-            return False
-        other = 1 - int(self._play.limb[row].max())
-        return other >= 0 and bool(self._busy_until[other][row - 1] <= rows.tick[max(row - 2, 0)])
+        return bool(self._free[row])
 
     @cached_property
-    def _busy_until(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """For each foot (n,) the tick at which the last hold that it has pressed up to a row ends; -1 before any."""
-        ends, limb = self._play.rows.hold_end, self._play.limb
-        left, right = (np.maximum.accumulate(np.where(limb == foot, ends, -1).max(axis=1)) for foot in (0, 1))
-        return left, right
+    def _free(self) -> NDArray[np.bool_]:
+        """(n,) the same of every row."""
+        rows, limb = self._play.rows, self._play.limb
+        foot = limb.max(axis=1, initial=-1)
+        free = self._lone & (foot <= _RIGHT) & ~rows.mines.any(axis=1)
+        free[1:] &= self._lone[:-1]
+        free[:1] = False
+        if (rows.hold_end >= 0).any():
+            before = np.maximum(np.arange(len(rows)) - 2, 0)
+            for one in (0, 1):  # until when the foot is busy with the holds that it has pressed so far
+                busy = np.maximum.accumulate(np.where(limb == one, rows.hold_end, -1).max(axis=1))
+                free[1:] &= (foot[1:] == one) | (busy[:-1] <= rows.tick[before[1:]])
+        return np.asarray(free)
 
-    def crossed_rows(self) -> Iterator[list[int]]:
-        """The rows of every run of stepped rows with crossed feet."""
+    def crossed_rows(self, least: float) -> Iterator[list[int]]:
+        """The rows of every run of at least so many stepped rows with crossed feet."""
         for first, count in self._crossed_runs:
-            at = int(self.stepped.searchsorted(first))
-            yield self.stepped[at : at + count].tolist()
+            if count >= least:
+                at = int(self.stepped.searchsorted(first))
+                yield self.stepped[at : at + count].tolist()
 
-    def same_panel_runs(self, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
-        """Rows and limbs of every run of single steps on one panel, each at most so long after the one before."""
+    def same_panel_runs(self, least: float, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
+        """Rows and limbs of every run of at least so many single steps on one panel while no other panel is held.
+
+        Each comes at most `max_seconds` after the one before.
+        """
         rows = self._play.rows
-        lone = np.flatnonzero(self._lone & (self.down == 1))
+        lone = np.flatnonzero(self._lone)
         column, limb = self._play.limb[lone].argmax(axis=1), self._play.limb[lone].max(axis=1)
-        on = (np.diff(lone) == 1) & (column[1:] == column[:-1])
-        on &= np.diff(rows.second[lone]) <= max_seconds + _EPSILON
-        for run in np.split(np.arange(len(lone)), np.flatnonzero(~on) + 1):
-            if len(run) > 1:
-                yield lone[run].tolist(), limb[run].tolist()
+        on = np.zeros(len(lone) + 1, dtype=bool)
+        on[1:-1] = (np.diff(lone) == 1) & (column[1:] == column[:-1])
+        on[1:-1] &= np.diff(rows.second[lone]) <= max_seconds + _EPSILON
+        edges = np.flatnonzero(on[1:] != on[:-1]).reshape(-1, 2)
+        for first, last in edges[edges[:, 1] - edges[:, 0] >= least - 1].tolist():
+            run = lone[first : last + 1]
+            if (self.down[run] == 1).all():
+                yield run.tolist(), limb[first : last + 1].tolist()
 
     def crossed_runs(self) -> Iterator[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
@@ -195,7 +206,8 @@ class Feet:
             return
         apart = np.diff(seconds[row])
         follows &= (apart <= max_seconds + _EPSILON) & (apart >= min_seconds - _EPSILON)
-        follows &= [self.follows_freely(one) for one in row[1:].tolist()]
+        if follows.any():
+            follows &= self._free[row[1:]]
         count, last = 1, -1
         for place in (np.flatnonzero(follows) + 1).tolist():
             forced = "forced-doublestep" in self._play.moves[row[place]]

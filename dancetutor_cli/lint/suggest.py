@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.lint.check import check_chart
@@ -17,12 +18,15 @@ from dancetutor_cli.play import Play, Rows, StepKind, solve
 from dancetutor_cli.play.engine import engine_for
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.solver import forced_limbs
+from dancetutor_cli.play.vocabulary import EVENTS
 
 # What can be mended by moving a note: doublestep, spin, jump-spin, ambiguous start, triple step.
 MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
 _AROUND = (0, -1, 1)  # rows in which a note may be moved, nearest first
-
+# What must not happen any more in the row of a finding: that is seen before the rules are asked.
+_MOVES = {"DT201": "doublestep", "DT202": "spin", "DT203": "spin", "DT209": "doublestep"}
+_RANKED = frozenset({"DT213"})  # findings that take the place of others are not new
 
 _Place = tuple[str, float | None]  # rule and beat of a finding
 
@@ -51,7 +55,7 @@ def with_suggestions(
 
 def _of_families(settings: Settings) -> Settings:
     """The settings without the rules that no edit is asked about."""
-    others = frozenset(code for code in all_rules() if not code.startswith(_FAMILIES))
+    others = _RANKED | {code for code in all_rules() if not code.startswith(_FAMILIES)}
     return settings.with_layer(Layer(ignore=others))
 
 
@@ -63,7 +67,7 @@ class _Trial:
     settings: Settings
     preset: Preset
     before: set[_Place]
-    _totals: dict[_Edit, int] = field(default_factory=dict)
+    _outlines: dict[_Edit, tuple[int, NDArray[np.int64]]] = field(default_factory=dict)
     _found: dict[_Edit, set[_Place]] = field(default_factory=dict)
 
     def best(self, edits: Iterable[_Edit], place: _Place) -> _Edit | None:
@@ -75,6 +79,8 @@ class _Trial:
         for edit in sorted(edits, key=self._total):
             if self._total(edit) >= self.subject.play.total:
                 return None
+            if self._still_happens(edit, place):
+                continue
             if edit not in self._found:
                 self._found[edit] = self._places_after(edit)
             if place not in self._found[edit] and self._found[edit] <= self.before:
@@ -82,13 +88,22 @@ class _Trial:
         return None
 
     def _total(self, edit: _Edit) -> int:
-        if edit not in self._totals:
+        return self._outline(edit)[0]
+
+    def _outline(self, edit: _Edit) -> tuple[int, NDArray[np.int64]]:
+        if edit not in self._outlines:
             play, pad = self.subject.play, self.subject.pad
             assert play is not None and pad is not None
             rows, engine = _edited(play.rows, edit), engine_for(pad, self.preset)
-            found = engine.cheapest(rows, forced_limbs(rows, self.subject.overrides))
-            self._totals[edit] = int(engine.price(rows, found).sum())
-        return self._totals[edit]
+            self._outlines[edit] = engine.outline(rows, forced_limbs(rows, self.subject.overrides))
+        return self._outlines[edit]
+
+    def _still_happens(self, edit: _Edit, place: _Place) -> bool:
+        rule, beat = place
+        if rule not in _MOVES or beat is None or self.subject.play is None:
+            return False
+        row = self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT))
+        return bool(self._outline(edit)[1][row] >> EVENTS.index(_MOVES[rule]) & 1)
 
     def _places_after(self, edit: _Edit) -> set[_Place]:
         subject = self.subject
@@ -99,7 +114,8 @@ class _Trial:
 
 
 def _places(findings: Sequence[Finding]) -> set[_Place]:
-    return {(finding.rule, finding.beat) for finding in findings if finding.rule.startswith(_FAMILIES)}
+    ours = (one for one in findings if one.rule.startswith(_FAMILIES) and one.rule not in _RANKED)
+    return {(one.rule, one.beat) for one in ours}
 
 
 def _edits(finding: Finding, play: Play, chart: Chart) -> Iterator[_Edit]:

@@ -59,6 +59,11 @@ class Engine:
         """
         return self._run(_arrays(rows, forced), margins)[0]
 
+    def outline(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
+        """What the cheapest way through rows costs in all, and what happens in each, (n,) bits of `EVENTS`."""
+        found, nodes = self._run(_arrays(rows, forced), False)
+        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[found.move, store.EVENTS] & store.EVENT_BITS
+
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
         arrays = _arrays(rows, forced)

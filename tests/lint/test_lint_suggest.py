@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import parse
+from dancetutor_cli.chart import load, parse
 from dancetutor_cli.jobs.analyze import Task, analyze_file
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.library.selection import Selection
@@ -15,7 +15,11 @@ from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.suggest import _edits
+from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.play.engine import engine_for
+from dancetutor_cli.play.vocabulary import EVENTS
+from dancetutor_cli.resources import charts_path
 
 PANELS = ("left", "down", "up", "right")
 # Left, down, right crossed, and on round to up: a spin.
@@ -85,3 +89,17 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
     assert sum(finding.suggestion is not None for finding, _ in result.all_findings()) >= 2
     assert len(checked) == len(set(checked)) < len(set(tried)) / 2
     assert len(tried) == len(set(tried)) + len(checked)
+
+
+@pytest.mark.parametrize("preset", ["itg", "thesis", "pump"])
+def test_the_outline_of_a_way_is_that_of_the_whole_solve(preset: str) -> None:
+    """What edits are judged by first: the whole cost, and whether a move still happens in a row."""
+    for chart in load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts:
+        pad, chosen = load_pad(chart.steps_type), load_preset(preset)
+        play = solve_chart(chart, chosen)
+        assert pad is not None and play is not None
+        total, events = engine_for(pad, chosen).outline(play.rows)
+        assert total == play.total
+        for name in ("doublestep", "spin"):
+            bit = EVENTS.index(name)
+            assert (events >> bit & 1).tolist() == [name in moves for moves in play.moves]

@@ -43,7 +43,7 @@ class CrossedRun(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run that is too long, at its first row."""
         longest, most = self.options["max_seconds"] + EPSILON, self.options["max_rows"]
-        for rows in subject.feet.crossed_rows() if subject.feet else ():
+        for rows in subject.feet.crossed_rows(most + 1) if subject.feet else ():
             slow = [at for at, row in enumerate(rows) if at and subject.pause(row) > longest]
             for first, after in pairwise([0, *slow, len(rows)]):
                 if after - first > most:

@@ -38,8 +38,9 @@ class SwitchJack(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
-        for rows, limbs in subject.feet.same_panel_runs(self.longest(subject)) if subject.feet else ():
-            if len(rows) >= self.options["min_rows"] and len(set(limbs)) > 1:
+        least = max(self.options["min_rows"], 2)
+        for rows, limbs in subject.feet.same_panel_runs(least, self.longest(subject)) if subject.feet else ():
+            if len(set(limbs)) > 1:
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"
                 yield Happening(rows[change], max(map(subject.pause, rows[1:])), said)
