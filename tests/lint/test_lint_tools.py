@@ -1,0 +1,57 @@
+"""The tools that measure the linter: the table of times, findings per 100 charts, findings with their rows."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from dancetutor_cli.resources import charts_path, config_path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+import lint_table  # noqa: E402
+import lint_times  # noqa: E402
+
+DEMO = charts_path() / "two_left_feet"
+
+
+def test_times_are_measured_in_the_form_that_rules_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "times.yaml"
+    monkeypatch.setattr(sys, "argv", ["lint_times.py", str(DEMO), "--output", str(target)])
+    assert lint_times.main() == 0
+    new = yaml.safe_load(target.read_text("utf-8"))
+    kept = yaml.safe_load(config_path("move_times.yaml").read_text("utf-8"))
+    assert sum(map(sum, new["charts"].values())) == 6  # the demo's charts
+    assert (new["meters"], new["milliseconds"]) == (kept["meters"], kept["milliseconds"])
+    assert set(new["moves"]) == set(kept["moves"])
+    shares = [share for pads in new["moves"].values() for bands in pads.values() for band in bands for share in band]
+    assert min(shares) == 0 and 0 < max(shares) <= 100
+
+
+def test_the_table_counts_findings_per_hundred_charts() -> None:
+    before = {"charts": {"dance 0-3": 4, "pump 21+": 2}, "names": {"DT201": "doublestep"},
+              "found": {"DT201|warning|dance 0-3": 3, "DT201|warning|pump 21+": 1}}  # fmt: skip
+    after = {**before, "found": {"DT201|warning|dance 0-3": 1}}
+    lines = lint_table.table(before, after).splitlines()
+    assert lines[0] == "| rule | dance 0-3 | pump 21+ | all |"
+    assert lines[2:] == ["| charts | 4 | 2 | 6 |", "| DT201 doublestep, warning | 75 → 25 | 50 → 0 | 67 → 17 |"]
+
+
+@pytest.mark.parametrize(
+    ("steps_type", "meter", "said"),
+    [("dance-single", 3, "dance 0-3"), ("dance-solo", 4, "dance 4-6"), ("pump-double", 21, "pump 21+")],
+)
+def test_bands(steps_type: str, meter: int, said: str) -> None:
+    assert lint_table.band(steps_type, meter) == said
+
+
+def test_findings_are_counted_and_sampled_with_their_rows() -> None:
+    found = lint_table.kept(DEMO)
+    assert sum(found["charts"].values()) == 12 and "DT202" in found["names"]
+    said = lint_table.sample(DEMO, "DT202", 5, 1, "warning")
+    assert said == lint_table.sample(DEMO, "DT202", 5, 1, "warning")
+    (marked,) = [line for line in said.split("#1 ")[1].split("#2 ")[0].splitlines() if line.startswith(" > ")]
+    assert "spin" in marked and " ms " in marked
