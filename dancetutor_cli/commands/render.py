@@ -16,7 +16,8 @@ from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.outputs import check_file, check_folder, make_folder
+from dancetutor_cli.outputs import check_file, check_folder, make_folder, one_of
+from dancetutor_cli.video.media.film_formats import FILES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="A .mp4, .gif or .webp [default: SONG-difficulty.mp4]; for a folder of charts a folder [default: videos].",
+    help=f"A {one_of(FILES)} [default: SONG-difficulty.mp4]; for a folder of charts a folder [default: videos].",
 )
 @click.option("--frames", type=click.Path(path_type=Path), metavar="DIR", help="Write PNG pictures into this folder.")
 @click.option("--poses", type=click.Path(path_type=Path), metavar="DIR", help="Write one PNG per row into this folder.")
@@ -84,8 +85,6 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
 
 def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
     """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
-    from dancetutor_cli.video.media.film_formats import FILES
-
     film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
     if not path.is_dir() or not (film or options["poses"] or options["poster"] or options["srt"]):
         return path

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.jobs.chosen import chosen
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.part import check_part, part_of
+from dancetutor_cli.lint.part import part_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
@@ -68,17 +69,10 @@ class Asked:
 
 def ask(task: BakeTask) -> Asked:
     """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
-    from dancetutor_cli import chart as charts
     from dancetutor_cli.bake.rate import at_rate
-    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
 
     check_motion(task.motion, task.gait)
-    if task.section is not None:
-        check_part(task.section)
-    choice = choice_for(task.path, task.preset)
-    song = charts.load(task.path)
-    chart = task.selection.one(song)
-    preset = preset_for(chart, task.path, choice)
+    song, chart, preset, notes = chosen(task.path, task.selection, task.preset, task.section)
     play, pad = _play(task, song, chart, preset)
     if not (play.limb >= 0).any():
         raise DancetutorError(f"{task.path}: {chart.label}: the chart has no steps, so there is nothing to dance")
@@ -86,8 +80,6 @@ def ask(task: BakeTask) -> Asked:
     if task.section is not None:
         start, end = part_of(task.section, song, chart, preset, float(play.rows.second[-1]) + AFTER)
         section = (start / task.rate, end / task.rate)
-    unfit = mismatch(preset, chart.steps_type)
-    notes = () if unfit is None else (f"{chart.label}: {unfit}",)
     return Asked(song, chart, at_rate(play, task.rate), pad, section, notes)
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.jobs.chosen import chosen
 from dancetutor_cli.library.music import find_music
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.part import check_part, part_of
+from dancetutor_cli.lint.part import part_of
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.practice import Practice, passes_of, whole_song
@@ -78,26 +79,16 @@ class Subject:
 
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
-    from dancetutor_cli import chart as charts
-    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
-
     if request.look.layout.dancer is not None:
         from dancetutor_cli.jobs.bake import check_motion
 
         check_motion(request.motion, request.gait)
-    if request.section is not None:
-        check_part(request.section)
-    choice = choice_for(request.path, request.preset)
-    song = charts.load(request.path)
-    chart = request.selection.one(song)
-    preset = preset_for(chart, request.path, choice)
+    song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section)
     music, missing = (None, None) if request.mute else find_music(song, chart)
     warnings = () if missing is None else (f"{missing}; the film has claps on the steps instead",)
-    if unfit := mismatch(preset, chart.steps_type):
-        warnings = (*warnings, f"{chart.label}: {unfit}")
     start, end = _section(request, song, chart, preset)
     clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
-    return Subject(song, chart, preset, clock, music, request.section is not None, warnings)
+    return Subject(song, chart, preset, clock, music, request.section is not None, (*warnings, *notes))
 
 
 def _section(request: Request, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:

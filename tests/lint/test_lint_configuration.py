@@ -16,6 +16,7 @@ from dancetutor_cli.lint.configuration import (
     with_selection,
 )
 from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.play import preset_names
 
 
 def configured(text: str, folder: Path) -> Configuration:
@@ -208,7 +209,7 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
             ["did you mean Hard", "Beginner, Easy, Medium"],
         ),
         ("overrides:\n  - when:\n      steps-type: danse-*\n", 3, ["danse-*", "dance-*", "pump-*"]),
-        ("preset: gpt\n", 1, ["gpt", "beginner, ddr, itg, pump, stamina, thesis"]),
+        ("preset: gpt\n", 1, ["gpt", ", ".join(preset_names())]),
         ("overrides:\n  - when: {meter: 3}\n    preset: begginer\n", 3, ["did you mean beginner", "thesis"]),
         ("preset: ../mine.yaml\n", 1, ["'preset' leads out of the folder"]),
         ("overrides:\n  - when: {meter: 3}\n    preset: /etc/mine.yaml\n", 3, ["leads out of the folder"]),

@@ -1,0 +1,40 @@
+"""The chart that a request is about: read, with the cost preset that it gets; the same for `animate` and `render`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.part import check_part
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.play.preset import Preset
+
+
+class Chosen(NamedTuple):
+    """A chart, its song and its preset; notes : lines for people, if the preset was made for other pads."""
+
+    song: Song
+    chart: Chart
+    preset: Preset
+    notes: tuple[str, ...]
+
+
+def chosen(path: Path, selection: Selection, preset: str | None, section: str | None) -> Chosen:
+    """Read a file and choose one chart. A DancetutorError of one line for all that is wrong with the request.
+
+    preset : name or file, None: what `lint.presets` finds; section : looked at here so that a slip is told at once
+    """
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
+
+    if section is not None:
+        check_part(section)
+    choice = choice_for(path, preset)
+    song = charts.load(path)
+    chart = selection.one(song)
+    costs = preset_for(chart, path, choice)
+    unfit = mismatch(costs, chart.steps_type)
+    return Chosen(song, chart, costs, () if unfit is None else (f"{chart.label}: {unfit}",))
