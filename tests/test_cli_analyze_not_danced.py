@@ -1,4 +1,4 @@
-"""`analyze` and files that are not danced: music of a menu, lights of a cabinet."""
+"""`analyze`, `annotate` and files that are not danced: music of a menu, lights of a cabinet."""
 
 from __future__ import annotations
 
@@ -38,6 +38,17 @@ def test_music_without_notes_does_not_fail_a_pack(tmp_path: Path) -> None:
     assert (result.exception, result.return_value) == (None, 0)
     found = json.loads(run(tmp_path, "--no-cache", "--format", "json").output)["files"]
     assert [(len(file["charts"]), file["error"]) for file in found] == [(0, None), (1, None)]
+
+
+def test_annotate_passes_it_by(tmp_path: Path) -> None:
+    from dancetutor_cli.commands.annotate import command as annotate
+
+    (tmp_path / "menu.ssc").write_text(MENU)
+    (tmp_path / "walk.sm").write_text(HEAD + CHART)
+    result = CliRunner().invoke(annotate, [str(tmp_path)], standalone_mode=False)
+    assert (result.exception, result.return_value) == (None, 0)
+    assert (tmp_path / "menu.ssc").read_text() == MENU and "{dt1" in (tmp_path / "walk.sm").read_text()
+    assert "menu.ssc:1: no charts" in result.output
 
 
 @pytest.mark.parametrize(

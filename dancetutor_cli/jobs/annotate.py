@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.errors import FileError, NoChartsError
 from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.presets import mismatch, preset_for
@@ -90,6 +90,8 @@ def annotate_song(items: Sequence[Item], order: Order) -> list[Outcome]:
 def _attempt(item: Item, order: Order, second: bool) -> Outcome:
     try:
         return _annotate(item, order, second)
+    except NoChartsError as error:  # music of a menu: nothing to write
+        return Outcome(item.source, notes=(str(error),))
     except FileError as error:
         return Outcome(item.source, error=str(error))
     except OSError as error:
