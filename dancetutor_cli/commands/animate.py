@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from dancetutor_cli.commands.chart_options import (
     preset_option,
     section_option,
     selection_options,
+    style_option,
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
@@ -50,6 +51,7 @@ class Wanted:
     gait: str
     motion: Path | None
     jobs: int
+    style: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,7 @@ class Result:
     plot: Path | None
     character: str
     yes: bool
+    physics: bool
 
 
 @click.command()
@@ -96,6 +99,8 @@ class Result:
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @gait_option
 @motion_option
+@style_option
+@click.option("--physics", is_flag=True, help="A ragdoll follows her as closely as it can: --style neutral.")
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
 )
@@ -129,6 +134,8 @@ def command(file: Path, selection: Selection, dance: Wanted, result: Result) -> 
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))
     task = BakeTask(one_song(file), selection, **asdict(dance))
+    if result.physics and task.style is None:
+        task = replace(task, style="neutral")
     from dancetutor_cli.library.selection import note_bytes
 
     tell_of_compiling(choice_for(task.path, task.preset), note_bytes(task.path, task.selection))
@@ -158,9 +165,11 @@ def _write(dance: Dance, target: Path, report_to: str | None, plot: Path | None)
     click.echo(f"{target}: {form.write(target, dance)}, {dance.label}")
     if measured:
         from dancetutor_cli.bake import mines_of, report
+        from dancetutor_cli.bake.quality.retargeting import with_distances
 
         asked = dance.asked
-        _report(report(dance.own_motion, mines_of(asked.play, asked.pad)), report_to, plot)
+        whole = report(dance.own_motion, mines_of(asked.play, asked.pad))
+        _report(with_distances(whole, dance.styled.distances, dance.task.style), report_to, plot)
 
 
 def default_name(song: Song, chart: Chart) -> str:

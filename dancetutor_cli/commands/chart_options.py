@@ -19,6 +19,7 @@ __all__ = [
     "preset_option",
     "section_option",
     "selection_options",
+    "style_option",
 ]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
@@ -85,6 +86,17 @@ def gait_option(command: _Command) -> _Command:
         show_default=True,
         metavar="NAME|FILE",
         help="How she walks on and off: flat, heels, or a file as those in configs/gaits.",
+    )
+    return option(command)
+
+
+def style_option(command: _Command) -> _Command:
+    """Add --style; the function gets keyword argument `style`, to be given to `physics.style.load_style`."""
+    option = click.option(
+        "--style",
+        metavar="NAME|FILE",
+        help="A ragdoll follows her in this style: neutral, lazy, fierce, heavy, feminine, or a file as those in "
+        "configs/styles.",
     )
     return option(command)
 

@@ -16,6 +16,7 @@ from dancetutor_cli.commands.chart_options import (
     motion_option,
     number,
     section_option,
+    style_option,
 )
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
@@ -55,6 +56,7 @@ _OPTIONS = (
     click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
     gait_option,
     motion_option,
+    style_option,
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -165,6 +167,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
         bar=options["bar"],
         gait=options["gait"],
         motion=options["motion"],
+        style=options["style"],
     )
 
 

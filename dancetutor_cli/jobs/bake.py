@@ -16,6 +16,7 @@ from dancetutor_cli.lint.part import part_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import Done, Piece
+    from dancetutor_cli.bake.styled import Styled
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.motion.model import Bar, Motion
@@ -37,6 +38,7 @@ class BakeTask:
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
     jobs : processes among which the pieces of a long song are shared
+    style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
     """
 
     path: Path
@@ -50,6 +52,7 @@ class BakeTask:
     gait: str = "flat"
     jobs: int = 1
     motion: Path | None = None
+    style: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +75,7 @@ def ask(task: BakeTask) -> Asked:
     from dancetutor_cli.bake.rate import at_rate
 
     check_motion(task.motion, task.gait)
+    check_style(task.style, task.bar)
     song, chart, preset, notes = chosen(task.path, task.selection, task.preset, task.section)
     play, pad = _play(task, song, chart, preset)
     if not (play.limb >= 0).any():
@@ -92,8 +96,21 @@ def check_motion(motion: Path | None, gait: str) -> None:
     load_gait(gait)
 
 
+def check_style(style: str | None, bar: bool) -> None:
+    """Say what is wrong with a style: FileError or UsageError, before the work; UnavailableError without the engine."""
+    if style is None:
+        return
+    from dancetutor_cli.physics.engine import engine
+    from dancetutor_cli.physics.style import load_style
+
+    load_style(style)
+    if bar:
+        raise UsageError("a style moves her arms, and hands on the bar stay where they are; leave --bar or --style out")
+    engine()
+
+
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
-    """The motion; times are seconds of the music as it is played, at the task's rate."""
+    """The motion without a style; times are seconds of the music as it is played, at the task's rate."""
     from dancetutor_cli.bake import bake
     from dancetutor_cli.motion.settings import load_settings
 
@@ -191,9 +208,17 @@ class Dance:
         return self.asked.section or (-math.inf, math.inf)
 
     @cached_property
+    def styled(self) -> Styled:
+        """The motion of the project's own dancer in the style, and how far the ragdoll was from it."""
+        from dancetutor_cli.bake.styled import styled
+        from dancetutor_cli.motion.settings import load_settings
+
+        return styled(bake_asked(self.asked, self.task), self.task.style, load_settings(self.task.motion))
+
+    @property
     def own_motion(self) -> Motion:
         """The motion of the project's own dancer, whoever dances."""
-        return bake_asked(self.asked, self.task)
+        return self.styled.motion
 
     @cached_property
     def motion(self) -> Motion:

@@ -31,6 +31,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         "preset": _plain(subject.preset),  # whoever chose it, with all that it extends
         "character": _character(request.character),
         "gait": _gait(request.gait),
+        "style": _style(request.style),
         "feet": feet_fingerprint(request.path),
         "findings": _findings(request.path),
         "music": None if subject.music is None else file_hash(subject.music),
@@ -65,6 +66,13 @@ def _gait(name: str) -> str:
     from dancetutor_cli.motion.gait import gait_names
 
     return name if name in gait_names() else file_hash(Path(name))
+
+
+def _style(name: str | None) -> str | None:
+    """The content of a style's file; those by name are part of the program."""
+    from dancetutor_cli.physics.style import style_names
+
+    return name if name is None or name in style_names() else file_hash(Path(name))
 
 
 def _findings(path: Path) -> str:

@@ -117,21 +117,27 @@ def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[f
         return {}
     from dancetutor_cli.bake import bake
     from dancetutor_cli.bake.rate import at_rate
+    from dancetutor_cli.bake.styled import styled
     from dancetutor_cli.motion.settings import load_settings
 
+    settings = load_settings(request.motion)
     passes = subject.clock.passes
     return {
-        rate: bake(
-            subject.chart,
-            at_rate(play, rate),
-            pad,
-            fps=request.fps,
-            section=(passes[0].start / rate, passes[-1].end / rate),
-            rate=rate,
-            bar=request.bar,
-            gait=request.gait,
-            settings=load_settings(request.motion),
-        )
+        rate: styled(
+            bake(
+                subject.chart,
+                at_rate(play, rate),
+                pad,
+                fps=request.fps,
+                section=(passes[0].start / rate, passes[-1].end / rate),
+                rate=rate,
+                bar=request.bar,
+                gait=request.gait,
+                settings=settings,
+            ),
+            request.style,
+            settings,
+        ).motion
         for rate in sorted({one.rate for one in passes})
     }
 

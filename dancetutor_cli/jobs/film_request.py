@@ -33,6 +33,7 @@ class Request:
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
+    style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
     sync : seconds by which the music plays late against the notes
     """
 
@@ -50,6 +51,7 @@ class Request:
     bar: bool = False
     gait: str = "flat"
     motion: Path | None = None
+    style: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +82,10 @@ class Subject:
 def look_up(request: Request) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     if request.look.layout.dancer is not None:
-        from dancetutor_cli.jobs.bake import check_motion
+        from dancetutor_cli.jobs.bake import check_motion, check_style
 
         check_motion(request.motion, request.gait)
+        check_style(request.style, request.bar)
     song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section)
     music, missing = (None, None) if request.mute else find_music(song, chart)
     warnings = () if missing is None else (f"{missing}; the film has claps on the steps instead",)

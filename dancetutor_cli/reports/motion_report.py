@@ -5,7 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from dancetutor_cli.bake import Report
+
+_DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
 
 def print_report(report: Report) -> None:
@@ -22,6 +26,20 @@ def print_report(report: Report) -> None:
         value = "nothing to measure" if f.value != f.value else f"{f.value:.4g}{unit}"
         table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
     Console().print(table)
+    if report.distances:
+        Console().print(_distances(report))
+
+
+def _distances(report: Report) -> Table:
+    from rich.table import Table
+
+    table = Table(title="Distance of the ragdoll, cm")
+    table.add_column("retargeting point")
+    for name in _DISTANCES:
+        table.add_column(name, justify="right")
+    for name, values in report.distances.items():
+        table.add_row(name, *(f"{value:.2f}" for value in values))
+    return table
 
 
 def as_json(report: Report) -> dict[str, Any]:
@@ -38,10 +56,13 @@ def as_json(report: Report) -> dict[str, Any]:
         for f in report.figures
     ]
     errors = [None if e != e else round(float(e), 4) for e in report.contact_errors]
-    return {
+    out = {
         "schema": 1,
         "figures": figures,
         "met": report.met,
         "notes": list(report.notes),
         "contact_errors_ms": errors,
     }
+    if report.distances:
+        out["distances_cm"] = {n: dict(zip(_DISTANCES, values, strict=True)) for n, values in report.distances.items()}
+    return out

@@ -59,6 +59,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
     (folder / "mine.yaml").write_text("extends: base.yaml\n")
     (folder / "strut.yaml").write_text("slow: {}")
     (folder / "motion.yaml").write_text("jump: {far: 0.5}")
+    (folder / "sway.yaml").write_text("limits: false")
     (folder / "her.glb").write_bytes(b"a character")
     look = request_of(song).look
     looks = {
@@ -91,6 +92,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "bar": [True],
         "gait": ["heels", str(folder / "strut.yaml")],
         "motion": [folder / "motion.yaml"],
+        "style": ["neutral", str(folder / "sway.yaml")],
     }
 
 

@@ -40,12 +40,14 @@ class Report:
     contact_errors : (c,) milliseconds, late positive, nan for a miss
     notes : what a reader should know: pivots on purpose, what was exempt
     curves : over the song, for the plot: name -> (seconds (n,), values (n,))
+    distances : of a ragdoll by retargeting point: minimum, maximum, mean and standard deviation, centimetres
     """
 
     figures: tuple[Figure, ...]
     contact_errors: Array
     notes: tuple[str, ...] = ()
     curves: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    distances: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
 
     @property
     def met(self) -> bool:
