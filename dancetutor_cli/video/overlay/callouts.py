@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.ahead import Ahead
     from dancetutor_cli.video.scroll import ScrollSegments
 
-JOIN = 2 * TICKS_PER_BEAT  # moves that follow so closely are called out together,
-LONGEST = 16 * TICKS_PER_BEAT  # but nothing is called out for longer than four measures
+JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or seconds, are called out together,
+LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
 KINDS = 2  # different moves in one call at most: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.model.Limb`
@@ -53,9 +53,13 @@ class _Passage:
     words: dict[str, int] = field(default_factory=dict)
     weight: int = 0
 
-    def takes(self, tick: int, said: str, weight: int) -> bool:
-        """Is a move at `tick` part of it?"""
-        near = tick - self.last <= JOIN and tick - self.first <= LONGEST
+    def takes(self, tick: int, said: str, weight: int, second: Mapping[int, float]) -> bool:
+        """Is a move at `tick` part of it? second : of every tick"""
+
+        def within(since: int, most: tuple[int, float]) -> bool:
+            return tick - since <= most[0] or second[tick] - second[since] <= most[1]
+
+        near = within(self.last, JOIN) and within(self.first, LONGEST)
         return near and weight == self.weight and (said in self.words or len(self.words) < KINDS)
 
     def text(self) -> str:
@@ -74,15 +78,17 @@ def callouts_of(subject: ChartSubject, style: CallStyle, scrolls: ScrollSegments
     Moves in a row, such as one crossover after the other, are one passage with a count.
     """
     found = [*_moves(subject, style), *(_findings(subject) if style.findings else ())]
+    timing = subject.chart.timing
+    told = sorted({tick for first, last, *_ in found for tick in (first, last)})
+    seconds = dict(zip(told, timing.seconds(np.array(told, dtype=np.int64)).tolist(), strict=True))
     passages: list[_Passage] = []
     for first, last, said, weight in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight)), None)
+        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, seconds)), None)
         if here is None:
             here = _Passage(first, last, weight=weight)
             passages.append(here)
         here.last = max(here.last, last)
         here.words[said] = here.words.get(said, 0) + 1
-    timing = subject.chart.timing
     ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
     starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
     beats = scrolls.shown(ticks[:, 0] / TICKS_PER_BEAT)

@@ -70,6 +70,13 @@ def test_nothing_is_called_out_for_longer_than_four_measures() -> None:
     assert [one.text for one in found] == ["footswitch ×17", "footswitch ×17", "footswitch ×6"]
 
 
+def test_at_a_chart_of_false_tempo_seconds_join_them() -> None:
+    """Pump's charts may run at 312 BPM and more: a measure there is less than a second."""
+    quick = moves(*((float(beat), "footswitch-up") for beat in (0, 4, 8)))
+    quick.chart.timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 48 * 60 / 312)
+    assert [one.text for one in called(quick)] == ["footswitch ×3"]
+
+
 def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
     row = (4.0, ("bracket",), {2: 1, 3: 1}, {0: 0, 1: 3})
     (one,) = called(subject(row))

@@ -16,6 +16,7 @@ from dancetutor_cli.video.scene.prepare import PLANTED, Cast
 Array = NDArray[np.float64]
 # Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
+OUTSIDE = 0.030  # metres from the sole: no ring is farther out
 LIT = 0.80  # of its light that a lit panel keeps in the deepest shadow: hers must not hide what she presses
 
 
@@ -151,6 +152,8 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                 reach = numbers[1] * (1.6 - 0.6 * near)
                 if d < reach:
                     keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                if d > OUTSIDE + foot[row, c]:
+                    continue
                 soft = 0.5 * foot[row, c]
                 planted = smooth(PLANTED[0], PLANTED[1], near)
                 wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
