@@ -26,8 +26,8 @@ from dancetutor_cli.play.vocabulary import MODELS
 _EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
-_MOST_MOVES_KEPT = 4_000_000  # then the tables start anew, so that a long run does not fill the memory
-_MOST_EDGES_KEPT = 4_000_000  # the same
+_MOST_MOVES_KEPT = 2_000_000  # then the tables start anew, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 2_000_000  # the same
 
 
 class Engine:
@@ -114,7 +114,7 @@ class Engine:
         wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
         nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
         scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
-        row, wanted = 0, store.UNKNOWN
+        row, wanted = 0, -1
         while wanted != store.DONE:
             row, wanted = self._call(arrays, row, nodes, scratch, found)
             if wanted == store.UNEXPLORED:
@@ -204,8 +204,9 @@ def engine_for(pad: Pad, preset: Preset) -> Engine:
     return kept[0]
 
 
-def _longer(array: NDArray[Any], fill: int = 0, least: int = 0) -> NDArray[Any]:
-    longer = np.full((max(2 * len(array), least), *array.shape[1:]), fill, dtype=array.dtype)
+def _longer(array: NDArray[Any], least: int = 0) -> NDArray[Any]:
+    """At least twice the room; what is new is not touched, so that it takes no memory before it is used."""
+    longer = np.empty((max(2 * len(array), least), *array.shape[1:]), dtype=array.dtype)
     longer[: len(array)] = array
     return longer
 
@@ -220,7 +221,7 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
         least = 1 << int(len(t.pattern) + rows).bit_length()
         table = np.full(4 * least, -1, dtype=np.int32)
         store.fill_patterns(t.pattern, t.counts[store.PATTERNS], table)
-        return t._replace(pattern=_longer(t.pattern, 0, least), pattern_hash=table)
+        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=table)
     if wanted == store.MORE_PAIRS:
         pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
         store.fill_pairs(t.pair, pair)
@@ -234,8 +235,9 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
         store.fill_numbers(t.timed_key, t.counts[store.FACTS_KNOWN], table)
         return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
     if wanted == store.MORE_TIMED:
-        cost = np.full((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), store.UNKNOWN, dtype=np.int32)
-        cost[:, : t.timed_cost.shape[1]] = t.timed_cost
+        cost = np.zeros((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), dtype=np.int32)
+        known = np.flatnonzero(t.timed_cost.any(axis=1))
+        cost[known, : t.timed_cost.shape[1]] = t.timed_cost[known]
         return t._replace(timed_cost=cost)
     if wanted == store.MORE_LAYERS:
         table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
@@ -270,7 +272,7 @@ def _empty_tables(weights: int) -> Tables:
         terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
         timed_hash=np.full(1 << 15, -1, dtype=small),
-        timed_cost=np.full((store.MOST_MS + 1, 64), store.UNKNOWN, dtype=small),
+        timed_cost=np.zeros((store.MOST_MS + 1, 64), dtype=small),
         layer=np.zeros((layers, 2), dtype=small),
         layer_state=np.zeros(16 * layers, dtype=small),
         layer_key=np.zeros(layers, dtype=whole),

@@ -28,6 +28,7 @@ from dancetutor_cli.play.tables import (
     ACTION,
     COLUMN_BITS,
     EARLIER,
+    EPSILON,
     EVENTS,
     FRESH,
     HOLDS,
@@ -170,19 +171,40 @@ def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
 
 
 @njit
+def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
+    """The panel of a mask that is furthest to the left, `side` -1, or right, 1; of two, the one further back; or -1."""
+    found = -1
+    for p in range(COLUMN_BITS):
+        if mask >> p & 1:
+            ahead = side * (places[p, 0] - places[found, 0]) if found >= 0 else 1.0
+            if ahead > EPSILON or (ahead > -EPSILON and places[p, 1] < places[found, 1]):
+                found = p
+    return found
+
+
+@njit
 def _with_hands(out, m, row, steps, kept, switched, forced, g, w):  # type: ignore[no-untyped-def]
-    """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped."""
+    """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped.
+
+    Of more steps than free hands the left hand takes the one furthest to the left, the right hand that to the right:
+    nobody can play such a row, and to list every choice would take very long where there are ten steps.
+    """
     before, pressed = out.scratch[BEFORE], out.scratch[PRESS]
     c = g.place.shape[0]
     rest = steps & ~(pressed[0] | pressed[1])
     left_free, right_free = before[LEFT_HOLDS] == 0, before[LEFT_HOLDS + 1] == 0
     hands = min(_bits(rest), left_free + right_free)
+    crowded = _bits(rest) > hands and not forced & _FORCED
+    leftmost = _outermost(rest, g.left, -1)
+    rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)
     rolls = row >> ROLLS & _MASK
     for i in range(-1, c):
-        if i >= 0 and not (rest >> i & 1 and left_free):
+        if i >= 0 and (not (rest >> i & 1 and left_free) or (crowded and i != leftmost)):
             continue
         for j in range(-1, c):
             if (j >= 0 and not (rest >> j & 1 and right_free and j != i)) or (i >= 0) + (j >= 0) != hands:
+                continue
+            if crowded and j >= 0 and j != rightmost:
                 continue
             pressed[2], pressed[3] = 1 << i if i >= 0 else 0, 1 << j if j >= 0 else 0
             if forced & _FORCED and not _fits(pressed, forced, c):

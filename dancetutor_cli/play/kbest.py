@@ -98,7 +98,7 @@ class _Ways:
         key = (self._layers.pattern[row], ms, state)
         if key not in self._known:
             self._known[key] = [
-                (move, self._cost[move] + int(self._time[ms, self._facts[move]]))
+                (move, self._cost[move] + int(self._time[ms, self._facts[move]]) - 1)
                 for move in self._layers.moves(row, state)
             ]
         return self._known[key]

@@ -149,8 +149,8 @@ def _wait(rows):  # type: ignore[no-untyped-def]
 
 @njit
 def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
-    """What facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
-    timed_cost[ms, facts] = charge_time(timed_key[facts], ms, curves, terms) if facts else 0
+    """1 + what facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
+    timed_cost[ms, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
     return timed_cost[ms, facts]
 
 
@@ -183,7 +183,7 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
             price = timed_cost[ms, facts]
             if price == UNKNOWN:
                 price = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
-            cost = (node[low + (ends[e] & PLACE_MASK)] >> COST_SHIFT) + edge_cost[e] + price
+            cost = (node[low + (ends[e] & PLACE_MASK)] >> COST_SHIFT) + edge_cost[e] + price - 1
             u = high + (ends[e] >> PLACE_SHIFT & PLACE_MASK)
             node[u] = min(node[u], cost << COST_SHIFT | e)
         cheapest = _NEVER
@@ -254,7 +254,7 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
         start = np.int64(transition[chosen[r], FIRST_EDGE])
         for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
             v, u = ends[e] & PLACE_MASK, ends[e] >> PLACE_SHIFT & PLACE_MASK
-            price = np.int64(edge_cost[e]) + timed_cost[ms, ends[e] >> 2 * PLACE_SHIFT]
+            price = np.int64(edge_cost[e]) + timed_cost[ms, ends[e] >> 2 * PLACE_SHIFT] - 1
             rest, same_rest = price + after[u], price + same_after[u]
             before[v] = min(before[v], rest)
             if wide[edge_move[e], ACTION] & LIMBS == ours:

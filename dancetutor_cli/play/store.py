@@ -33,7 +33,7 @@ START = 0  # number of the layer and the state before the first row
     DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
     MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, UNEXPLORED,
 ) = range(14)  # fmt: skip
-UNKNOWN = -1
+UNKNOWN = 0  # in `Tables.timed_cost`, so that most of it is never touched
 PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
 LIMBS = (1 << PART_SHIFT) - 1
 TERMS_SHIFT = 32  # in `EVENTS`: bits of events below, number of the costs by term from here on
@@ -52,7 +52,7 @@ class Tables(NamedTuple):
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
-    timed_cost : int32 (MOST_MS + 1, ), UNKNOWN where not computed yet
+    timed_cost : int32 (MOST_MS + 1, ), 1 + cost of facts by number, UNKNOWN where not computed yet
     layer : int32 (, 2), where its states start in `layer_state`, and their number; in the order of `explore`
     layer_key : int64, hash of the states; layer_hash : int32
     transition : int32 (, 3), layer it leads to, first edge, number of edges

@@ -31,7 +31,7 @@ def every_way(rows: Rows, pad: Pad, preset: Preset) -> Ways:
         for limbs, states in ways.items():
             for state, cost in states.items():
                 for move in layers.moves(row, state):
-                    price = int(t.move[move, COST]) + int(t.timed_cost[layers.elapsed[row], t.move[move, FACTS]])
+                    price = int(t.move[move, COST]) + int(t.timed_cost[layers.elapsed[row], t.move[move, FACTS]]) - 1
                     reached = following[(*limbs, int(t.wide[move, ACTION]) & LIMBS)]
                     to = int(t.move[move, NEXT])
                     reached[to] = min(cost + price, reached.get(to, cost + price))
