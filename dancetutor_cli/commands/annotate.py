@@ -37,7 +37,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class AnnotateWish:
     """What the options ask for, besides the charts."""
 
     styles: tuple[str, ...] | None
@@ -75,8 +75,8 @@ class Wish:
 @preset_option
 @selection_options
 @into("selection", Selection)
-@into("wish", Wish)
-def command(paths: tuple[Path, ...], selection: Selection, wish: Wish) -> int:
+@into("wish", AnnotateWish)
+def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -> int:
     """Write L/R foot markers into chart files, or take them out.
 
     PATH is a .sm or .ssc file, or a folder that is searched for them. Only comments are added, byte by byte;

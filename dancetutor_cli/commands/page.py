@@ -31,7 +31,7 @@ SUFFIXES = (".html", ".htm")
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class PageWish:
     """What the options ask for, besides the charts."""
 
     output: Path | None
@@ -77,8 +77,8 @@ class Wish:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("wish", Wish)
-def command(path: Path, selection: Selection, wish: Wish) -> None:
+@into("wish", PageWish)
+def command(path: Path, selection: Selection, wish: PageWish) -> None:
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
     The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever

@@ -23,7 +23,7 @@ _WALL_HEIGHT = 5.0
 _FLOOR_REACH = 40.0
 
 
-class Kind(IntEnum):
+class SurfaceKind(IntEnum):
     """How a surface is coloured."""
 
     FLOOR = 0
@@ -50,7 +50,7 @@ class Tiles:
 class Stage:
     """Quadrilaterals, seen counter-clockwise from their front; their backs are not drawn. q of them.
 
-    corners : float64 (q, 4, 3), world; uv : float64 (q, 4, 2), places on a wall; kinds : int32 (q,), `Kind`
+    corners : float64 (q, 4, 3), world; uv : float64 (q, 4, 2), places on a wall; kinds : int32 (q,), `SurfaceKind`
     """
 
     corners: Array
@@ -85,18 +85,18 @@ def build_stage(pad: PadLike, look: StageLook) -> Stage:
     low, high = pad_extent(tiles)
     bottom = -look.pad_height
     reach, radius = _FLOOR_REACH, look.radius + float(high[0])
-    parts: list[tuple[Kind, list[tuple[float, float, float]]]] = [
-        (Kind.FLOOR, _flat(-reach, -reach, reach, reach, bottom)),
-        (Kind.PAD, _flat(low[0], low[2], high[0], high[2], 0.0)),
+    parts: list[tuple[SurfaceKind, list[tuple[float, float, float]]]] = [
+        (SurfaceKind.FLOOR, _flat(-reach, -reach, reach, reach, bottom)),
+        (SurfaceKind.PAD, _flat(low[0], low[2], high[0], high[2], 0.0)),
     ]
     ring = [(low[0], low[2]), (high[0], low[2]), (high[0], high[2]), (low[0], high[2])]
     for (x0, z0), (x1, z1) in zip(ring, [*ring[1:], ring[0]], strict=True):
-        parts.append((Kind.PAD_SIDE, [(x0, bottom, z0), (x0, 0.0, z0), (x1, 0.0, z1), (x1, bottom, z1)]))
+        parts.append((SurfaceKind.PAD_SIDE, [(x0, bottom, z0), (x0, 0.0, z0), (x1, 0.0, z1), (x1, bottom, z1)]))
     for side in range(_SIDES):
         a, b = (2 * math.pi * (side + k - 0.5) / _SIDES for k in (0, 1))
         (x0, z0), (x1, z1) = ((radius * math.sin(t), radius * math.cos(t)) for t in (a, b))
         top = bottom + _WALL_HEIGHT
-        parts.append((Kind.WALL, [(x0, bottom, z0), (x0, top, z0), (x1, top, z1), (x1, bottom, z1)]))
+        parts.append((SurfaceKind.WALL, [(x0, bottom, z0), (x0, top, z0), (x1, top, z1), (x1, bottom, z1)]))
     wall = [(-1.0, 0.0), (-1.0, 1.0), (1.0, 1.0), (1.0, 0.0)]
     return Stage(
         np.array([corners for _, corners in parts], dtype=np.float64),

@@ -10,7 +10,7 @@ from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.pads.pad import load_pads
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.scene.look import default_look
-from dancetutor_cli.video.scene.stage import PANEL, Kind, build_stage, tiles_of
+from dancetutor_cli.video.scene.stage import PANEL, SurfaceKind, build_stage, tiles_of
 
 PADS = sorted(load_pads(config_path("pads.yaml")).items())
 
@@ -45,7 +45,7 @@ def test_surfaces_are_seen_from_inside_the_room():
     for corners, kind in zip(stage.corners, stage.kinds, strict=True):
         normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
         towards = np.dot(normal, inside - corners.mean(0))
-        if kind == Kind.PAD_SIDE:
+        if kind == SurfaceKind.PAD_SIDE:
             assert towards < 0  # a box seen from outside
         else:
             assert towards > 0

@@ -47,7 +47,7 @@ class _Rays(NamedTuple):
 
 
 class _Stage(NamedTuple):
-    """What rays may meet. quads : `_quads`; kinds : `stage.Kind` of each"""
+    """What rays may meet. quads : `_quads`; kinds : `stage.SurfaceKind` of each"""
 
     quads: Array
     kinds: NDArray[np.int32]
