@@ -22,8 +22,8 @@ from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import load_settings
 from dancetutor_cli.rig.kinematics import joint_matrices
-from dancetutor_cli.video import renderer
-from dancetutor_cli.video.scene import FrameState, Scene
+from dancetutor_cli.video.scene import renderer
+from dancetutor_cli.video.scene.scene import FrameState, Scene
 
 SIZE = (168, 250)  # pixels of one picture
 VIEWS = {"front": (0.0, 1.05, 3.3), "side": (3.3, 1.05, 0.0)}  # of the camera from her place, metres

@@ -30,12 +30,12 @@ def bar_of(pad: Pad, settings: BarSettings) -> Bar:
 def holding(settings: MotionSettings) -> MotionSettings:
     """The settings for somebody who holds the bar: she stands a little lower, for her feet are far before her.
 
-    Her chest keeps more to the screen, for both hands hold it; and she goes down half as far in streams and for jumps,
-    for the bar bears a part of that.
+    In streams she goes down a little, and her chest keeps more to the screen, for both hands hold it; and she goes down
+    half as far for jumps, for the bar bears a part of that.
     """
     body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
     body = replace(body, stance=body.stance - bar.knees, soft_reach=body.soft_reach - bar.knees)
-    body = replace(body, stream_crouch=body.stream_crouch / 2)
+    body = replace(body, stream_crouch=bar.stream_crouch)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
     return replace(settings, body=body, jump=jump, look=replace(look, torso_weight=bar.square))
 

@@ -56,6 +56,9 @@ class JumpSettings:
     follow: float
     fold: float
     lean: float
+    push: float
+    catch: float
+    drive: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,7 @@ class BodySettings:
     turn_to_feet: float
     step_rise: float
     lean: float
+    stream_lean: float
     smooth: float
     foot_weight: float
     middle_weight: float
@@ -100,6 +104,9 @@ class ArmSettings:
     down: float
     stream_up: float
     stream_forward: float
+    step: float
+    jump: float
+    jump_up: float
     wander: float
     cancel: float
     twist: float

@@ -68,6 +68,7 @@ class BarSettings:
     soft: float
     lean_back: float
     knees: float
+    stream_crouch: float
     square: float
     let_go: float
     reach_time: float

@@ -46,8 +46,10 @@ def _medians(jumps: Array) -> tuple[float, float, float]:
 
 
 def jump_knees(body: Body, knees: Array) -> Array:
-    """Flexion (k, 3) in degrees, mean of both knees, of jumps with time: last on the ground, most in the middle of the
-    flight, most as they give after it."""
+    """Flexion (k, 3) in degrees, mean of both knees, of jumps with time.
+
+    The least as the toes leave, the most in the middle of the flight, and the most as they give after it.
+    """
     flying = intervals(np.asarray(~body.standing.any(axis=1)))
     mean, frames, out, landed = knees.mean(axis=1), body.rate, [], 0
     for first, end in flying:
@@ -56,7 +58,11 @@ def jump_knees(body: Body, knees: Array) -> Array:
             continue
         quarter = int((end - first) * (1.0 - FOLD) / 2)
         out.append(
-            (mean[first - 1], mean[first + quarter : end - quarter].max(), mean[end : end + int(GIVE * frames)].max())
+            (
+                mean[first - 1 : first + 1].min(),
+                mean[first + quarter : end - quarter].max(),
+                mean[end : end + int(GIVE * frames)].max(),
+            )
         )
     return np.array(out).reshape(-1, 3)
 

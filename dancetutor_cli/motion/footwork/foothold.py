@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.footing import Foot, Footing
 from dancetutor_cli.motion.settings import StepSettings
-from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, gaps_at, over
+from dancetutor_cli.motion.swing.clearance import ANKLE, CROSSED, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
 from dancetutor_cli.play.model import Part
+from dancetutor_cli.rig.body import BALL_AHEAD
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
@@ -21,6 +22,7 @@ PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
 STAYING = 0.7  # part of its way to the wanted place that a foot on its own panel leaves out
+CROSSED_PRICE = 3e3  # of a radian that legs cross too far
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
@@ -102,11 +104,15 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
 
 
 def beside(footing: Footing, foot: Foot, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
-    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room."""
-    apart = footing.settings.step.apart
+    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room.
+
+    Nor do the legs cross there farther than they must.
+    """
+    apart, body = footing.settings.step.apart, footing.turned_to()
     toes = np.array([footing.toes(foot, yaw)])
     free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
-    if free and not over(footing.mined, ball[None], toes)[0]:
+    crossed = legs_crossed(foot.outward, ball[None], toes, other, body)[0]
+    if free and crossed <= 0.0 and not over(footing.mined, ball[None], toes)[0]:
         return ball, yaw
     balls = spot.centre + spot.room * PLACES * [foot.outward, 1.0]
     turned = np.array([footing.limited(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
@@ -114,9 +120,21 @@ def beside(footing: Footing, foot: Foot, spot: Spot, ball: Array, yaw: float, ot
     gaps = gaps_at(grid, yaws + foot.outward * footing.toe_out, other.ball, other.toes)
     price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
     price += np.maximum(apart - gaps, 0.0) * 1e6
+    price += CROSSED_PRICE * legs_crossed(foot.outward, grid, toes, other, body)  # whichever way the foot is turned
     price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
+
+
+def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float) -> Array:
+    """How much farther (k,) legs cross than they may, radians, as a foot stands at balls (k, 2) with its toes (k,) so.
+
+    outward : as of the foot; body : yaw of the hips
+    """
+    own = balls - (BALL_AHEAD + ANKLE) * headings(toes)
+    line = outward * (own - (other.ball - (BALL_AHEAD + ANKLE) * headings(np.array(other.toes))))
+    angle = np.arctan2(-line[:, 1], line[:, 0]) - body
+    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - CROSSED, 0.0))
 
 
 def _bracket(footing: Footing, foot: Foot, goal: Goal) -> tuple[Array, float]:
@@ -152,9 +170,11 @@ def around(
     footing: Footing, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
 ) -> tuple[float, float]:
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
-    a, b, apart = footing.toes(foot), footing.toes(foot, yaw), footing.settings.step.apart
+    apart = footing.settings.step.apart
+    after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
+    way = Way(foot.ball, footing.toes(foot), target, footing.toes(foot, yaw), (footing.faced, after))
     if max(other.landed, other.turned) <= span[0]:
-        return detour(Way(foot.ball, a, target, b), other.ball, footing.toes(other), apart, foot.outward)
+        return detour(way, other.ball, footing.toes(other), apart, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
     there = foot_path(footing.track(other, LATEST), times, footing.settings.step.heel_drop)
-    return detour(Way(foot.ball, a, target, b), there.ball[:, [0, 2]], there.yaw, apart, foot.outward)
+    return detour(way, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)

@@ -12,7 +12,7 @@ from dancetutor_cli.motion.moves import Move, Pivot
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.swing.clearance import gaps_at, over
 from dancetutor_cli.motion.swing.foot_path import NO_TIME
-from dancetutor_cli.motion.swing.panels import ball_of
+from dancetutor_cli.motion.swing.panels import ball_of, middle_of
 
 Array = NDArray[np.float64]
 SHORTEST = 0.02  # seconds; no swing is shorter
@@ -90,6 +90,7 @@ class Footing:
         self.context, self.settings, self.lead = context, context.settings, lead
         settings = context.settings
         self.normal = 0.0
+        self.faced = 0.0  # which way the body faced after the last row, radians
         self.mined: Array = np.empty((0, 2))  # panels beside which feet land that mines pass soon
         self.toe_out = float(np.radians(settings.step.toe_out))
         self.feet = tuple(
@@ -113,6 +114,11 @@ class Footing:
     def toes(self, foot: Foot, yaw: float | None = None) -> float:
         """Where the toes of a foot point, at its own yaw or at another one; radians."""
         return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
+
+    def line(self) -> float:
+        """Which way the line between the feet faces as they stand, degrees; the feet normal goes by panels."""
+        left, right = (middle_of(f.ball, self.toes(f)) for f in self.feet)
+        return float(np.degrees(np.arctan2(right[1] - left[1], left[0] - right[0])))
 
     def body_yaw(self) -> float:
         """The yaw that the body aims at for the current feet normal, radians: crossed feet turn it less."""

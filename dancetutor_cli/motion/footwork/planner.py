@@ -24,6 +24,7 @@ WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how
 STEEPEST = 1.875  # largest slope of `ease.smooth`
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
+ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 
 
@@ -77,10 +78,13 @@ class Planner:
         aside = None if self.previous is None else self.asides.before(i, time, list(pressed), self.touches.presses)
         if aside is not None:
             self.turns.append(aside)
+            self.footing.faced = aside.yaw
             self.previous = max(foot.landed for foot in self.footing.feet)
         turn = (self.play.facing[i] - self.footing.normal + 180.0) % 360.0 - 180.0
-        if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: the foot decides
-            turn = -180.0 if (feet[0] if len(feet) == 1 else self.footing.lead) == 0 else 180.0
+        if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: how the feet stand decides, or which foot steps
+            stand = (self.footing.line() - self.footing.normal + 180.0) % 360.0 - 180.0
+            first = feet[0] if len(feet) == 1 else self.footing.lead
+            turn = 180.0 * float(np.sign(stand) if ASIDE < abs(stand) < 180.0 - ASIDE else 2 * first - 1)
         before = self.footing.normal
         self.footing.normal += turn
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
@@ -91,6 +95,7 @@ class Planner:
         yaw = self.footing.turned_to()
         far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
         self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
+        self.footing.faced = yaw
         self.previous = time
 
 

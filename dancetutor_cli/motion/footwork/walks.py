@@ -56,12 +56,10 @@ def _walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
     if steps is None:
         return plan
     level = ground.level(*begin.middle)
-    feet = tuple(
-        FootTrack(
-            (float(b[0]), float(b[1])), float(y), (*steps.swings[side], *_from_there(track.moves, goal, side)), level
-        )
-        for side, (b, y, track) in enumerate(zip(begin.balls, begin.yaws, plan.feet, strict=True))
-    )
+    feet = []
+    for side, (ball, yaw, track) in enumerate(zip(begin.balls, begin.yaws, plan.feet, strict=True)):
+        moves = (*steps.swings[side], *_from_there(track.moves, goal, side, context))
+        feet.append(FootTrack((float(ball[0]), float(ball[1])), float(yaw), moves, level))
     first = Turn(BEGIN - 1.0, BEGIN - 0.5, begin.heading)
     turns = (first, *steps.turns, *plan.turns)
     around = _gone_around((feet[0], feet[1]), steps.walk.end, settings.step.apart)
@@ -113,7 +111,7 @@ def walk_over(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
         found = walk_there(begin, targets, (start, ready), gait, plan.lead, context)
         if found is not None:
             steps, goal = found
-            plan = _inserted(plan, steps, goal, context.settings.step.apart)
+            plan = _inserted(plan, steps, goal, context)
     return plan
 
 
@@ -166,32 +164,44 @@ def _waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     return out
 
 
-def _inserted(plan: Plan, steps: WalkSteps, goal: Stand, apart: float) -> Plan:
-    """The plan with a walk in a wait; what follows starts from where she has walked to."""
+def _inserted(plan: Plan, steps: WalkSteps, goal: Stand, context: Context) -> Plan:
+    """The plan with a walk in a wait; what follows starts from where she has walked to.
+
+    Until both feet have stepped there, one of them is not where the play has it, so she faces as she arrived.
+    """
+    both = [_next_step(track, steps.walk.end) for track in plan.feet]
+    until = max((step.land for step in both if step is not None), default=steps.walk.end)
     tracks = []
     for side, track in enumerate(plan.feet):
         after = [s for s in track.moves if s.land > steps.walk.start]
         before = track.moves[: len(track.moves) - len(after)]
-        moved = _from_there(tuple(after), goal, side)
+        moved = _from_there(tuple(after), goal, side, context)
         tracks.append(replace(track, moves=(*before, *steps.swings[side], *moved)))
-    turns = sorted([*plan.turns, *steps.turns], key=lambda t: t.start)
+    kept = [replace(t, yaw=goal.heading) if steps.walk.end < t.end < until - 1e-9 else t for t in plan.turns]
+    turns = sorted([*kept, *steps.turns], key=lambda t: t.start)
     walks = sorted([*plan.walks, steps.walk], key=lambda w: w.start)
-    feet = _gone_around((tracks[0], tracks[1]), steps.walk.end, apart)
+    feet = _gone_around((tracks[0], tracks[1]), steps.walk.end, context.settings.step.apart)
     return replace(plan, feet=feet, turns=tuple(turns), walks=tuple(walks))
 
 
-def _from_there(moves: tuple[Move, ...], goal: Stand, side: int) -> tuple[Move, ...]:
+def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Context) -> tuple[Move, ...]:
     """What a foot does after a walk, planned as if it came from elsewhere: its pivots and its first step are new."""
+    step = context.settings.step
+    most = np.radians(step.foot_turn + step.toe_out)
     here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
     middle = goal.balls.mean(axis=0)
+
+    def turned(move: Move) -> float:
+        return float(np.clip(move.yaw, goal.heading - most, goal.heading + most))
+
     for k, move in enumerate(moves):
         if not isinstance(move, Swing):
             continue
-        first = replace(move, bulge=(0.0, 0.0))
+        first = replace(move, bulge=(0.0, 0.0), yaw=turned(move))
         if isinstance(move, Jump):
             first = replace(move, line_turn=0.0, middles=((float(middle[0]), float(middle[1])), move.middles[1]))
-        return (*(replace(m, target=here) for m in moves[:k]), first, *moves[k + 1 :])
-    return tuple(replace(m, target=here) for m in moves)
+        return (*(replace(m, target=here, yaw=turned(m)) for m in moves[:k]), first, *moves[k + 1 :])
+    return tuple(replace(m, target=here, yaw=turned(m)) for m in moves)
 
 
 def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, apart: float) -> tuple[FootTrack, FootTrack]:

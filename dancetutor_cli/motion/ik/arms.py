@@ -17,7 +17,7 @@ from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.body import Trajectory
-from dancetutor_cli.motion.trajectory.crouch import tempo_factor
+from dancetutor_cli.motion.trajectory.crouch import jump_swing, tempo_factor
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path, smooth_path
@@ -38,6 +38,10 @@ AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that it keeps
 HANG, SHALLOW, DEEP = 0.28, np.radians(25.0), np.radians(100.0)  # so far they do; of which bends
 WANDER = ((7.9, 0.37), (4.3, 0.23))  # seconds of two waves, and how much of one each hand and axis is behind the last
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
+EFFORT = 2.0  # seconds before and after over which the pace of the steps counts as effort
+TURN_SMOOTH, MOST_LATE = 0.11, np.radians(40.0)  # seconds over which hands follow a turn; and how far behind they are
+EASY_TURN, QUICK_TURN = np.radians((250.0, 450.0))  # a second; slower turns leave hands where they are
+DRAWN_IN, DRAWN_BACK = 0.05, 0.5  # metres, and part of their way ahead, that hands come nearer in the quickest
 PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
@@ -69,15 +73,20 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     swing = _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))
-    tempo = tempo_factor(plan, body.times, settings)[:, None]
+    rate = 1.0 / float(body.times[1] - body.times[0])
+    effort = lately(tempo_factor(plan, body.times, settings), rate)[:, None]
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
-    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * tempo
-    hang[..., 2] = arms.forward + swing + arms.stream_forward * tempo
+    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * effort
+    hang[..., 2] = arms.forward + swing + arms.stream_forward * effort
+    jump = (jump_swing(plan, body.times) * (1.0 - body.reaching.max(axis=1)))[:, None]
+    hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
+    hang[..., 2] += arms.jump * jump
     hang += arms.wander * _wandering(body.times, plan.lead)
+    if context.bar is None:  # a hand that has let go of the bar is soon on it again
+        hang = _behind_the_chest(hang, body.chest_yaw, rate)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
-    rate = 1.0 / float(body.times[1] - body.times[0])
     controller = Controller.of(settings.inertia.hand_frequency, settings.inertia.hand_damping)
     lag = np.empty_like(hang)
     for side, name in enumerate(SIDES):
@@ -86,6 +95,26 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
         lag[:, side] = follow(target, rate, controller) - target
     far = np.linalg.norm(lag, axis=2, keepdims=True)
     return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
+
+
+def lately(tempo: Array, rate: float) -> Array:
+    """Mean (n,) of the tempo over the seconds around: effort, by which hands rise slowly."""
+    width = max(1, round(EFFORT * rate))
+    summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
+    return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
+
+
+def _behind_the_chest(hang: Array, yaw: Array, rate: float) -> Array:
+    """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest."""
+    ones = np.ones(len(yaw))
+    late = smooth_path(yaw[:, None], ones, rate, TURN_SMOOTH)[:, 0] - yaw
+    late = MOST_LATE * np.tanh(late / MOST_LATE)
+    quick = np.abs(np.gradient(yaw)) * rate
+    drawn = smooth_path(smooth((quick - EASY_TURN) / QUICK_TURN)[:, None], ones, rate, TURN_SMOOTH)
+    near = hang.copy()
+    near[..., 0] -= DRAWN_IN * drawn * np.array([1.0, -1.0])
+    near[..., 2] *= 1.0 - DRAWN_BACK * drawn
+    return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
 
 
 def _wandering(times: Array, lead: int) -> Array:
@@ -102,11 +131,13 @@ def _wandering(times: Array, lead: int) -> Array:
 def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
     """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot."""
     front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
-    ahead = []
+    ahead, lifted = [], []
     for track in plan.feet[::-1]:  # the left hand goes with the right foot
         path = foot_path(track, body.times, settings.step.heel_drop)
         ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
+        lifted.append(np.sin(np.pi * path.progress))
     both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
+    both += settings.arms.step * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
     gait = walking(plan.walks, body.times)
     if gait is not None:
         both = (1.0 - gait.own[:, None]) * both + gait.hands

@@ -11,13 +11,13 @@ from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import turned, walking
 from dancetutor_cli.motion.ik.arms import arm_targets
 from dancetutor_cli.motion.ik.hands import Torso
+from dancetutor_cli.motion.ik.knees import Hung, knee_poles, knees_apart
 from dancetutor_cli.motion.ik.solver import Targets
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.legs import ankle_of
-from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.body import half_hips
@@ -25,11 +25,6 @@ from dancetutor_cli.rig.quaternion import UP
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
-STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
-FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
-OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
-KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
-KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 
 
 def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
@@ -52,7 +47,8 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
         quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
         for t, f in zip(straight, feet, strict=True)
     ]
-    poles = _knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton) + OUTSIDE)
+    poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton))
+    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles)
     return Targets(
         pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,
@@ -64,25 +60,3 @@ def moved(targets: Targets, by: Array) -> Targets:
     shoulders = targets.shoulders + by[:, None]
     wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])
     return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)
-
-
-def _knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float) -> Array:
-    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
-
-    legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
-    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
-    """
-    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
-    out = []
-    for side, foot in enumerate(feet):
-        outward = 1.0 if side == 0 else -1.0
-        leg = legs[:, side]
-        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - hips, -leg[:, 1])
-        toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
-        aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
-        aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT
-        most = np.minimum(outward * toes + FROM_TOES, MOST_ASIDE)
-        straddled = smooth((lean - STRADDLE[0]) / (STRADDLE[1] - STRADDLE[0]))
-        aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
-        out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
-    return np.stack(out, axis=1)

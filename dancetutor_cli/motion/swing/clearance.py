@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.motion.swing.timing import swung, travelled
 from dancetutor_cli.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
@@ -17,21 +19,30 @@ _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a pat
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
 OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
+ANKLE = 0.069  # metres by which the ankle lies behind the middle of the shoe
+CROSSED = np.radians(112.0)  # legs may cross so far: the line between the ankles, as seen from that between the hips
+WRONG = 0.10  # metres of room that a radian beyond it counts as
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians."""
+    """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians.
+
+    hips : yaw of the body at both, None where legs are not looked at
+    """
 
     start: Array
     start_yaw: float
     end: Array
     end_yaw: float
+    hips: tuple[float, float] | None = None
 
 
 def detour(way: Way, other: Array, other_yaw: Array | float, apart: float, outward: float) -> tuple[float, float]:
     """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
+
+    And so that legs do not go through each other: it leads around the other foot on the side on which the hips turn.
 
     Parameters
     ----------
@@ -50,12 +61,30 @@ def detour(way: Way, other: Array, other_yaw: Array | float, apart: float, outwa
     still = shoe_line(other - BALL_AHEAD * aim, aim)
     gaps = segment_gaps(*shoe_line(straight, ahead), *still)
     need = enough(gaps, e, apart) - 1e-3
-    if (gaps >= need).all():
+    aside = outward * (other - BALL_AHEAD * aim - ANKLE * aim)
+    free = wrung(way, outward * (straight - ANKLE * ahead) - aside)
+    if (gaps >= need).all() and free <= 0.0:
         return 0.0, 0.0
     places = straight + bend(e)[:, None] * (_WAYS @ axes)[:, None]
     room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
+    room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside)
     chosen = _WAYS[np.argmax(room >= min(0.0, room.max()))] @ axes
     return float(chosen[0]), float(chosen[1])
+
+
+def wrung(way: Way, line: Array) -> Array:
+    """How much farther (...) than legs may cross they do on the way, radians, 0 for not at all.
+
+    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start on:
+    who goes around the wrong side of the other foot has gone through the other leg, and is wrung ever more.
+    """
+    if way.hips is None:
+        return np.zeros(line.shape[:-2])
+    hips = way.hips[0] + swung(SHARES) * (way.hips[1] - way.hips[0])
+    angle = np.arctan2(-line[..., 1], line[..., 0]) - hips
+    angle[..., 0] = (angle[..., 0] + np.pi) % (2 * np.pi) - np.pi
+    most = np.abs(np.unwrap(angle, axis=-1)).max(axis=-1)
+    return np.asarray(np.maximum(most - max(CROSSED, abs(float(angle.reshape(-1, len(hips))[0, 0]))), 0.0))
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
@@ -97,18 +126,29 @@ def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
-    gaps = [_point_gap(p, c, d) for p in (a, b)] + [_point_gap(np.broadcast_to(p, a.shape), a, b) for p in (c, d)]
-    apart = np.minimum.reduce(gaps)
-    crossing = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
-    return np.where(crossing, 0.0, apart)
+    p, q, r, t = (np.ascontiguousarray(np.broadcast_to(x, a.shape)).reshape(-1, 2) for x in (a, b, c, d))
+    out = np.empty(a.size // 2)
+    _segment_gaps(p, q, r, t, out)
+    return out.reshape(a.shape[:-1])
 
 
-def _point_gap(p: Array, a: Array, b: Array) -> Array:
-    along = b - a
-    s = np.clip(np.sum((p - a) * along, axis=-1) / np.sum(along * along, axis=-1), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(p - a - s[..., None] * along, axis=-1))
+@njit(cache=True)
+def _segment_gaps(a: Array, b: Array, c: Array, d: Array, out: Array) -> None:
+    for k in range(len(out)):
+        ax, ay, bx, by, cx, cy, dx, dy = a[k, 0], a[k, 1], b[k, 0], b[k, 1], c[k, 0], c[k, 1], d[k, 0], d[k, 1]
+        here = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax), (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
+        there = (dx - cx) * (ay - cy) - (dy - cy) * (ax - cx), (dx - cx) * (by - cy) - (dy - cy) * (bx - cx)
+        if here[0] * here[1] < 0.0 and there[0] * there[1] < 0.0:
+            out[k] = 0.0
+            continue
+        first = min(_point_gap(ax, ay, (cx, cy, dx, dy)), _point_gap(bx, by, (cx, cy, dx, dy)))
+        out[k] = min(first, _point_gap(cx, cy, (ax, ay, bx, by)), _point_gap(dx, dy, (ax, ay, bx, by)))
 
 
-def _side(a: Array, b: Array, p: Array) -> Array:
-    u, v = b - a, p - a
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+@njit(cache=True)
+def _point_gap(x: float, y: float, line: tuple[float, float, float, float]) -> float:
+    """From a point to a segment, given as the places of its ends."""
+    px, py = x - line[0], y - line[1]
+    ux, uy = line[2] - line[0], line[3] - line[1]
+    s = min(max((px * ux + py * uy) / (ux * ux + uy * uy), 0.0), 1.0)
+    return math.hypot(px - s * ux, py - s * uy)

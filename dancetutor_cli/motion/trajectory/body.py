@@ -17,13 +17,13 @@ from dancetutor_cli.motion.trajectory.bar import kept_back, leaning_share
 from dancetutor_cli.motion.trajectory.beat_bounce import beat_bounce
 from dancetutor_cli.motion.trajectory.counter_rotation import counter_rotation
 from dancetutor_cli.motion.trajectory.course import Course
-from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_lean, tempo_factor
+from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_drive, jump_lean, tempo_factor
 from dancetutor_cli.motion.trajectory.facing import chest_and_head, pelvis_yaw
 from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, height_path
 from dancetutor_cli.motion.trajectory.legs import leg_room
 from dancetutor_cli.motion.trajectory.reach import bent_down, leaning_tilt, reaching
 from dancetutor_cli.numerics.controller import Controller, follow
-from dancetutor_cli.numerics.smoothing import low_pass
+from dancetutor_cli.numerics.smoothing import low_pass, smooth_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import GRAVITY, centre_of_mass
@@ -32,6 +32,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 BALANCE, HEIGHT = "her balance", "the height of her body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
+LEAN_SMOOTH = 0.15  # seconds over which she leans into a stream and out of it
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
 
 
@@ -90,11 +91,19 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     leg = settings.body.stance - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
     sink = (np.zeros(len(times)) if gait is None else gait.sink) + settings.layers.bounce * beat
-    mass_height = height_path(_wish(feet, course, context, leg, sink, bent), plan.flights, settings.body)
+    push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times))
+    leg = leg + push * (settings.jump.push - leg)
+    leg = leg + catch * (settings.jump.catch - leg)
+    legs = Legs(leg, sink, bent, settings.jump.drive * np.maximum(push, catch))
+    mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
+    ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
     chest = chest + loose * counter_rotation(feet, course, chest, head, context)
-    tilt = leaning_tilt(plan.presses, course, chest, held, settings)
+    calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, LEAN_SMOOTH)[:, 0]
+    lean = settings.body.lean + settings.body.stream_lean * calm
+    lean = np.radians(lean - held * (lean + settings.bar.lean_back))
+    tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * beat
@@ -151,25 +160,36 @@ def _slowness(y: Array, acceleration: Array, least: float) -> Array:
     return np.asarray(y / np.maximum(acceleration + GRAVITY, least * GRAVITY))
 
 
-def _wish(feet: Feet, course: Course, context: Context, leg: Array, sink: Array, bent: Array) -> HeightWish:
-    """How high the centre of mass would like to be and may be.
+@dataclass(frozen=True, slots=True)
+class Legs:
+    """How she would like to stand at n times.
 
-    leg : (n,) hip to ankle as she would like to stand; sink : (n,) how far a plant or a beat lets her sink
-    bent : (n, 2) as in `reach.bent_down`
+    length : (n,) hip to ankle; sink : (n,) how far a plant or a beat lets her sink, metres
+    bent : (n, 2) as in `reach.bent_down`; firm : (n,) as in `HeightWish`
     """
+
+    length: Array
+    sink: Array
+    bent: Array
+    firm: Array
+
+
+def _wish(feet: Feet, course: Course, context: Context, legs: Legs) -> HeightWish:
+    """How high the centre of mass would like to be and may be."""
     settings, above = context.settings, course.above[:, 1]
     wanted = np.full(len(course.yaw), np.inf)
     highest = np.full(len(course.yaw), np.inf)
     for side in (0, 1):
         most = leg_room(feet, course, context.skeleton, settings.body.soft_reach, side)
-        soft = leg_room(feet, course, context.skeleton, leg, side)
+        soft = leg_room(feet, course, context.skeleton, legs.length, side)
         highest = np.minimum(highest, most)
-        wanted = np.minimum(wanted, np.where(feet[side].down, soft, most - 0.004))
-    lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1])
-    wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - sink
-    share, depth = bent.T
+        standing = feet[side].down | (legs.firm > 0.0)
+        wanted = np.minimum(wanted, np.where(standing, soft, most - 0.004))
+    lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1]) * (legs.firm == 0.0)
+    wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - legs.sink
+    share, depth = legs.bent.T
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
-    return HeightWish(course.times, wanted + above, highest - sink + above, above)
+    return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm)
 
 
 def stepping(feet: Feet, settings: MotionSettings) -> Array:

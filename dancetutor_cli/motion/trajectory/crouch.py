@@ -17,6 +17,9 @@ AROUND = 0.12  # seconds before and after fast steps in which the body is as low
 BEFORE, BEFORE_WIDTH = 0.16, 0.10  # seconds from the lowest place to take-off, and how long the way down and up is
 AFTER, AFTER_WIDTH = 0.11, 0.09  # the same from landing
 NO_TIME, TIME = 0.1, 0.4  # seconds on the ground that leave no time to crouch, and so much more all of it
+AT = 0.025  # seconds around take-off and landing in which legs are as long as those ask for
+LONG = 0.25  # seconds of a flight that is worth the whole swing of both arms
+UP, SWING_WIDTH = 0.06, 0.12  # seconds after take-off at which they are highest; and how long a swing is
 LEAST, MOST = 0.3, 2.0  # parts of the usual crouch for the smallest and the highest jumps
 ONSET, OFFSET = 0.10, 0.12  # seconds that the lean of a jump begins before it and ends after it
 
@@ -50,6 +53,42 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
             near = slice(*np.searchsorted(times, (time - 4 * width, time + 4 * width)))
             out[near] = np.maximum(out[near], size[k] * depth * np.exp(-(((times[near] - time) / width) ** 2)))
     return out
+
+
+def jump_drive(plan: Plan, times: Array) -> tuple[Array, Array]:
+    """Legs that push off and catch: how much (n, 2) of each there is, take-offs and landings, 0 to 1.
+
+    Where there was no time to crouch for it, or is none to give way after it, there is little.
+    """
+    flights = plan.flights
+    out = np.zeros((len(times), 2))
+    if not len(flights):
+        return out[:, 0], out[:, 1]
+    start, end = flights.T
+    rest = np.concatenate(([np.inf], start[1:] - end[:-1], [np.inf]))
+    share = np.clip((rest - NO_TIME) / TIME, 0.0, 1.0)
+    for k in range(len(flights)):
+        for side, time, much in ((0, start[k], share[k]), (1, end[k], share[k + 1])):
+            near = slice(*np.searchsorted(times, (time - AT, time + AT)))
+            bump = np.clip(2.0 * (1.0 - np.abs(times[near] - time) / AT), 0.0, 1.0)
+            out[near, side] = np.maximum(out[near, side], much * bump)
+    return out[:, 0], out[:, 1]
+
+
+def jump_swing(plan: Plan, times: Array) -> Array:
+    """Where arms are (n,) that help a jump: -1 back as she crouches, 1 ahead and up as she leaves the ground."""
+    flights = plan.flights
+    out = np.zeros(len(times))
+    if not len(flights):
+        return out
+    start, end = flights.T
+    rest = np.concatenate(([np.inf], start[1:] - end[:-1]))
+    share = np.clip((rest - NO_TIME) / TIME, 0.0, 1.0) * np.clip((end - start) / LONG, 0.0, 1.0)
+    for k in range(len(flights)):
+        for sign, time in ((-1.0, start[k] - BEFORE), (1.0, start[k] + UP)):
+            near = slice(*np.searchsorted(times, (time - 4 * SWING_WIDTH, time + 4 * SWING_WIDTH)))
+            out[near] += sign * share[k] * np.exp(-(((times[near] - time) / SWING_WIDTH) ** 2))
+    return np.clip(out, -1.0, 1.0)
 
 
 def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:

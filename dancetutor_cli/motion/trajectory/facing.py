@@ -14,7 +14,7 @@ from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import smooth_path
 
 Array = NDArray[np.float64]
-WRUNG = np.radians(110.0)  # before the screen is right behind her, the chest gives up looking at it over so far
+WRUNG = np.radians(120.0)  # before the screen is right behind her, the chest gives up looking at it over so far
 PELVIS_SMOOTH, CHEST_SMOOTH, HEAD_SMOOTH = 0.08, 0.05, 0.04  # seconds over which each of them turns
 
 

@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
 GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
+LOOSE = 1e-3  # how much the wanted height counts in flight
 LEAST_PHASE = 0.012  # seconds; shorter flights are left out: nobody sees them
 
 
@@ -52,12 +53,14 @@ class HeightWish:
 
     times : (n,) seconds; wanted : (n,) where it would like to be; highest : (n,) where it may be, ignored in flight
     above : (n,) how far it is over the pelvis, whose jerk on the ground is least
+    firm : (n,) how much `wanted` counts at take-offs and landings: elsewhere it always counts 1
     """
 
     times: Array
     wanted: Array
     highest: Array
     above: Array
+    firm: Array
 
 
 def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
@@ -132,11 +135,12 @@ def _objective(
     nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wish: HeightWish, body: BodySettings
 ) -> BandedLeastSquares:
     n = len(nodes)
-    wanted, above = (np.interp(nodes, wish.times, x) for x in (wish.wanted, wish.above))
+    wanted, above, firm = (np.interp(nodes, wish.times, x) for x in (wish.wanted, wish.above, wish.firm))
     problem = BandedLeastSquares(n, 1)
     step = np.gradient(nodes) * NODE_RATE
-    ground = ~(np.concatenate(([False], flying)) | np.concatenate((flying, [False])))
-    problem.add(np.arange(n), np.full((n, 1), 1 / UNIT), np.where(ground, step, 1e-3), wanted[:, None] / UNIT)
+    before, after = np.concatenate(([False], flying)), np.concatenate((flying, [False]))
+    counts = np.where(before | after, np.where(before & after, LOOSE, np.maximum(firm, LOOSE)), step)
+    problem.add(np.arange(n), np.full((n, 1), 1 / UNIT), counts, wanted[:, None] / UNIT)
     inner = np.flatnonzero(in_flight)
     fall = _second(nodes)[in_flight] / GRAVITY
     problem.add(inner, fall, np.full(len(inner), 1e6), np.full((len(inner), 1), -1.0))

@@ -53,15 +53,14 @@ def turned_for_hands(presses: Presses, times: Array, hands: HandSettings) -> Arr
     return out
 
 
-def leaning_tilt(presses: Presses, course: Course, chest: Array, held: Array, settings: MotionSettings) -> Array:
+def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, settings: MotionSettings) -> Array:
     """How the chest leans (n, 2), a horizontal direction times an angle: a little forward, and down to each panel.
 
-    chest : (n,) its yaw; held : (n,) 0 to 1, how much she leans back against the bar
+    chest : (n,) its yaw; lean : (n, 2) how it leans where no hand reaches, in the same form
     """
     times, hands = course.times, settings.hands
     forward = np.column_stack((np.sin(chest), np.cos(chest)))
-    lean = np.radians(settings.body.lean - held * (settings.body.lean + settings.bar.lean_back))
-    tilt = lean[:, None] * forward
+    tilt = lean.copy()
     for press in sorted(presses, key=lambda p: p.side):
         down = hands.reach_down
         near = (times > press.start - down) & (times < press.end + down)

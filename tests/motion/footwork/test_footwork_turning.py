@@ -11,7 +11,7 @@ from dancetutor_cli.motion.footwork.footing import FARTHEST_TURN, FREE_WINDOW, N
 from dancetutor_cli.motion.footwork.jumps import Flight, fly
 from dancetutor_cli.motion.footwork.planner import LEAD, _turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
-from dancetutor_cli.motion.ik.targets import FROM_TOES, OUTSIDE, _knee_poles
+from dancetutor_cli.motion.ik.knees import FROM_TOES, knee_poles
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.moves import Jump, Pivot, Step
 from dancetutor_cli.motion.plan import FootTrack, Plan
@@ -86,8 +86,8 @@ def test_knees_point_farther_outward_in_a_straddle() -> None:
     feet = [FootPath(np.zeros((2, 3)), np.full(2, yaw), still, np.ones(2, dtype=bool), still) for yaw in yaws.values()]
     pelvis = np.tile([0.0, 0.85, 0.0], (2, 1))
     ankles = np.array([[[0.10, 0.08, 0.0], [-0.10, 0.08, 0.0]], [[0.62, 0.08, 0.0], [-0.62, 0.08, 0.0]]])
-    hips = half_hips(dancer_skeleton()) + OUTSIDE
-    poles = _knee_poles(still, (feet[0], feet[1]), ankles - pelvis[:, None], hips)
+    hips = half_hips(dancer_skeleton())
+    poles = knee_poles(still, (feet[0], feet[1]), ankles - pelvis[:, None], hips)
     aside = np.arctan2(poles[..., 0], poles[..., 2]) * [1.0, -1.0]  # outward, radians: (stand or straddle, side)
     np.testing.assert_allclose(aside[:, 0], aside[:, 1], atol=1e-9)
     assert (aside[1] > aside[0] + 0.15).all()

@@ -1,0 +1,118 @@
+"""Where knees point: between the body's front and the toes, and out of each other's way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.swing.foot_path import Feet
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.capsules import depth, leg_capsules
+from dancetutor_cli.rig.skeleton import Skeleton
+
+Array = NDArray[np.float64]
+STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
+FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
+OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
+KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
+KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
+ROOM = 0.004  # metres between the legs from which on knees give way
+MOST_GIVEN = np.radians(24.0)  # that a knee gives way
+LOOKED = 0.03  # metres; legs farther apart are left alone
+TRIED = np.radians(1.5)  # how far a knee is turned to see what that does
+FLAT = 1e-4  # square metres per radian; where turning a knee does less it is no use
+ROUNDS, STEPS = 3, 10  # of giving way, and of looking how deep legs are in each other
+
+
+@dataclass(frozen=True, slots=True)
+class Hung:
+    """What legs hang between: pelvis (f, 3) and its rotation (f, 4), ankles (f, 2, 3)."""
+
+    pelvis: Array
+    rotation: Array
+    ankles: Array
+
+
+def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float) -> Array:
+    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
+
+    legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
+    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
+    """
+    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
+    out = []
+    for side, foot in enumerate(feet):
+        outward = 1.0 if side == 0 else -1.0
+        leg = legs[:, side]
+        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - hips - OUTSIDE, -leg[:, 1])
+        toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
+        aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT
+        most = np.minimum(outward * toes + FROM_TOES, MOST_ASIDE)
+        straddled = smooth((lean - STRADDLE[0]) / (STRADDLE[1] - STRADDLE[0]))
+        aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
+        out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
+    return np.stack(out, axis=1)
+
+
+def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array) -> Array:
+    """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
+
+    Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
+    """
+    hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
+    hips = hung.pelvis[:, None] + quat.rotate(hung.rotation[:, None], hips)
+    bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
+    near = np.arange(len(poles))
+    given = np.zeros((len(poles), 2))
+    for _ in range(ROUNDS):
+        legs = _Legs(hips[near], hung.ankles[near], poles[near], (bones[0], bones[1]))
+        deep = legs.depth(given[near])
+        close = deep > -LOOKED
+        near, legs, deep = near[close], legs.some(close), deep[close]
+        if not len(near):
+            break
+        slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
+        need = np.maximum(deep + ROOM, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
+        given[near] = np.clip(given[near] - need[:, None] * slope, -MOST_GIVEN, MOST_GIVEN)
+    out = poles.copy()
+    turned = np.abs(given).max(axis=1) > 0.0
+    out[turned] = _swivelled(hung.ankles[turned] - hips[turned], poles[turned], given[turned])
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class _Legs:
+    """Legs in f frames: hips, ankles, poles (f, 2, 3), lengths of thigh and shank."""
+
+    hips: Array
+    ankles: Array
+    poles: Array
+    bones: tuple[float, float]
+
+    def some(self, keep: NDArray[np.bool_]) -> _Legs:
+        return _Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
+
+    def depth(self, given: Array) -> Array:
+        """How deep (f,) the legs are in each other with knees turned by (f, 2) radians."""
+        thigh, shank = self.bones
+        reach = self.ankles - self.hips
+        far = np.clip(np.linalg.norm(reach, axis=2, keepdims=True), 0.1, thigh + shank - 1e-4)
+        along = (thigh**2 - shank**2 + far**2) / (2.0 * far)
+        out = np.sqrt(np.maximum(thigh**2 - along**2, 0.0))
+        line = reach / np.linalg.norm(reach, axis=2, keepdims=True)
+        knees = self.hips + along * line + out * _swivelled(reach, self.poles, given)
+        legs = [leg_capsules(self.hips[:, s], knees[:, s], self.ankles[:, s]) for s in (0, 1)]
+        return depth(legs[0], legs[1], STEPS)
+
+
+def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
+    """Unit vectors (f, 2, 3) square to hip-ankle lines, in the planes of the poles turned outward by (f, 2) radians."""
+    line = reach / np.linalg.norm(reach, axis=2, keepdims=True)
+    ahead = poles - np.sum(poles * line, axis=2, keepdims=True) * line
+    ahead = ahead / np.linalg.norm(ahead, axis=2, keepdims=True)
+    aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
+    return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)
