@@ -115,16 +115,18 @@ def lozenge(
 
 
 class Legend:
-    """What the markers mean, one under the other from the box's bottom up; hands only where the chart needs them.
+    """What the markers mean, one under the other at the box's bottom; hands only where the chart needs them.
 
-    A dark plate below keeps them readable over a panel of the pad. note : words below the last one
+    A dark plate below keeps them readable over a panel of the pad. note : words below the last one.
+    More lines than the box holds stand out below it: what is above are the song's words.
     """
 
     def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface, note: str = "") -> None:
         names = ("left foot", "right foot", "left hand", "right hand")
         shown = sorted({0, 1} | limbs)
         step, edge = 31 * scale, 8 * scale
-        top = box[3] - step * (len(shown) + bool(note))
+        height = step * (len(shown) + bool(note))
+        top = max(box[3] - height, float(box[1]))
         lines: list[tuple[Sprite, float, float]] = []
         right = float(box[0])
         for row, limb in enumerate(shown):
@@ -136,9 +138,9 @@ class Legend:
             right = max(right, x + text.shape[1])
         if note:
             text = face.sprite(note, 16 * scale, WHITE, weight=0.2 * scale)
-            lines.append((text, box[0], box[3] - 0.5 * step - text.shape[0] / 2))
+            lines.append((text, box[0], top + height - 0.5 * step - text.shape[0] / 2))
             right = max(right, float(box[0] + text.shape[1]))
-        size = round(box[3] - top + 1.2 * edge), round(right - box[0] + 2 * edge)
+        size = round(height + 1.2 * edge), round(right - box[0] + 2 * edge)
         plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
         self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
 

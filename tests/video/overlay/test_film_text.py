@@ -10,6 +10,7 @@ import pytest
 
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.overlay import text
+from dancetutor_cli.video.overlay.captions import Legend
 from dancetutor_cli.video.overlay.fonts import system_fonts
 from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, wrapped
 
@@ -94,3 +95,14 @@ def test_parts_of_a_layout_do_not_cover_each_other(name: str, columns: int) -> N
     for (one, a), (other, b) in combinations(boxes.items(), 2):
         apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
         assert apart or {one, other} == {"calls", "dancer"}, f"{one} and {other}"
+
+
+@pytest.mark.parametrize("name", ["side-by-side", "vertical", "dancer"])
+@pytest.mark.parametrize("columns", [4, 10])
+def test_a_legend_of_five_lines_leaves_the_songs_words_alone(name: str, columns: int) -> None:
+    layout = load_layout(name)
+    part, face = layout.legend, Typeface()
+    assert part is not None
+    box = layout.box("legend", layout.size, columns)
+    legend = Legend({0, 1, 2, 3}, box, part.text, face, "she faces you")
+    assert min(y for _, _, y in legend.lines) >= box[1] - 10 * part.text
