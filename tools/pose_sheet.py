@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import yaml
@@ -72,8 +73,29 @@ def posed(character: Character, turns: dict[str, list[tuple[str, float]]]) -> np
     return world @ character.inverse_bind
 
 
+class _Shape(NamedTuple):
+    """A mesh as it is seen: places on the picture (v, 2), depth (v,), normals (v, 3), texture places, triangles."""
+
+    xy: np.ndarray
+    z: np.ndarray
+    normal: np.ndarray
+    uv: np.ndarray
+    triangles: np.ndarray
+
+
+class _Paint(NamedTuple):
+    """What it is coloured with: texture, colour, and the directions to the light and to the eye."""
+
+    texture: np.ndarray
+    color: np.ndarray
+    light: np.ndarray
+    eye_dir: np.ndarray
+
+
 @njit(cache=True)
-def _draw(xy, z, normal, uv, triangles, texture, color, light, eye_dir, depth, out):
+def _draw(shape, paint, depth, out):
+    xy, z, normal, uv, triangles = shape
+    texture, color, light, eye_dir = paint
     h, w = depth.shape
     th, tw = texture.shape[0], texture.shape[1]
     for t in range(len(triangles)):
@@ -150,19 +172,8 @@ def picture(character: Character, cell: Cell, width: int, height: int) -> Image.
         texture = mesh.material.texture
         if texture is None:
             texture = np.full((1, 1, 4), 255, np.uint8)
-        _draw(
-            xy,
-            z,
-            normal,
-            mesh.uv.astype(np.float64),
-            mesh.triangles,
-            texture,
-            np.array(mesh.material.base_color[:3]),
-            light,
-            back,
-            depth,
-            out,
-        )
+        shape = _Shape(xy, z, normal, mesh.uv.astype(np.float64), mesh.triangles)
+        _draw(shape, _Paint(texture, np.array(mesh.material.base_color[:3]), light, back), depth, out)
     _outline(depth, out)
     small = out.reshape(height, SAMPLES, width, SAMPLES, 3).mean(axis=(1, 3))
     return Image.fromarray(np.clip(small, 0, 255).astype(np.uint8))
