@@ -15,6 +15,7 @@ from dancetutor_cli.physics.follower import follow_all
 from dancetutor_cli.physics.points import place_points, points_of
 from dancetutor_cli.physics.ragdoll import bones_of
 from dancetutor_cli.physics.repin import repinned
+from dancetutor_cli.physics.restrain import restrained
 from dancetutor_cli.physics.simulation import Ragdoll, simulate
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.play.model import Limb
@@ -56,6 +57,8 @@ def through_ragdoll(motion: Motion, style: Style) -> Passed:
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)
+    if style.limits:
+        rotations = restrained(skeleton, rotations)
     rotations, root = repinned(skeleton, (rotations, root), (motion.rotations, motion.root))
     return Passed(replace(motion, rotations=quat.continuous(rotations), root=root), distances)
 

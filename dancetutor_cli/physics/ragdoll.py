@@ -21,6 +21,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 NOMINAL = 1000.0  # kg/m^3 at which springs are measured
+LIMIT = 0.009  # seconds in which a joint comes back from beyond its limit
 FRONT = np.array([0.0, 0.0, 1.0])
 _CHAINS = (  # in the engine's order: each body, then all below it
     ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase"),
@@ -167,7 +168,7 @@ def _body(skeleton: Skeleton, bones: tuple[Bone, ...], index: int, points: tuple
 def _joints(bone: Bone, style: Style) -> str:
     if bone.parent < 0:
         return "<freejoint/>"
-    stiff = f'damping="{style.numbers.stiffness:.6g}" stiffness="{style.numbers.spring:.6g}"'
+    stiff = f'damping="{style.numbers.stiffness:.6g}" stiffness="{style.numbers.spring:.6g}" solreflimit="{LIMIT:g} 1"'
     limited = "true" if style.limits else "false"
     bare = bone.name[2:] if bone.name[1] == "_" else bone.name
     if bone.hinge is None:

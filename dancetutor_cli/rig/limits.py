@@ -71,10 +71,7 @@ def beyond(skeleton: Skeleton, name: str, turns: Array) -> Array:
 
 
 def within(skeleton: Skeleton, name: str, turns: Array, margin: float) -> Array:
-    """The turns (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits.
-
-    The joint's cone is not looked at: there are no cones where there are limits of swings.
-    """
+    """The turns (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits."""
     limit, sign = LIMITS[name.replace("r_", "l_", 1)], -1.0 if name.startswith("r_") else 1.0
     bone = _bone(skeleton, skeleton.index(name))
     swing, twist = quat.swing_twist(turns, bone)
@@ -84,6 +81,7 @@ def within(skeleton: Skeleton, name: str, turns: Array, margin: float) -> Array:
     turned = np.radians(sign * np.clip(turned, limit.twist[0] + margin, limit.twist[1] - margin))
     size = np.linalg.norm(swung, axis=1)
     axis = np.where(size[:, None] > 1e-9, swung / np.maximum(size, 1e-9)[:, None], [1.0, 0.0, 0.0])
+    size = np.minimum(size, limit.cone - margin)
     return quat.multiply(quat.from_axis_angle(axis, np.radians(size)), quat.from_axis_angle(bone, turned))
 
 

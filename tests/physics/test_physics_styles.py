@@ -1,0 +1,62 @@
+"""The styles on a baked dance: apart from each other, and as exact as neutral where a dance game looks."""
+
+from itertools import combinations
+
+import bake_plays as plays
+import numpy as np
+import pytest
+from bake_mirror import mirrored_motion
+
+from dancetutor_cli.bake import Report, bake, report
+from dancetutor_cli.bake.styled import styled
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.physics.style import style_names
+from dancetutor_cli.rig.kinematics import world_transforms
+
+APART = 0.02  # metres of mean joint distance between any two
+FACE = ("braid", "l_eye", "r_eye", "temporo")
+
+
+@pytest.fixture(scope="module")
+def danced() -> dict[str, Motion]:
+    turns = (0, 3, 1, 2, 0, 3, 2, 1, 0, 3)
+    events = [(1.0 + 0.3 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
+    plain = bake(plays.chart(), plays.play(events), plays.pad(), section=(0.6, 4.0))
+    return {name: styled(plain, name, default_settings()).motion for name in style_names()}
+
+
+@pytest.fixture(scope="module")
+def reports(danced: dict[str, Motion]) -> dict[str, Report]:
+    return {name: report(motion) for name, motion in danced.items()}
+
+
+def test_there_are_the_five_of_the_thesis_and_its_input() -> None:
+    assert style_names() == ["feminine", "fierce", "heavy", "lazy", "neutral"]
+
+
+def test_any_two_styles_are_apart(danced: dict[str, Motion]) -> None:
+    places = {}
+    for name, motion in danced.items():
+        shown = [k for k, n in enumerate(motion.skeleton.names) if not n.startswith(FACE)]
+        places[name] = world_transforms(motion.skeleton, motion.rotations, motion.root)[0][:, shown]
+    apart = {(a, b): np.linalg.norm(places[a] - places[b], axis=2).mean() for a, b in combinations(places, 2)}
+    assert min(apart.values()) >= APART, apart
+
+
+@pytest.mark.parametrize("name", style_names())
+def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str, Report], name: str) -> None:
+    figures = ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits")
+    overlaps = ("limb in torso", "foot in foot", "leg in leg", "arm in arm", "arm in leg", "hair in back")
+    for figure in (*figures, *overlaps):
+        assert reports[name][figure].met, (name, reports[name][figure])
+
+
+@pytest.mark.parametrize("name", ["fierce", "feminine"])
+def test_the_mirror_image_of_a_motion_is_styled_to_the_mirror_image(danced: dict[str, Motion], name: str) -> None:
+    """Forces outward, springs and limits have no side."""
+    plain = danced["neutral"]
+    here, there = (styled(m, name, default_settings()).motion for m in (plain, mirrored_motion(plain)))
+    shown = [k for k, n in enumerate(plain.skeleton.names) if not n.startswith(FACE)]
+    a, b = (world_transforms(m.skeleton, m.rotations, m.root)[0] for m in (here, mirrored_motion(there)))
+    assert 1000 * np.abs(a - b)[:, shown].max() < 1.0, "millimetres"
