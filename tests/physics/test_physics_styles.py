@@ -52,6 +52,19 @@ def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str
         assert reports[name][figure].met, (name, reports[name][figure])
 
 
+def test_palms_press_their_panels_on_time_in_every_style() -> None:
+    events = [
+        (1.0, {0: plays.L}),
+        (1.5, {3: plays.R}),
+        (2.5, {0: plays.L, 3: plays.R, 1: plays.LH}),
+        (3.5, {0: plays.L}),
+    ]
+    plain = bake(plays.chart(), plays.play(events), plays.pad(), section=(0.6, 4.0))
+    for name in style_names():
+        measured = report(styled(plain, name, default_settings()).motion)
+        assert measured["contact error"].met and measured["contacts missed"].met, name
+
+
 @pytest.mark.parametrize("name", ["fierce", "feminine"])
 def test_the_mirror_image_of_a_motion_is_styled_to_the_mirror_image(danced: dict[str, Motion], name: str) -> None:
     """Forces outward, springs and limits have no side."""
