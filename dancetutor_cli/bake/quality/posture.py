@@ -9,13 +9,15 @@ from dancetutor_cli.bake.quality.body import Body, intervals
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.smoothness import knee_angles
 from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.play.model import StepKind
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 WRIST = 4.0  # metres per second that a wrist goes at most
 JUMP, BEFORE = 0.15, 0.35  # seconds in the air, and on the ground before it, of a jump that legs have time for
 FOLD, GIVE = 0.5, 0.16  # the middle half of a flight; seconds after landing in which knees give
-WAIT, SETTLED = 2.0, 1.0  # seconds without a note that are a wait; and of its ends that are steps
+WAIT = 4.5  # seconds without a note that are a wait
+HOME, READY = 2.5, 1.0  # seconds of its beginning and its end in which she steps
 
 
 def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...]) -> tuple[Figure, ...]:
@@ -91,11 +93,12 @@ def pelvis_yaw(body: Body, skeleton: Skeleton) -> Array:
 def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:
     """How far (w,) in metres the pelvis goes to and fro over the ground in each wait between notes, its ends left
     out."""
-    busy = np.array(sorted({(c.start, min(c.end, body.times[-1])) for c in contacts})).reshape(-1, 2)
+    ends = [c.end if c.kind == StepKind.HOLD else c.start for c in contacts]  # a foot may stay after a tap
+    busy = sorted({(c.start, float(min(end, body.times[-1]))) for c, end in zip(contacts, ends, strict=True)})
     out, free = [], -np.inf
     for start, end in busy:
-        if start - free >= WAIT:
-            inner = (body.times > free + SETTLED) & (body.times < start - SETTLED)
+        if WAIT <= start - free < np.inf:  # before the first note she walks on
+            inner = (body.times > free + HOME) & (body.times < start - READY)
             if inner.any():
                 place = body.joints[inner, 0][:, [0, 2]]
                 out.append(float(np.ptp((place - place.mean(axis=0)) @ _main_way(place))))
