@@ -17,6 +17,8 @@ from dancetutor_cli.play.model import Limb, Play, StepKind
 
 _EPSILON = 1e-6
 _BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
+WALL = 3  # mines in a row
+HARDLY = 0.15  # seconds since a step in which no foot leaves
 _RIGHT, _NONE, _HOLD, _ROLL_TAP = int(Limb.RIGHT_FOOT), int(StepKind.NONE), int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
@@ -248,8 +250,9 @@ class Feet:
     def mines_under_held(self) -> Iterator[tuple[int, int, int, float]]:
         """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
-        The other foot holds a panel. Where no other panel is free, or the foot holds its other panel itself, there is
-        no time that would do: 0.
+        The other foot holds a panel. Where the foot holds its other panel itself, there is no time that would do: 0.
+        A foot that steps elsewhere in the row has left, and before a wall of mines everybody waits between the panels:
+        those are told only of a foot that has hardly stepped.
         """
         if not self._has_mines:
             return
@@ -266,21 +269,16 @@ class Feet:
             stands = (other >= 0) & (row > 0) & (play.feet[row - 1, foot] == column)
             near[:, foot] = stands | brackets[:, foot]
         for mine, foot in np.argwhere(near).tolist():
-            at = int(row[mine])
-            stuck = brackets[mine, foot] or self._all_mined(at, 1 - foot)
-            yield at, int(column[mine]), foot, 0.0 if stuck else self._since_step(foot, at)
+            at, since = int(row[mine]), self._since_step(foot, int(row[mine]))
+            if (play.limb[at] == foot).any() or (rows.mines[at].sum() >= WALL and since > HARDLY):
+                continue
+            yield at, int(column[mine]), foot, 0.0 if brackets[mine, foot] else since
 
     def _since_step(self, foot: int, row: int) -> float:
         """Seconds since the last step of a foot before a row."""
         steps, seconds = self._of_feet[foot].row, self._play.rows.second
         at = int(steps.searchsorted(row)) - 1
         return float(seconds[row] - seconds[steps[at]]) if at >= 0 else np.inf
-
-    def _all_mined(self, row: int, other: int) -> bool:
-        """Whether every panel that the other foot does not hold has a mine."""
-        mined = self._play.rows.mines[row].copy()
-        mined[self._play.feet[row, other]] = True
-        return bool(mined.all())
 
     def _holding(self, foot: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """For each of some rows the row before in which a foot pressed a hold that is still down, or -1."""

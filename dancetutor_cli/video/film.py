@@ -172,7 +172,10 @@ class Film:
         left, top, right, bottom = self._box("dancer")
         scale = self.scale * (self.layout.header.text if self.layout.header is not None else 1.0)
         gap = round(22 * scale)
-        box = (left + round(0.55 * (right - left)), top + gap, right - gap, bottom)
+        begins = left + round(0.55 * (right - left))
+        if self._header is not None and self._header.title_end[0] > begins:  # a long title: below it
+            top = max(top, round(self._header.title_end[1]) - gap // 2)
+        box = (begins, top + gap, right - gap, bottom)
         return Calls(self.plan.callouts, box, scale, self.face, self.style)
 
     @cached_property

@@ -49,7 +49,7 @@ def test_the_sidecar_says_beat_column_and_limb() -> None:
     ]  # fmt: skip
     hand = feet[0].letters[-1]
     assert charts[0]["steps"] == [
-        [0.0, 0, "left_foot"], [1.0, 3, "right_foot"], [2.0, 1, "left_foot"], [2.0, 2, "right_foot"],
+        [0.0, 0, "left_foot"], [1.0, 3, "right_foot"], [2.0, 1, "right_foot"], [2.0, 2, "left_foot"],
         [4.0, 0, "left_foot"], [4.0, 3, "right_foot"], [6.0, 2, "left_hand" if hand == "<" else "right_hand"],
     ]  # fmt: skip
     lines = "0,0,1,-1\n48,3,1,-1\n96,1,1,-1\n96,2,1,-1\n144,1,4,-1\n192,0,2,336\n192,3,2,336\n288,2,1,-1\n"
@@ -96,7 +96,7 @@ def test_data_sme_has_the_form_of_the_specification() -> None:
     new = smeditor.write(PATH, None, song, feet_of(song))
     assert new is not None
     assert new.startswith(
-        b'{"version":1,"parity":{"dance-single":[{"overrides":[[0,0,"Left"],[1,3,"Right"],[2,1,"Left"],[2,2,"Right"],'
+        b'{"version":1,"parity":{"dance-single":[{"overrides":[[0,0,"Left"],[1,3,"Right"],[2,1,"Right"],[2,2,"Left"],'
         b'[4,0,"Left"],[4,3,"Right"]],"ignores":{}},{"overrides":[[0,0,"Left"]'
     )
     assert smeditor.write(PATH, new, song, feet_of(song)) == new

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import MoveRule
+from dancetutor_cli.lint.rule import Happening, MoveRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
+
+UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
 
 
 class Spin(MoveRule):
@@ -41,3 +43,15 @@ class Spin(MoveRule):
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Spins; DT203 tells of those in a jump."""
         return [row for row in subject.rows_with(self.move) if not subject.is_jump(row)]
+
+    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+        """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
+        play = subject.play
+        if play is None:
+            return
+        for row in self.rows(subject):
+            first = row
+            while first and abs(play.facing[first - 1]) > UNCROSSED:
+                first -= 1
+            steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
+            yield Happening(row, max(map(subject.pause, steps)), self.said)

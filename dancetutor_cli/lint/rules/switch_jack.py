@@ -40,7 +40,7 @@ class SwitchJack(TimedRule):
         """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
         least = max(self.options["min_rows"], 2)
         for rows, limbs in subject.feet.same_panel_runs(least, self.longest(subject)) if subject.feet else ():
-            if len(set(limbs)) > 1:
+            if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"
                 yield Happening(rows[change], max(map(subject.pause, rows[1:])), said)

@@ -29,6 +29,7 @@ KINDS = 2  # different moves in one call at most: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.model.Limb`
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
+_SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
 
@@ -121,7 +122,8 @@ def _moves(subject: ChartSubject, style: CallStyle) -> Iterator[tuple[int, int, 
         if now and not crossed:
             crossed = [ticks[row]]
         kind = now
-        for name in sorted({n for n in names if n in words and n not in _CROSSED}):
+        told = {n for n in names if n in words and n not in _CROSSED}
+        for name in sorted(told - _SAID_BY_A_BRACKET if "bracket" in told else told):
             yield ticks[row], ticks[row], _filled(style, name, play, pad, row), 0
     if crossed and kind in words:
         yield crossed[0], ticks[-1], words[kind], 0

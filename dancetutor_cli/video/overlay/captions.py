@@ -37,6 +37,7 @@ class Header:
     """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
 
     room : share of the box's width for the lines below the title; longer ones are written smaller, then cut off
+    title_end : right and bottom of the title, pixels
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class Header:
         title = face.fit(words.title, title_size, 0.97 * (box[2] - box[0]))
         self.bottom = float(box[1])
         self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], 0)
+        self.title_end = (box[0] + self.lines[0][0].shape[1], self.bottom)
         if words.artist:
             self._line(words.artist, small, box[0], 1 * scale, weight=0.25)
         badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)

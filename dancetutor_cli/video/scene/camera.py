@@ -109,11 +109,7 @@ def preset(
         where it is the whole picture, the camera's own holds
     tall : height of who dances, metres, where it is more than the configured `height` of a camera that shows all of her
     """
-    if name not in look.cameras:
-        meant = did_you_mean(name, look.cameras)
-        names = ", ".join(look.cameras)
-        raise UsageError(f"no camera '{name}'{meant}; there are: {names}, or POSITION/TARGET as x,y,z/x,y,z")
-    settings = look.cameras[name]
+    settings = _named(name, look)
     if region == WHOLE:
         region = settings.region
     if not settings.feet_only:
@@ -159,27 +155,42 @@ def parse(
     text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
 ) -> Camera:
     """A camera from the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
-    if "/" not in text and "," not in text:
+    if _is_name(text):
         return preset(text, extent, size, look, region, tall)
-    parts = text.split("/")
-    try:
-        numbers = [[float(n) for n in part.split(",")] for part in parts]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 2 or any(len(n) != 3 or not all(map(math.isfinite, n)) for n in numbers):
-        raise UsageError(f"camera '{text}' is neither a name nor POSITION/TARGET, for example 1.5,1.8,-4/0,0.9,0")
-    (a, b, c), (d, e, f) = numbers
+    (a, b, c), (d, e, f) = _points(text)
     return free((a, b, c), (d, e, f), look, region)
 
 
 def seen_from_front(text: str, look: Look) -> bool:
     """Does she face this camera, given as on the command line? Then her left is on the right of the picture."""
-    if text in look.cameras:
-        about = look.cameras[text]
+    if _is_name(text):
+        about = _named(text, look)
         return math.cos(math.radians(about.azimuth)) < _FACING and about.elevation < _STRAIGHT_DOWN
-    (px, _, pz), (tx, _, tz) = ([float(n) for n in part.split(",")] for part in text.split("/"))
+    (px, _, pz), (tx, _, tz) = _points(text)
     away = math.hypot(px - tx, pz - tz)
     return away > 1e-3 and (tz - pz) / away < _FACING
+
+
+def _is_name(text: str) -> bool:
+    return "/" not in text and "," not in text
+
+
+def _named(name: str, look: Look) -> CameraLook:
+    if name in look.cameras:
+        return look.cameras[name]
+    meant, names = did_you_mean(name, look.cameras), ", ".join(look.cameras)
+    raise UsageError(f"no camera '{name}'{meant}; there are: {names}, or POSITION/TARGET as x,y,z/x,y,z")
+
+
+def _points(text: str) -> list[list[float]]:
+    """Position and target, three numbers each."""
+    try:
+        numbers = [[float(n) for n in part.split(",")] for part in text.split("/")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 2 or any(len(n) != 3 or not all(map(math.isfinite, n)) for n in numbers):
+        raise UsageError(f"camera '{text}' is neither a name nor POSITION/TARGET, for example 1.5,1.8,-4/0,0.9,0")
+    return numbers
 
 
 def with_pan_range(camera: Camera, low: float, high: float) -> Camera:
