@@ -112,7 +112,8 @@ def _style() -> dict[str, Any]:
         "quantisation": [hex_colour(colour) for colour in style.quantisation.values()],
         "difficulty": {name: hex_colour(colour) for name, colour in style.difficulty.items()},
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
-        "callouts": dict(style.callouts),
+        # beside the notes, whose markers say which foot it is: the move's name where a film says who does it
+        "callouts": {name: name.replace("-", " ") if "{" in said else said for name, said in style.callouts.items()},
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],
         "flash": style.flash_seconds,

@@ -289,13 +289,16 @@ export class Highway {
     const x = m.left + m.lane * this.chart.columns + 5 * m.ratio;
     const room = m.width - x - 2 * m.ratio;
     if (room < 26 * m.ratio) return;
-    c.font = `600 ${Math.round(11 * m.ratio)}px system-ui, sans-serif`;
     c.textAlign = "left";
     c.textBaseline = "middle";
     for (const { second, text, severity } of this.labels) {
       if (second < from || second > until) continue;
       c.fillStyle = this.style.callout[severity];
       let shown = text;
+      for (let size = 11; size >= 8; --size) { // smaller before it is cut
+        c.font = `600 ${Math.round(size * m.ratio)}px system-ui, sans-serif`;
+        if (c.measureText(shown).width <= room) break;
+      }
       while (shown.length > 3 && c.measureText(shown).width > room) shown = `${shown.slice(0, -2)}…`;
       c.fillText(shown, x, y(second));
     }
