@@ -118,6 +118,19 @@ def test_she_waits_until_each_row_is_pressed(browser: Browser) -> None:
     assert "2 hit" in text(browser, ".score")
 
 
+def test_she_waits_in_every_pass_of_a_loop(browser: Browser, page_file: Path) -> None:
+    """Waiting is switched on at the loop's end: no row behind it is waited for; the next pass waits at its first."""
+    browser.open(page_file, "#m1-2@2")
+    while second(browser) < 3.9:  # from the lead-in, by measures
+        browser.key("PageDown")
+    assert second(browser) == pytest.approx(4.0, abs=0.02)
+    browser.key("w", "KeyW")
+    browser.key(" ", "Space")
+    browser.wait(f"{NOW} < 3 && document.querySelector('.said').textContent.startsWith('waiting')")
+    assert second(browser) == pytest.approx(2.0, abs=0.02)
+    assert "0 hit" in text(browser, ".score") and "0 missed" in text(browser, ".score")
+
+
 def test_panels_can_be_given_other_keys(browser: Browser) -> None:
     browser.click("#tab-along")
     browser.click("#assign")

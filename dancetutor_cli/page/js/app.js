@@ -187,7 +187,7 @@ export class App {
   pass() {
     const { loop } = this.transport;
     if (!loop) return;
-    this.judge.advance(loop.b + 1, this.transport.rate);
+    if (!this.wait) this.judge.advance(loop.b + 1, this.transport.rate);
     const { miss } = this.judge.tally(loop.a, loop.b);
     ++this.passes;
     if (this.settings.ramp) this.transport.rate = ramp(this.transport.rate, miss, this.along);
@@ -196,6 +196,7 @@ export class App {
     }
     this.tell("pass");
     if (this.along) this.restartJudge(loop.a);
+    this.updateHold();
     if (this.settings.ramp) this.writeLink();
   }
 
@@ -228,7 +229,8 @@ export class App {
   /** While the clock waits for rows it does not pass the first one that is not pressed. */
   updateHold() {
     const row = this.wait ? this.judge.open(-Infinity) : null;
-    this.transport.holdAt(row ? row.second : Infinity);
+    const { loop } = this.transport; // beyond its end nothing is waited for: it begins anew
+    this.transport.holdAt(row && !(loop && row.second >= loop.b) ? row.second : Infinity);
   }
 
   /** A panel is pressed, some seconds ago. @param {number} column @param {number} ago */
