@@ -13,7 +13,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from feet_data import Labelled
-from feet_lattice import BY_SIZE, CURVES, FIXED, WEIGHTS, Book, Lattice, book, flags, move_costs, sums, viterbi
+from feet_lattice import (
+    BY_SIZE,
+    CURVES,
+    FIXED,
+    WEIGHTS,
+    Asked,
+    Book,
+    Charges,
+    Lattice,
+    Slopes,
+    book,
+    flags,
+    move_costs,
+    sums,
+    viterbi,
+)  # fmt: skip
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
@@ -116,12 +131,10 @@ def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats |
         b = share.book
         cost, timed = _priced(share, found)
         by_move, by_time = np.zeros(len(b.terms)), np.zeros_like(timed)
-        scratch = np.zeros(max(len(x.move) for x in share.lattices))
+        charges = Charges(b.facts, b.action, cost, timed)
+        slopes = Slopes(by_move, by_time, np.zeros(max(len(x.move) for x in share.lattices)))
         for x in share.lattices:
-            total -= share.weight * sums(
-                x.first, x.move, x.source, x.target, x.width, x.elapsed, b.facts, b.action, x.mask, x.value, cost,
-                timed, by_move, by_time, scratch, x.skip,
-            )  # fmt: skip
+            total -= share.weight * sums(x.ways, x.asked, charges, slopes)
             rows += share.weight * int(x.labelled.sum())
         gradient -= share.weight * _by_parameter(share, by_move, by_time)
     curves = found[len(WEIGHTS) :].reshape(len(CURVES), len(KNOTS))
@@ -204,11 +217,7 @@ def _mistakes(share: Share, found: Floats) -> Floats:
 
 def _path(b: Book, x: Lattice, cost: Floats, timed: Floats, *, bound: bool) -> NDArray[np.int64]:
     mask = x.mask if bound else np.zeros_like(x.mask)
-    return np.asarray(
-        viterbi(
-            x.first, x.move, x.source, x.target, x.width, x.elapsed, b.facts, b.action, mask, x.value, cost, timed
-        )
-    )  # fmt: skip
+    return np.asarray(viterbi(x.ways, Asked(mask, x.value, x.skip), Charges(b.facts, b.action, cost, timed)))
 
 
 def right(found: Floats, data: Iterable[Share]) -> dict[str, NDArray[np.bool_]]:

@@ -7,6 +7,7 @@ and costs of any other weights are a product. Fixed weights (`FIXED`) stay what 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from feet_data import Labelled
@@ -46,6 +47,16 @@ class Lattice:
     mask: NDArray[np.int64]
     value: NDArray[np.int64]
     skip: NDArray[np.bool_]
+
+    @property
+    def ways(self) -> Ways:
+        """The edges for the kernels."""
+        return Ways(self.first, self.move, self.source, self.target, self.width, self.elapsed)
+
+    @property
+    def asked(self) -> Asked:
+        """The labels for the kernels."""
+        return Asked(self.mask, self.value, self.skip)
 
     @property
     def labelled(self) -> NDArray[np.bool_]:
@@ -161,13 +172,49 @@ def move_costs(book_: Book, weights: NDArray[np.float64]) -> NDArray[np.float64]
     return np.asarray((book_.counts @ weights)[book_.terms.clip(0, len(book_.counts) - 1)])
 
 
-@njit(cache=True, nogil=True)
-def sums(first, move, source, target, width, elapsed, facts, action, mask, value, cost, timed, gm, gt, edge, skip):  # type: ignore[no-untyped-def]
-    """Log-likelihood of the labels of one chart, and its derivative by the cost of every move and (ms, facts).
+class Ways(NamedTuple):
+    """A lattice's edges for the kernels, see `Lattice`."""
 
-    cost : (moves,), timed : (MOST_MS + 1, f), in nats; gm, gt : the derivatives, added to; edge : scratch
-    skip : rows whose label no way can have; written
-    """
+    first: NDArray[np.int64]
+    move: NDArray[np.int32]
+    source: NDArray[np.int32]
+    target: NDArray[np.int32]
+    width: NDArray[np.int32]
+    elapsed: NDArray[np.int32]
+
+
+class Asked(NamedTuple):
+    """What the labels of a lattice ask for, see `Lattice`."""
+
+    mask: NDArray[np.int64]
+    value: NDArray[np.int64]
+    skip: NDArray[np.bool_]
+
+
+class Charges(NamedTuple):
+    """What moves do and cost. facts, action : see `Book`; cost : (moves,), timed : (MOST_MS + 1, f), in nats"""
+
+    facts: NDArray[np.int64]
+    action: NDArray[np.int64]
+    cost: NDArray[np.float64]
+    timed: NDArray[np.float64]
+
+
+class Slopes(NamedTuple):
+    """Derivatives by the cost of every move (moves,) and of (ms, facts), added to; edge : scratch, (e,) of any chart"""
+
+    move: NDArray[np.float64]
+    time: NDArray[np.float64]
+    edge: NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True)
+def sums(ways, asked, charges, slopes):  # type: ignore[no-untyped-def]
+    """Log-likelihood of the labels of one chart, its derivatives into `slopes`; writes `asked.skip`."""
+    first, move, source, target, width, elapsed = ways
+    mask, value, skip = asked
+    facts, action, cost, timed = charges
+    gm, gt, edge = slopes
     n = len(width) - 1
     most = 0
     for r in range(n + 1):
@@ -226,8 +273,11 @@ def sums(first, move, source, target, width, elapsed, facts, action, mask, value
 
 
 @njit(cache=True, nogil=True)
-def viterbi(first, move, source, target, width, elapsed, facts, action, mask, value, cost, timed):  # type: ignore[no-untyped-def]
-    """Moves of the cheapest way through one chart among those with the labelled feet; `mask` 0: among all."""
+def viterbi(ways, asked, charges):  # type: ignore[no-untyped-def]
+    """Moves of the cheapest way through one chart among those with the labelled feet; a mask of 0: among all."""
+    first, move, source, target, width, elapsed = ways
+    mask, value, _ = asked
+    facts, action, cost, timed = charges
     n = len(width) - 1
     offset = np.zeros(n + 2, np.int64)
     for r in range(n + 1):

@@ -113,8 +113,8 @@ def _room(t):  # type: ignore[no-untyped-def]
 
 @njit
 def _rank(key):  # type: ignore[no-untyped-def]
-    """Where a state stands in its layer, above `_RANK_SHIFT`. Of ways as cheap the first is taken, as people choose:
-    the left foot steps first, and in a jump it is on the column further to the left.
+    """Where a state (packed, int64) stands in its layer, above `_RANK_SHIFT`: of ways as cheap that meet again the one
+    from the first state is taken. As people choose: the left foot has stepped last, and stands further to the left.
     """
     left, right, rest = key & _PLACE, key >> PLACE_BITS & _PLACE, key >> 2 * PLACE_BITS
     return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
