@@ -148,6 +148,11 @@ class Browser:
                 windowsVirtualKeyCode=number,
                 **({"text": text} if text and kind == "keyDown" else {}),
             )  # fmt: skip
+        self.drawn()
+
+    def drawn(self) -> None:
+        """Wait until the page has drawn what it was told: what it says of itself is of its last picture."""
+        self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """Mouse event: "mousePressed", "mouseMoved", "mouseReleased"."""
@@ -159,6 +164,7 @@ class Browser:
         x, y, width, height = self.box(selector)
         for kind in ("mousePressed", "mouseReleased"):
             self.mouse(kind, x + width / 2, y + height / 2)
+        self.drawn()
 
     def box(self, selector: str) -> tuple[float, float, float, float]:
         """Left, top, width and height of an element, scrolled into view."""

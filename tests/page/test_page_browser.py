@@ -96,9 +96,9 @@ def test_the_strip_seeks_and_makes_loops(browser: Browser) -> None:
 def press_pad(browser: Browser, *buttons: int) -> None:
     """Press buttons together, long enough to be seen by a picture, and let go."""
     browser.run(f"for (const b of {list(buttons)}) window.pad.buttons[b].pressed = true")
-    browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    browser.drawn()
     browser.run(f"for (const b of {list(buttons)}) window.pad.buttons[b].pressed = false")
-    browser.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    browser.drawn()
 
 
 def test_she_waits_until_each_row_is_pressed(browser: Browser) -> None:
