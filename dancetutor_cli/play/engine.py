@@ -18,8 +18,8 @@ from dancetutor_cli.play.jit import INTERPRETED
 from dancetutor_cli.play.kernel import PRICE, run
 from dancetutor_cli.play.model import Limb, Rows
 from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.store import Found, Nodes, RowArrays, Rules, Tables
-from dancetutor_cli.play.tables import MOST_MOVES, geometry, moves
+from dancetutor_cli.play.store import Found, Nodes, RowArrays, Tables
+from dancetutor_cli.play.tables import MOST_MOVES, Rules, geometry, moves
 from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
@@ -35,19 +35,20 @@ class Engine:
 
     def __init__(self, pad: Pad, preset: Preset) -> None:
         self.pad, self.preset = pad, preset
-        self.geometry = geometry(pad)
         self.terms = MODELS[preset.model].terms
-        self._model = list(MODELS).index(preset.model)
         self._explore = _EXPLORERS[preset.model]
-        self._rules = Rules(
+        self.rules = Rules(
+            list(MODELS).index(preset.model),
+            geometry(pad),
             np.array([value for _, value in preset.weights], dtype=np.int64),
-            curve_table(preset),
             np.array([value for _, value in preset.switches], dtype=np.bool_),
+            curve_table(preset),
             np.array(pad.home, dtype=np.int64),
         )
         self._moves = moves(len(preset.weights))
         self.tables = _empty_tables(len(preset.weights))
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
+        self._scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
 
     def cheapest(self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False) -> Found:
         """The cheapest way through rows.
@@ -85,19 +86,18 @@ class Engine:
             (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
             nothing,
             nothing.astype(np.uint8),
+            self._scratch,
         )
 
     def price(self, rows: Rows, found: Found) -> NDArray[np.int32]:
         """Cost of each row of a way by term, (n, t)."""
-        cost = np.empty((len(rows), len(self.terms)), dtype=np.int32)
-        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node), cost, found)
-        return cost
+        priced = found._replace(cost=np.empty((len(rows), len(self.terms)), dtype=np.int32))
+        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node), priced)
+        return priced.cost
 
-    def _call(
-        self, arrays: RowArrays, row: int, nodes: Nodes, cost: NDArray[np.int32], found: Found
-    ) -> tuple[int, int]:
+    def _call(self, arrays: RowArrays, row: int, nodes: Nodes, found: Found) -> tuple[int, int]:
         with _wrapping():
-            return run(arrays, row, self.tables, nodes, self._model, self.geometry, self._rules, cost, found)
+            return run(arrays, row, self.tables, nodes, self.rules, found)
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, Nodes]:
         n, c = arrays.steps.shape
@@ -110,13 +110,13 @@ class Engine:
             np.empty((n, c), dtype=np.uint8),
             np.empty(n if margins else 0, dtype=np.int64),
             np.empty(n if margins else 0, dtype=np.uint8),
+            self._scratch,
         )
         wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
         nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
-        scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
         row, wanted = 0, -1
         while wanted != store.DONE:
-            row, wanted = self._call(arrays, row, nodes, scratch, found)
+            row, wanted = self._call(arrays, row, nodes, found)
             if wanted == store.UNEXPLORED:
                 self._explore_from(row, arrays, nodes)
             elif wanted == store.MORE_NODES:
@@ -131,10 +131,7 @@ class Engine:
         before = self.tables.transition[nodes.transition[row - 1], store.TO_LAYER] if row else store.START
         while wanted != store.DONE:
             with _wrapping():
-                wanted = self._explore(
-                    row, np.int64(before), arrays.pattern, self.tables, self.geometry, self._rules.weights,
-                    self._rules.switches, self._moves,
-                )  # fmt: skip
+                wanted = self._explore(row, np.int64(before), arrays.pattern, self.tables, self.rules, self._moves)
             if wanted != store.DONE:
                 self.tables = _grown(self.tables, wanted, len(arrays.tick))
 

@@ -56,7 +56,7 @@ from dancetutor_cli.play.store import (
     number_of_terms,
     slot_of,
 )  # fmt: skip
-from dancetutor_cli.play.tables import MOST_MOVES, Geometry, Moves
+from dancetutor_cli.play.tables import MOST_MOVES, Geometry, Moves, Rules
 from dancetutor_cli.play.thesis_moves import expand_thesis
 
 _RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
@@ -65,10 +65,15 @@ _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PAR
 
 
 @njit
-def _borrowed_geometry(g):  # type: ignore[no-untyped-def]
-    return Geometry(
+def _borrowed_rules(rules):  # type: ignore[no-untyped-def]
+    g = rules.geometry
+    geometry = Geometry(
         borrowed(g.left), borrowed(g.right), borrowed(g.angle), borrowed(g.distance), borrowed(g.place),
         borrowed(g.panels), borrowed(g.mask), borrowed(g.arrow),
+    )  # fmt: skip
+    return Rules(
+        rules.model, geometry, borrowed(rules.weights), borrowed(rules.switches), borrowed(rules.curves),
+        borrowed(rules.home),
     )  # fmt: skip
 
 
@@ -137,14 +142,14 @@ def _sort(values, count):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _connect(key, layer, packed, found, reached, slot, t):  # type: ignore[no-untyped-def]
+def _connect(key, packed, found, reached, slot, t):  # type: ignore[no-untyped-def]
     """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
 
     key : layer << 32 | pattern; packed : of each state of the layer, what `Tables.pair` says
     reached : rank and number of each of the `found` next states, in any order; slot : scratch, by state
     """
     counts, moves, ends, transition = t.counts, t.move, t.ends, t.transition
-    size, total = t.layer[layer, LAYER_SIZE], 0
+    size, total = t.layer[key >> 32, LAYER_SIZE], 0
     for i in range(size):
         total += packed[i] & 0xFFFF
     if counts[EDGES] + total > len(ends):
@@ -186,11 +191,10 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
     kernel looks different in every process, so that nothing would ever be found again.
     """
 
-    def explore(row, layer, pattern, t, g, weights, switches, out):  # type: ignore[no-untyped-def]
+    def explore(row, layer, pattern, t, rules, out):  # type: ignore[no-untyped-def]
         """From the layer before `row` to the last row: meet every state, keep all moves. Returns what has no room."""
         assert len(stamp)
-        g = _borrowed_geometry(g)
-        weights, switches = borrowed(weights), borrowed(switches)
+        rules = _borrowed_rules(rules)
         out = Moves(borrowed(out.wide), borrowed(out.terms), borrowed(out.scratch))
         counts, pairs, keys = t.counts, t.pair, t.state_key
         packed, reached = np.zeros(256, dtype=np.int64), np.zeros(256, dtype=np.int64)
@@ -213,9 +217,7 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
                     wanted = _room(t)
                     if wanted != DONE:
                         return wanted
-                    count = expand(
-                        keys[state], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], g, weights, switches, out
-                    )
+                    count = expand(keys[state], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], rules, out)
                     pairs[at, 0], pairs[at, 1] = key, _keep(count, out, t)
                     counts[PAIRS] += 1
                 packed[i] = pairs[at, 1]
@@ -230,7 +232,7 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
                         seen[state] = r
                         reached[found] = _rank(keys[state]) | state
                         found += 1
-            wanted = _connect(layer << 32 | pattern[r], layer, packed, found, reached, slot, t)
+            wanted = _connect(layer << 32 | pattern[r], packed, found, reached, slot, t)
             if wanted != DONE:
                 return wanted
             layer = np.int64(t.transition[counts[TRANSITIONS] - 1, TO_LAYER])

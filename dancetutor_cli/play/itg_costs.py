@@ -53,12 +53,13 @@ def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """What the feet of a row cost, not counting the pose. Facts and events.
 
     pressed : bits of left and right; ended : bits of panels whose holds ended just now, since the last row, and in the
         very moment of the last row
     """
+    g, w = rules.geometry, rules.weights
     left, right = pressed[0], pressed[1]
     facts = events = distance = brackets = 0
     for foot in range(2):
@@ -70,7 +71,7 @@ def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-unty
         if g.panels[s[foot], foot, 1] >= 0:
             brackets += 1
             events |= EVENT_BRACKET
-            _charge_direction(s, foot, terms, g, w)
+            _charge_direction(s, foot, terms, rules)
         old = g.mask[before[foot]]
         if ended[0] & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
@@ -93,7 +94,7 @@ def charge_feet(before, s, pressed, ended, terms, g, w):  # type: ignore[no-unty
         if brackets:
             holds = before[LEFT_HELD + foot] and not before[LEFT_HELD + 1 - foot]
             facts |= _F_HELD_BRACKET if holds else _F_BRACKET
-        more, happened = _charge_step(before, foot, pressed[foot], ended, terms, g, w)
+        more, happened = _charge_step(before, foot, pressed[foot], ended, terms, rules)
         facts |= more
         events |= happened
     return facts | min(distance, (1 << _DISTANCE_BITS) - 1), events
@@ -110,8 +111,9 @@ def _is_apart(stands, pressed, place):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _charge_direction(s, foot, terms, g, w):  # type: ignore[no-untyped-def]
+def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
     """Where a foot on two panels points: outward in front, as it likes best, costs nothing."""
+    g, w = rules.geometry, rules.weights
     heel, toe = g.panels[s[foot], foot, 0], g.panels[s[foot], foot, 1]
     inward = (g.left[toe, 0] - g.left[heel, 0]) * (1 if foot == 0 else -1) > EPSILON
     back = g.left[s[foot], 1] < g.left[len(g.arrow), 1] - EPSILON
@@ -126,8 +128,9 @@ def _charge_direction(s, foot, terms, g, w):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _charge_step(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
+    g, w = rules.geometry, rules.weights
     facts = events = 0
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     again = before[LAST] == foot + 1
@@ -146,15 +149,16 @@ def _charge_step(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-
         else:
             facts |= _F_SWITCH
     if again:
-        more, happened = _charge_doublestep(before, foot, pressed, ended, terms, g, w)
+        more, happened = _charge_doublestep(before, foot, pressed, ended, terms, rules)
         facts |= more
         events |= happened
     return facts, events
 
 
 @njit
-def _charge_doublestep(before, foot, pressed, ended, terms, g, w):  # type: ignore[no-untyped-def]
+def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
+    g, w = rules.geometry, rules.weights
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     if before[LEFT_HELD + foot]:
         return 0, EVENT_FORCED  # a bracket on what it holds
@@ -176,8 +180,9 @@ def _charge_doublestep(before, foot, pressed, ended, terms, g, w):  # type: igno
 
 
 @njit(inline="always")
-def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def]
+def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-def]
     """What facing and stance after the row cost. Facts and events."""
+    g, w = rules.geometry, rules.weights
     facts = events = 0
     angle = g.angle[s[0], s[1]]
     degrees, spin, s[SIDE] = turn(g.angle[before[0], before[1]], before[SIDE], angle)
@@ -219,8 +224,9 @@ def charge_pose(before, s, pressed, terms, g, w):  # type: ignore[no-untyped-def
 
 
 @njit(inline="always")
-def charge_mines(before, s, pressed, mines, terms, g, w):  # type: ignore[no-untyped-def]
+def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-untyped-def]
     """A foot that stays on a mine has to get off it, and is lifted from then on; a foot that presses is down again."""
+    g, w = rules.geometry, rules.weights
     for foot in range(2):
         if pressed[foot]:
             s[LEFT_LIFTED + foot] = 0

@@ -7,6 +7,8 @@ Large functions are inlined by numba, because it compiles each function again wi
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from dancetutor_cli.play.itg_costs import (
@@ -48,6 +50,22 @@ UNPLAYED = 5
 BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8)  # rows of `Moves.scratch`
 
 
+Whole = int | np.int64  # what Python and numba call a whole number
+
+
+class _Asked(NamedTuple):
+    """What a row asks for.
+
+    row : its packed masks; steps : panels to press; kept : those of them that are pressed by keeping them down
+    forced : limb codes of overrides, and holds that ended in the last row
+    """
+
+    row: Whole
+    steps: Whole
+    kept: Whole
+    forced: Whole
+
+
 @njit
 def start_itg(home):  # type: ignore[no-untyped-def]
     """Left and right foot on the panels of the starting stance, no last leg."""
@@ -62,8 +80,9 @@ def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _ways_of_foot(s, foot, steps, brackets, ways, to, g):  # type: ignore[no-untyped-def]
-    """What a foot can press in a row: panels as bits into `ways`, its place then into `to`. Returns how many."""
+def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def]
+    """What a foot can press of `steps`: panels, and its place then, into `out.scratch`. Returns in how many ways."""
+    s, ways, to = out.scratch[BEFORE], out.scratch[LEFT_WAYS + foot], out.scratch[LEFT_TO + foot]
     held = held_by(s, foot, g.panels)
     ways[0], to[0] = 0, s[foot]
     m, c = 1, g.place.shape[0]
@@ -95,14 +114,15 @@ def _bits(mask):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _emit(out, m, row, earlier, steps, pressed, holders, switched, kept, g, w):  # type: ignore[no-untyped-def]
+def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-def]
     """Write one way to play a row.
 
-    pressed : bits of the panels that left foot, right foot, left hand and right hand press, and room for two more
     holders : feet that keep a roll down; switched : panel on which the feet change during a hold, or -1
-    kept : panels that are pressed by keeping them down. The new places of the feet are in scratch `AFTER`.
+    The new places of the feet are in scratch `AFTER`; in `PRESS` stand the bits of the panels that left foot, right
+    foot, left hand and right hand press, and there is room behind them.
     """
-    before, s, terms = out.scratch[BEFORE], out.scratch[AFTER], out.terms[m]
+    g, w, row, steps, kept = rules.geometry, rules.weights, asked.row, asked.steps, asked.kept
+    before, s, pressed, terms = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS], out.terms[m]
     for i in range(2, NUMBERS):
         s[i] = before[i]
     for i in range(len(terms)):
@@ -112,10 +132,10 @@ def _emit(out, m, row, earlier, steps, pressed, holders, switched, kept, g, w): 
     feet = pressed[4:6]
     ended = pressed[6:9]
     ended[0] = row >> RELEASED & _MASK if row >> FRESH & 1 else np.int64(0)
-    ended[1], ended[2] = row >> RELEASED & _MASK, earlier
-    facts, events = charge_feet(before, s, feet, ended, terms, g, w)
+    ended[1], ended[2] = row >> RELEASED & _MASK, asked.forced >> EARLIER & _MASK
+    facts, events = charge_feet(before, s, feet, ended, terms, rules)
     if left or right:
-        posed, happened = charge_pose(before, s, feet, terms, g, w)
+        posed, happened = charge_pose(before, s, feet, terms, rules)
         facts |= posed
         events |= happened
     holds, rolls = row >> HOLDS & _MASK, row >> ROLLS & _MASK
@@ -130,7 +150,7 @@ def _emit(out, m, row, earlier, steps, pressed, holders, switched, kept, g, w): 
         s[LAST] = 0
     elif left or right:
         s[LAST] = 1 if left else 2
-    charge_mines(before, s, feet, row >> MINES & _MASK, terms, g, w)
+    charge_mines(before, s, feet, row >> MINES & _MASK, terms, rules)
     if switched >= 0:
         terms[HOLDSWITCH] = w[HOLDSWITCH]
         events |= EVENT_HOLDSWITCH
@@ -183,21 +203,22 @@ def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _with_hands(out, m, row, steps, kept, switched, forced, g, w):  # type: ignore[no-untyped-def]
+def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped.
 
     Of more steps than free hands the left hand takes the one furthest to the left, the right hand that to the right:
     nobody can play such a row, and to list every choice would take very long where there are ten steps.
     """
+    g, forced = rules.geometry, asked.forced
     before, pressed = out.scratch[BEFORE], out.scratch[PRESS]
     c = g.place.shape[0]
-    rest = steps & ~(pressed[0] | pressed[1])
+    rest = asked.steps & ~(pressed[0] | pressed[1])
     left_free, right_free = before[LEFT_HOLDS] == 0, before[LEFT_HOLDS + 1] == 0
     hands = min(_bits(rest), left_free + right_free)
     crowded = _bits(rest) > hands and not forced & _FORCED
     leftmost = _outermost(rest, g.left, -1)
     rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)
-    rolls = row >> ROLLS & _MASK
+    rolls = asked.row >> ROLLS & _MASK
     for i in range(-1, c):
         if i >= 0 and (not (rest >> i & 1 and left_free) or (crowded and i != leftmost)):
             continue
@@ -212,18 +233,19 @@ def _with_hands(out, m, row, steps, kept, switched, forced, g, w):  # type: igno
             for holders in range(4):
                 if (holders & 1 and not pressed[0] & rolls) or (holders & 2 and not pressed[1] & rolls):
                     continue
-                m = _emit(out, m, row, forced >> EARLIER & _MASK, steps, pressed, holders, switched, kept, g, w)
+                m = _emit(out, m, asked, holders, switched, rules)
     return m
 
 
 @njit(inline="always")
-def _feet(out, row, steps, kept, keepers, brackets, forced, g, w):  # type: ignore[no-untyped-def]
+def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
     """Every way to share a row between the feet that leaves the fewest steps to hands."""
-    before, after, pressed = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
+    steps, kept, after, pressed = asked.steps, asked.kept, out.scratch[AFTER], out.scratch[PRESS]
+    keepers = out.scratch[PANELS]
     left_ways, right_ways = out.scratch[LEFT_WAYS], out.scratch[RIGHT_WAYS]
     left_to, right_to = out.scratch[LEFT_TO], out.scratch[RIGHT_TO]
-    lefts = _ways_of_foot(before, 0, steps & ~kept, brackets, left_ways, left_to, g)
-    rights = _ways_of_foot(before, 1, steps & ~kept, brackets, right_ways, right_to, g)
+    lefts = _ways_of_foot(out, 0, steps & ~kept, brackets, rules.geometry)
+    rights = _ways_of_foot(out, 1, steps & ~kept, brackets, rules.geometry)
     most = 0
     for i in range(lefts):
         for j in range(rights):
@@ -233,20 +255,20 @@ def _feet(out, row, steps, kept, keepers, brackets, forced, g, w):  # type: igno
     for i in range(lefts):
         for j in range(rights):
             both = left_ways[i] | right_ways[j]
-            if left_ways[i] & right_ways[j] or (_bits(both) < most and not forced & _FORCED):
+            if left_ways[i] & right_ways[j] or (_bits(both) < most and not asked.forced & _FORCED):
                 continue
             pressed[0], pressed[1] = left_ways[i] | kept & keepers[0], right_ways[j] | kept & keepers[1]
             after[LEFT_AT], after[RIGHT_AT] = left_to[i], right_to[j]
-            m = _with_hands(out, np.int64(m), row, steps, kept, np.int64(-1), forced, g, w)
+            m = _with_hands(out, np.int64(m), asked, np.int64(-1), rules)
     return m
 
 
 @njit(inline="always")
-def _holdswitches(out, m, row, steps, forced, g, w):  # type: ignore[no-untyped-def]
+def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
     """One step while one foot holds: the free foot may take over the hold, and the other one steps."""
-    before, after, pressed = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
+    g, before, after, pressed = rules.geometry, out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
     step = 0
-    while not steps >> step & 1:
+    while not asked.steps >> step & 1:
         step += 1
     for foot in range(2):
         panel = g.panels[before[foot], foot, 0]
@@ -254,16 +276,17 @@ def _holdswitches(out, m, row, steps, forced, g, w):  # type: ignore[no-untyped-
             continue
         pressed[foot], pressed[1 - foot] = 1 << step, 0
         after[foot], after[1 - foot] = step, panel
-        m = _with_hands(out, np.int64(m), row, steps, np.int64(0), panel, forced, g, w)
+        m = _with_hands(out, np.int64(m), asked, panel, rules)
     return m
 
 
 @njit
-def expand_itg(key, row, forced, g, w, switches, out):  # type: ignore[no-untyped-def]
+def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """All ways to play a row from a state, into `out`; returns their number, at least 1.
 
-    row : packed masks of the row; forced : limb codes of overrides; w : weights
+    row : packed masks of the row; forced : limb codes of overrides
     """
+    g, switches = rules.geometry, rules.switches
     before, keepers = out.scratch[BEFORE], out.scratch[PANELS]
     unpack(key, before)
     steps = (row >> TAPS | row >> HOLDS | row >> ROLLS | row >> ROLL_TAPS) & _MASK
@@ -282,7 +305,7 @@ def expand_itg(key, row, forced, g, w, switches, out):  # type: ignore[no-untype
         elif attempt == 2:  # overrides nobody can follow
             brackets, forced = switches[0], forced & ~_FORCED
         if m == 0:
-            m = _feet(out, row, steps, kept, keepers, brackets, forced, g, w)
+            m = _feet(out, _Asked(row, steps, kept, forced), brackets, rules)
         if attempt == 0 and switches[1] and steps and steps & steps - 1 == 0 and not kept:
-            m = _holdswitches(out, m, row, steps, forced, g, w)
+            m = _holdswitches(out, m, _Asked(row, steps, kept, forced), rules)
     return m

@@ -269,30 +269,30 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
 
 def _compile(stamp: str) -> Any:
     @njit(cache=True)
-    def run(rows, start_row, t, nodes, model, g, rules, cost, found):  # type: ignore[no-untyped-def]
+    def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
         """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
 
-        From PRICE on: write the cost of the rows of `found.move` by term into `cost` (n, t); else that is scratch.
+        From PRICE on: write the cost of the rows of `found.move` by term into `found.cost`; else that is scratch.
         """
         assert len(stamp)
         if start_row == PRICE:
             _wait(rows)
-            _price(t, rows, rules, found.move, cost)
+            _price(t, rows, rules, found.move, found.cost)
             return start_row, DONE
         if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
-            key = start_thesis(g) if model == 0 else start_itg(rules.home)
+            key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
             t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
             number_of_layer(np.zeros(1, dtype=np.int64), 1, t)
             t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
         if start_row == 0:
-            if not _number_rows(rows, model > 0, t):
+            if not _number_rows(rows, rules.model > 0, t):
                 return 0, MORE_PATTERNS
             _wait(rows)
             nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
             nodes.node[0] = 0
         if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
             return start_row, MORE_TIMED
-        row, wanted = _advance(start_row, rows, t, nodes, rules, cost[0])
+        row, wanted = _advance(start_row, rows, t, nodes, rules, found.cost[0])
         if wanted == DONE:
             _trace(t, nodes, found)
             if len(found.margin):

@@ -14,11 +14,11 @@ _STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepK
 # 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat in ticks, longest first
 _ROLL_GAPS = tuple(TICKS_PER_BEAT // part for part in (1, 2, 3, 4, 6, 8, 12, 16))
 _MINE, _HOLD = int(Kind.MINE), int(StepKind.HOLD)
-_EPSILON = 1e-6  # seconds (cost-model.md)
+_EPSILON = 1e-6  # seconds (docs/cost-model.md)
 
 
 def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
-    """The rows of a chart: beats with at least one step or mine (cost-model.md, "Rows").
+    """The rows of a chart: beats with at least one step or mine (docs/cost-model.md, "Rows").
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
     """The play that a way through the rows is."""
-    t, g = engine.tables, engine.geometry
+    t, g = engine.tables, engine.rules.geometry
     moves = name_moves(rows, found.limb, engine.pad, t.wide[found.move, EVENTS] & EVENT_BITS)
     state = t.state_key[t.move[found.move, NEXT]].astype(np.int32)
     left, right = state & _PLACE, state >> PLACE_BITS & _PLACE

@@ -117,22 +117,11 @@ class RowArrays(NamedTuple):
     elapsed: NDArray[np.int32]
 
 
-class Rules(NamedTuple):
-    """A preset and a pad's starting stance as arrays.
-
-    weights : int64; curves : int64 (, MOST_MS + 1), by milliseconds; switches : bool; home : int64 (2,)
-    """
-
-    weights: NDArray[np.int64]
-    curves: NDArray[np.int64]
-    switches: NDArray[np.bool_]
-    home: NDArray[np.int64]
-
-
 class Found(NamedTuple):
     """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
+    cost : int32 (n, t), of each row by term; or one row, which is scratch, where nobody wants to know
     """
 
     move: NDArray[np.int32]
@@ -140,6 +129,7 @@ class Found(NamedTuple):
     part: NDArray[np.uint8]
     margin: NDArray[np.int64]
     ambiguity: NDArray[np.uint8]
+    cost: NDArray[np.int32]
 
 
 @njit

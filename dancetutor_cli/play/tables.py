@@ -15,7 +15,7 @@ from dancetutor_cli.pads import Pad
 from dancetutor_cli.pads.pad import HOME_WIDTH
 
 MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
-EPSILON = 1e-6  # every comparison of cost-model.md: degrees, panel widths, seconds
+EPSILON = 1e-6  # every comparison of docs/cost-model.md: degrees, panel widths, seconds
 MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
 COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
 TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
@@ -52,6 +52,21 @@ class Geometry(NamedTuple):
     panels: NDArray[np.int64]
     mask: NDArray[np.int64]
     arrow: NDArray[np.int64]
+
+
+class Rules(NamedTuple):
+    """What rows cost, by the place of a model in `vocabulary.MODELS`, a pad and a preset: names are in the vocabulary.
+
+    weights : int64 (w,); switches : bool (s,); curves : int64 (c, MOST_MS + 1), by milliseconds since the row before
+    home : int64 (2,), the panels on which left and right foot start
+    """
+
+    model: int
+    geometry: Geometry
+    weights: NDArray[np.int64]
+    switches: NDArray[np.bool_]
+    curves: NDArray[np.int64]
+    home: NDArray[np.int64]
 
 
 class Moves(NamedTuple):

@@ -1,4 +1,4 @@
-"""The rules of cost-model.md: every way to play one row from one state, and what each costs. Kernel code.
+"""The rules of preset `thesis` (docs/cost-model.md): every way to play a row from a state, and its cost. Kernel code.
 
 Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
 """
@@ -6,6 +6,7 @@ Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right h
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,32 @@ _HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPL
 _MASK = (1 << COLUMN_BITS) - 1
 
 
+Whole = int | np.int64  # what Python and numba call a whole number
+
+
+class _Asked(NamedTuple):
+    """What a row asks for: panels to press as bits, how many they are, which of them are to be held, and limb codes of
+    overrides (3 bits for each column, 0: any limb). The panels stand in scratch `PANELS`, too.
+    """
+
+    steps: Whole
+    n: Whole
+    holds: Whole
+    forced: Whole
+
+
+class _Limbs(NamedTuple):
+    """Which limbs may press, as bits, and how many legs and hands have to; jack : foot that stands on the one panel
+    asked for, or -1; doublesteps : whether those that cost are allowed
+    """
+
+    usable: Whole
+    legs: Whole
+    hands: Whole
+    jack: Whole
+    doublesteps: bool
+
+
 @njit
 def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facing the screen, no last leg
     home = g.place.shape[0]
@@ -68,8 +95,9 @@ def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _charge_hand(terms, s, hand, panel, g, w):  # type: ignore[no-untyped-def]
+def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
     """What it costs that a hand presses a panel, by the pose after the move."""
+    g, w = rules.geometry, rules.weights
     x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
     y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
     if math.hypot(x, y) <= EPSILON:
@@ -107,17 +135,19 @@ def _place(s, press, holds):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no-untyped-def]
-    """Write one way to play a row: scratch `PRESS` are the panels of the limbs, `before` the state before, after mines.
+def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
+    """Write one way to play a row: scratch `PRESS` are the panels of the limbs, `BEFORE` the state before, after mines.
 
     doublestep : 0 none, 1 forced (the other leg is reserved), 2 one that costs
     """
-    s, press, panels, terms = out.scratch[AFTER], out.scratch[PRESS], out.scratch[PANELS], out.terms[m]
+    g, w, n = rules.geometry, rules.weights, asked.n
+    before, s, press, panels = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS], out.scratch[PANELS]
+    terms = out.terms[m]
     for i in range(NUMBERS):
         s[i] = before[i]
     for i in range(len(terms)):
         terms[i] = 0
-    _place(s, press, holds)
+    _place(s, press, asked.holds)
     degrees, spin, side = turn(g.angle[before[0], before[1]], before[SIDE], g.angle[s[0], s[1]])
     s[SIDE] = side
     action = events = 0
@@ -150,13 +180,13 @@ def _emit(out, m, before, steps, n, holds, doublestep, g, w):  # type: ignore[no
         terms[TURN_135] = w[TURN_135]
     for foot in range(2):
         free = not before[LEFT_HELD + foot]
-        if n > 1 and free and press[foot] >= 0 and press[foot] != before[foot] and steps >> before[foot] & 1:
+        if n > 1 and free and press[foot] >= 0 and press[foot] != before[foot] and asked.steps >> before[foot] & 1:
             terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
             events |= _JUMP_FOOTSWITCH
     for hand in range(2):
         if press[2 + hand] >= 0:
             events |= _HAND
-            _charge_hand(terms, s, hand, press[2 + hand], g, w)
+            _charge_hand(terms, s, hand, press[2 + hand], rules)
         if s[LEFT_HOLDS + hand]:
             terms[HAND_HOLD] += w[HAND_HOLD]
     if press[0] >= 0 and press[1] >= 0:
@@ -178,10 +208,11 @@ def _fits(out, n, forced):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w):  # type: ignore[no-untyped-def]
+def _assign(out, asked, limbs, rules):  # type: ignore[no-untyped-def]
     """Every way to give exactly so many legs and hands different panels of the row, as far as overrides allow."""
-    m = 0
-    press, panels = out.scratch[PRESS], out.scratch[PANELS]
+    m, n = 0, asked.n
+    usable, legs, jack = limbs.usable, limbs.legs, limbs.jack
+    before, press, panels = out.scratch[BEFORE], out.scratch[PRESS], out.scratch[PANELS]
     both = before[LEFT_HELD] == 0 and before[LEFT_HELD + 1] == 0
     for i in range(-1, n):
         if (i >= 0 and not usable & 1) or (jack >= 0 and (jack == 0) != (i >= 0)):
@@ -197,18 +228,18 @@ def _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, all
             doublestep = 0
             if n == 1 and legs == 1 and before[LAST] == leg + 1 and before[leg] != panels[0]:
                 doublestep = 2 if both else 1
-            if doublestep == 2 and not allow and not forced:
+            if doublestep == 2 and not limbs.doublesteps and not asked.forced:
                 continue
             for k in range(-1, n):
                 if k >= 0 and (not usable & 4 or k in (i, j)):
                     continue
                 press[2] = panels[k] if k >= 0 else -1
                 for q in range(-1, n):
-                    if (q >= 0 and (not usable & 8 or q in (i, j, k))) or (k >= 0) + (q >= 0) != hands:
+                    if (q >= 0 and (not usable & 8 or q in (i, j, k))) or (k >= 0) + (q >= 0) != limbs.hands:
                         continue
                     press[3] = panels[q] if q >= 0 else -1
-                    if forced == 0 or _fits(out, n, forced):
-                        m = _emit(out, m, before, steps, n, holds, doublestep, g, w)
+                    if asked.forced == 0 or _fits(out, n, asked.forced):
+                        m = _emit(out, m, asked, doublestep, rules)
     return m
 
 
@@ -225,12 +256,12 @@ def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
 
 
 @njit
-def expand_thesis(key, row, forced, g, w, switches, out):  # type: ignore[no-untyped-def]
+def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """All ways to play a row from a state, into `out`; returns their number, at least 1.
 
-    row : packed masks of the row; forced : limb codes of overrides; w : weights by term
+    row : packed masks of the row; forced : limb codes of overrides
     """
-    before, panels = out.scratch[BEFORE], out.scratch[PANELS]
+    g, before, panels = rules.geometry, out.scratch[BEFORE], out.scratch[PANELS]
     unpack(key, before)
     holds = row >> HOLDS & _MASK
     steps = (row >> TAPS | row >> HOLDS | row >> ROLLS | row >> ROLL_TAPS) & _MASK
@@ -257,7 +288,7 @@ def expand_thesis(key, row, forced, g, w, switches, out):  # type: ignore[no-unt
                 jack = np.int64(foot)
     legs = min((usable & 1) + (usable >> 1 & 1), n)
     hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
-    allow, m = switches[0], 0
+    allow, m = rules.switches[0], 0
     for attempt in range(3):
         if attempt == 1:  # overrides against the rules: they win, even over holds and the jack rule
             limbs, forced_hands = _forced_limbs(forced, n, panels)
@@ -268,5 +299,5 @@ def expand_thesis(key, row, forced, g, w, switches, out):  # type: ignore[no-unt
         elif attempt == 2:  # overrides nobody can follow, such as one foot on two panels
             forced = np.int64(0)
         if m == 0:
-            m = _assign(out, before, usable, legs, hands, jack, steps, n, holds, forced, allow, g, w)
+            m = _assign(out, _Asked(steps, n, holds, forced), _Limbs(usable, legs, hands, jack, allow), rules)
     return m
