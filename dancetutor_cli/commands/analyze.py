@@ -96,6 +96,15 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="N",
     help="Tell of the N next cheapest plays: whose limbs differ, and what decides.  [formats text and json]",
 )
+@click.option(
+    "--fix",
+    multiple=True,
+    metavar="RULE[:N]|safe",
+    help="Write the edit that --suggest tells into the file: for each finding of a rule, or its N-th; safe: what none "
+    "hears.",
+)
+@click.option("--diff", is_flag=True, help="With --fix: write nothing; print what would change.")
+@click.option("--backup", is_flag=True, help="With --fix: keep the old file as NAME.bak.")
 @click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
@@ -130,7 +139,9 @@ def command(**options: Any) -> int:  # fmt: skip
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
                                             "baseline", "update_baseline", "suggest", "alternatives")},
     )  # fmt: skip
-    if options["watch"]:
+    if not options["fix"] and (options["diff"] or options["backup"]):
+        raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
+    if options["watch"] and not options["fix"]:
         return _watch(request, options)
     return _run(LintRun(request), _sources(options["paths"], options["stdin_filename"]), options)
 
@@ -178,6 +189,11 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     if options["update_baseline"] and options["baseline"] is not None:
         check_file(options["baseline"])
     first = sources[0][0]
+    if options["fix"]:
+        from dancetutor_cli.commands.fixing import fix_all
+
+        run.open_baseline(first)
+        return fix_all(run, [run.task(path, data) for path, data in sources], options)
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     tasks = [run.task(path, data) for path, data in sources]

@@ -38,6 +38,16 @@ class _Edit:
     to: int
 
 
+@dataclass(frozen=True, slots=True)
+class MovedNote:
+    """A tap that goes to another panel. tick : its row, 1/48 beats; column, to : from 0; words : the same for people"""
+
+    tick: int
+    column: int
+    to: int
+    words: str
+
+
 def with_suggestions(
     findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> tuple[Finding, ...]:
@@ -48,9 +58,21 @@ def with_suggestions(
     told: list[Finding] = []
     for finding in findings:
         edits = _edits(finding, subject.play, subject.chart) if finding.rule in MENDABLE else ()
-        best = trial.best(edits, (finding.rule, finding.beat))
+        best = next(trial.good(edits, (finding.rule, finding.beat)), None)
         told.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(told)
+
+
+def mending_moves(
+    finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
+) -> Iterator[MovedNote]:
+    """The edits that would remove one finding, the suggested one first. findings : all of the chart"""
+    if subject.play is None or subject.pad is None or finding.rule not in MENDABLE:
+        return
+    trial = _Trial(subject, _of_families(settings), preset, _places(findings))
+    for edit in trial.good(_edits(finding, subject.play, subject.chart), (finding.rule, finding.beat)):
+        tick = int(subject.play.rows.tick[edit.row])
+        yield MovedNote(tick, edit.column, edit.to, _in_words(edit, subject))
 
 
 def _of_families(settings: Settings) -> Settings:
@@ -70,22 +92,21 @@ class _Trial:
     _outlines: dict[_Edit, tuple[int, NDArray[np.int64]]] = field(default_factory=dict)
     _found: dict[_Edit, set[_Place]] = field(default_factory=dict)
 
-    def best(self, edits: Iterable[_Edit], place: _Place) -> _Edit | None:
-        """The edit with the cheapest play that is cheaper than now, lacks the finding at a place, and brings no other.
+    def good(self, edits: Iterable[_Edit], place: _Place) -> Iterator[_Edit]:
+        """The edits with plays cheaper than now that lack the finding at a place and bring no other, cheapest first.
 
         The cost of all comes first, which is quickly found; the rules look at the cheapest only, until one will do.
         """
         assert self.subject.play is not None
         for edit in sorted(edits, key=self._total):
             if self._total(edit) >= self.subject.play.total:
-                return None
+                return
             if self._still_happens(edit, place):
                 continue
             if edit not in self._found:
                 self._found[edit] = self._places_after(edit)
             if place not in self._found[edit] and self._found[edit] <= self.before:
-                return edit
-        return None
+                yield edit
 
     def _total(self, edit: _Edit) -> int:
         return self._outline(edit)[0]

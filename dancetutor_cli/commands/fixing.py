@@ -1,0 +1,164 @@
+"""`analyze --fix`: what is asked for, which files it is done in, and what is said about it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.library.chart_files import twin
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.analyze import Task
+    from dancetutor_cli.jobs.fix import FixOutcome
+    from dancetutor_cli.jobs.lint_run import LintRun
+    from dancetutor_cli.jobs.result import FileResult
+    from dancetutor_cli.lint.finding import Finding
+
+SAFE = "safe"
+_COLOURS = {"+": "green", "-": "red", "@": "cyan"}
+# Options of `analyze` that say how its report looks: there is none when files are mended.
+_OF_REPORTS = ("sheet", "watch", "suggest", "alternatives", "update_baseline", "statistics", "stdin_filename")
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """One `--fix`: all findings of a rule, or of them the one of a number, from 1; rule `SAFE`: the safe fixes."""
+
+    rule: str
+    number: int | None = None
+
+
+def asked(texts: Sequence[str]) -> tuple[Asked, ...]:
+    """What the options mean; UsageError for a rule that has no fix."""
+    return tuple(_asked(text) for text in texts)
+
+
+def _asked(text: str) -> Asked:
+    from dancetutor_cli.fixes.mend import FIXABLE
+    from dancetutor_cli.lint.registry import rule_named
+
+    if text.strip().lower() == SAFE:
+        return Asked(SAFE)
+    match = re.fullmatch(r"\s*([^:]+?)\s*(?::\s*([1-9]\d{0,8})\s*)?", text)
+    if match is None:
+        raise UsageError(f"--fix '{text}': write a rule, such as DT202, one of its findings, such as DT202:3, or safe")
+    rule = rule_named(match[1])
+    if rule.code not in FIXABLE:
+        raise UsageError(f"--fix {text}: {rule.code} {rule.name} has no fix; {', '.join(FIXABLE)} have one, and safe")
+    return Asked(rule.code, int(match[2]) if match[2] else None)
+
+
+def fix_all(run: LintRun, tasks: Sequence[Task], options: dict[str, Any]) -> int:
+    """Mend every file, tell what was done; the exit status: 1 if a finding that was asked for is left."""
+    wanted = asked(options["fix"])
+    _check(tasks, options)
+    talk = _Talk(diff=options["diff"])
+    meant = {task.path.absolute() for task in tasks}
+    for task in tasks:
+        outcome = _fix(run, task, wanted, options)
+        talk.tell(task.path, outcome)
+        other = twin(task.path)
+        if outcome.done and other is not None and other.absolute() not in meant:
+            talk.warn(f"{other}: the same song, but it was not named, so its notes are as before; mend it likewise")
+    return talk.end()
+
+
+def _check(tasks: Sequence[Task], options: dict[str, Any]) -> None:
+    """UsageError for options that do not go with --fix."""
+    if options["format_name"] != "text":
+        raise UsageError("--fix tells what it did in text alone; leave --format out")
+    for name in _OF_REPORTS:
+        if options[name]:
+            raise UsageError(f"--{name.replace('_', '-')} does not go with --fix; call analyze again for it")
+    if any(task.data is not None for task in tasks):
+        raise UsageError("--fix mends files; standard input is none")
+
+
+def _fix(run: LintRun, task: Task, wanted: Sequence[Asked], options: dict[str, Any]) -> FixOutcome:
+    from dancetutor_cli.jobs.analyze import analyze_file
+    from dancetutor_cli.jobs.fix import FixOrder, FixOutcome, fix_file
+
+    result = run.without_known(analyze_file(task))
+    if result.error is not None:
+        return FixOutcome(error=result.error)
+    findings = tuple(finding for one in wanted if one.rule != SAFE for finding in _of_file(result, one))
+    safe = any(one.rule == SAFE for one in wanted)
+    return fix_file(FixOrder(task, findings, safe, write=not options["diff"], backup=options["backup"]))
+
+
+def _of_file(result: FileResult, asked_for: Asked) -> tuple[Finding, ...]:
+    from dancetutor_cli.jobs.fix import pick
+
+    findings = [finding for chart in result.charts for finding in chart.findings]
+    text = f"--fix {asked_for.rule}:{asked_for.number}"
+    if asked_for.number is not None and len(result.charts) > 1:
+        has = ", ".join(chart.label for chart in result.charts[:12])
+        raise UsageError(
+            f"{text}: {result.path} has {len(result.charts)} charts, so choose one by --steps-type, --difficulty or "
+            f"--index: {has}"
+        )
+    found = pick(findings, asked_for.rule, asked_for.number)
+    if asked_for.number is not None and not found:
+        many = len(pick(findings, asked_for.rule, None))
+        raise UsageError(f"{text}: {result.path} has {many} finding{'' if many == 1 else 's'} of {asked_for.rule}")
+    return found
+
+
+@dataclass
+class _Talk:
+    """Says what became of the files, and knows how it ends. diff : nothing is written, the change is shown"""
+
+    diff: bool
+    files: int = 0
+    changed: int = 0
+    done: int = 0
+    left: int = 0
+    failed: int = 0
+
+    def tell(self, path: Path, outcome: FixOutcome) -> None:
+        self.files += 1
+        if outcome.error is not None:
+            self.failed += 1
+            click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
+            return
+        for line in outcome.diff if self.diff else ():
+            click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
+        self.done += len(outcome.done)
+        self.left += len(outcome.left)
+        self.changed += bool(outcome.done)
+        for done in outcome.done:
+            what = f"{done.fix.rule} " if done.finding is None else f"{done.finding.rule} {done.finding.name} "
+            line_number = min(done.fix.lines)
+            self._say(f"{path}:{line_number}: {what}[{done.chart}] {'would ' if self.diff else ''}{done.fix.words}")
+        for left in outcome.left:
+            one = left.finding
+            self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] left alone: {left.why}")
+        for note in outcome.notes:
+            self.warn(note)
+
+    def warn(self, text: str) -> None:
+        click.echo(f"warning: {_safe(text)}", err=True)
+
+    def _say(self, text: str) -> None:
+        """Under --diff the diff alone goes to standard output, so that `patch` can read it."""
+        click.echo(_safe(text), err=self.diff)
+
+    def end(self) -> int:
+        would = "would change" if self.diff else "changed"
+        edits = f"{self.changed} {would} by {self.done} edit{'' if self.done == 1 else 's'}"
+        text = f"{self.files} file{'' if self.files == 1 else 's'}: {edits if self.done else 'nothing to change'}"
+        text += f", {self.left} finding{'' if self.left == 1 else 's'} left alone" if self.left else ""
+        click.echo(text + (f", {self.failed} failed" if self.failed else ""), err=self.diff)
+        return 2 if self.failed else int(bool(self.left))
+
+
+def _safe(text: str) -> str:
+    from dancetutor_cli.reports.safe import safe
+
+    return safe(text)
