@@ -254,7 +254,9 @@ def _grown(t: Tables, wanted: int, rows: int) -> Tables:
 
 
 def _empty_tables(weights: int) -> Tables:
-    states, patterns, many, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 16, 1 << 15, 1 << 13, 1 << 12
+    """Room for what a few hundred charts need: what is not touched takes no memory, and to grow copies all there is."""
+    states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
+    edges, facts = 1 << 21, 1 << 9
     whole, small = np.int64, np.int32
     return Tables(
         counts=np.zeros(10, dtype=whole),
@@ -263,21 +265,21 @@ def _empty_tables(weights: int) -> Tables:
         pattern=np.zeros((patterns, 2), dtype=whole),
         pattern_hash=np.full(4 * patterns, -1, dtype=small),
         pair=np.full((pairs, 2), -1, dtype=whole),
-        move=np.zeros((many, 3), dtype=small),
-        wide=np.zeros((many, 2), dtype=whole),
+        move=np.zeros((moves, 3), dtype=small),
+        wide=np.zeros((moves, 2), dtype=whole),
         terms=np.zeros((costs, weights), dtype=small),
         terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
         timed_hash=np.full(1 << 15, -1, dtype=small),
-        timed_cost=np.zeros((store.MOST_MS + 1, 64), dtype=small),
+        timed_cost=np.zeros((store.MOST_MS + 1, facts), dtype=small),
         layer=np.zeros((layers, 2), dtype=small),
         layer_state=np.zeros(16 * layers, dtype=small),
         layer_key=np.zeros(layers, dtype=whole),
         layer_hash=np.full(4 * layers, -1, dtype=small),
-        transition=np.zeros((4 * layers, 3), dtype=small),
-        transition_key=np.zeros(4 * layers, dtype=whole),
-        transition_hash=np.full(16 * layers, -1, dtype=small),
-        ends=np.zeros(many, dtype=whole),
-        edge_cost=np.zeros(many, dtype=small),
-        edge_move=np.zeros(many, dtype=small),
+        transition=np.zeros((2 * layers, 3), dtype=small),
+        transition_key=np.zeros(2 * layers, dtype=whole),
+        transition_hash=np.full(8 * layers, -1, dtype=small),
+        ends=np.zeros(edges, dtype=whole),
+        edge_cost=np.zeros(edges, dtype=small),
+        edge_move=np.zeros(edges, dtype=small),
     )
