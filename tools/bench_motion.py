@@ -88,7 +88,7 @@ def _hour_memory() -> float:
 
 
 def _ik_rate() -> float:
-    from dancetutor_cli.motion.ik.solver import Targets
+    from dancetutor_cli.motion.ik.full_body import Targets
 
     frames, rng = 20000, np.random.default_rng(1)
     turn = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))

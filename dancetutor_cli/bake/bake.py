@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.grips import grips_of
 from dancetutor_cli.bake.keys import doubtful, key_times, refined
-from dancetutor_cli.bake.pieces import Done, Each, Piece, in_turn, joined, piece_ends, trimmed
+from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, in_turn, joined, piece_ends, trimmed
 from dancetutor_cli.bake.settle import mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
@@ -18,7 +18,7 @@ from dancetutor_cli.motion.bar import bar_of, hold_share, holding
 from dancetutor_cli.motion.context import Context, context_of
 from dancetutor_cli.motion.footwork import plan_footwork
 from dancetutor_cli.motion.ik.ankles import ease_ankles
-from dancetutor_cli.motion.ik.solver import Poses, solve
+from dancetutor_cli.motion.ik.full_body import Poses, solve
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.gaze import look
@@ -53,12 +53,14 @@ class How(TypedDict, total=False):
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
+    each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
 
     settings: MotionSettings | None
     rate: float
     bar: bool
     gait: str
+    each: Each
 
 
 def bake(
@@ -68,7 +70,6 @@ def bake(
     *,
     fps: float = 60.0,
     section: tuple[float, float] | None = None,
-    each: Each = in_turn,
     **how: Unpack[How],
 ) -> Motion:
     """Make the dancer play a chart.
@@ -78,7 +79,6 @@ def bake(
     chart : gives the times of beats; play : who steps what; pad : where the panels are
     fps : frames per second of the result, which gets extra keys at every contact
     section : (start, end) in seconds of the music; None: from before the first step to after the last
-    each : does the pieces of a long song, in turn or in several processes; the result is the same
     how : as in `How`
 
     Returns
@@ -96,7 +96,7 @@ def bake(
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
         )
-    return bake_plan(plan, context, fps, (start, end), each)
+    return bake_plan(plan, context, fps, (start, end), how.get("each", in_turn))
 
 
 def plan_of(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> Plan:
@@ -151,7 +151,7 @@ def bake_plan(plan: Plan, context: Context, fps: float, section: tuple[float, fl
     return Motion(context.skeleton, fps, *done.keys, contacts, context.bar, grips, ground, done.notes)
 
 
-def bake_piece(piece: Piece) -> Done:
+def bake_piece(piece: Piece) -> BakedPiece:
     """One piece of work; may run in any process."""
     plan, context = piece.plan, piece.context
     skeleton, settings = context.skeleton, context.settings
@@ -171,7 +171,7 @@ def bake_piece(piece: Piece) -> Done:
         f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"
         for what in body.softened
     )
-    return Done(keys, notes)
+    return BakedPiece(keys, notes)
 
 
 def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.bar import on_rail
 from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.full_body import arm_rotations, solve
 from dancetutor_cli.motion.ik.kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
-from dancetutor_cli.motion.ik.solver import arm_rotations, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.motion.plan import Plan
@@ -117,7 +117,9 @@ class _Arm:
         assert context.bar is not None
         self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
         self.skeleton, self.settings = context.skeleton, context.settings
-        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * self.settings.bar.apart, self.bar)
+        self.place = on_rail(
+            trunk.pelvis[:, 0] + (1.0, -1.0)[side] * self.settings.bar.apart, self.bar, self.settings.bar.from_end
+        )
 
     def fits(self, x: Array, when: slice) -> Flags:
         """Whether the hand may rest on the rail at x (k,) at the times `when`, k of them."""
@@ -127,14 +129,14 @@ class _Arm:
         near = np.linalg.norm(wrist - shoulder, axis=1) <= self.settings.bar.let_go
         aside = quat.rotate(quat.from_axis_angle(UP, -trunk.yaw[when]), wrist - shoulder)[:, 0]
         near &= (aside if side == 0 else -aside) > -INWARD
-        elbow = elbows_on_bar(chest)[:, side]
+        elbow = elbows_on_bar(chest, self.settings.bar)[:, side]
         hands = np.tile(hand, (len(wrist), 1))
-        turns = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
+        joints = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
         names = [f"{SIDES[side]}_{n}" for n in ("shoulder", "elbow", "radiocarpal")]
-        for name, turn in zip(names, turns, strict=True):
-            near &= beyond(skeleton, name, turn) < -ROOM if name[2:] != "elbow" else True
+        for name, rotation in zip(names, joints, strict=True):
+            near &= beyond(skeleton, name, rotation) < -ROOM if name[2:] != "elbow" else True
         upper = skeleton.offsets[skeleton.index(names[1])]
-        joint = shoulder + quat.rotate(quat.multiply(chest, turns[0]), upper)
+        joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
 
     def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
@@ -174,7 +176,7 @@ def _longest(arm: _Arm, start: int, end: int) -> tuple[float, int]:
     soon = arm.place[start : min(start + round(AHEAD * RATE), end)].mean()
     best, stop = float(soon), start
     for aside in BESIDE:
-        x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar)[0])
+        x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar, arm.settings.bar.from_end)[0])
         k = start
         while k < end:
             until = min(k + round(LOOK * RATE), end)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.moves import Walk
+from dancetutor_cli.motion.foot_moves import Walk
 from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.rig import quaternion as quat
 
@@ -38,17 +38,17 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class BakedPiece:
     """What a piece of work gives: all its keys, also those of its overlap, and what there is to say of it."""
 
     keys: Keys
     notes: tuple[str, ...]
 
 
-Each = Callable[[Sequence[tuple[Callable[[Piece], Done], Piece]]], Iterable[Done]]
+Each = Callable[[Sequence[tuple[Callable[[Piece], BakedPiece], Piece]]], Iterable[BakedPiece]]
 
 
-def in_turn(work: Sequence[tuple[Callable[[Piece], Done], Piece]]) -> Iterable[Done]:
+def in_turn(work: Sequence[tuple[Callable[[Piece], BakedPiece], Piece]]) -> Iterable[BakedPiece]:
     """Do one piece after the other in this process."""
     return (function(piece) for function, piece in work)
 
@@ -101,20 +101,20 @@ def _track(track: FootTrack, start: float, end: float) -> FootTrack:
     return FootTrack(before.target, before.yaw, kept, before.level if isinstance(before, Walk) else 0.0)
 
 
-def joined(pieces: Sequence[Piece], done: Iterable[Done]) -> Done:
-    """The kept keys of all pieces in their order, with their notes; turns never jump to their negative."""
+def joined(pieces: Sequence[Piece], done: Iterable[BakedPiece]) -> BakedPiece:
+    """The kept keys of all pieces in their order, with their notes; rotations never jump to their negative."""
     parts: list[Keys] = []
     notes: list[str] = []
     for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
         times, rotations, root = one.keys
         notes += one.notes
         keep = (times >= piece.kept[0]) & ((times < piece.kept[1]) | (k + 1 == len(pieces)))
-        turns = quat.continuous(rotations[keep])
+        local = quat.continuous(rotations[keep])
         if parts:
-            flipped = np.sum(turns[0] * parts[-1][1][-1], axis=-1) < 0
-            turns[:, flipped] *= -1.0
-        parts.append((times[keep], turns, root[keep]))
+            flipped = np.sum(local[0] * parts[-1][1][-1], axis=-1) < 0
+            local[:, flipped] *= -1.0
+        parts.append((times[keep], local, root[keep]))
     if len(parts) == 1:
-        return Done(parts[0], tuple(notes))
+        return BakedPiece(parts[0], tuple(notes))
     times, root = (np.concatenate([p[k] for p in parts]) for k in (0, 2))
-    return Done((times, np.concatenate([p[1] for p in parts]), root), tuple(notes))
+    return BakedPiece((times, np.concatenate([p[1] for p in parts]), root), tuple(notes))

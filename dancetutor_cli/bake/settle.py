@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.ik.solver import Poses, Targets, solve
+from dancetutor_cli.motion.ik.full_body import Poses, Targets, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
@@ -29,7 +29,6 @@ Array = NDArray[np.float64]
 ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
 TIGHTENED = 2  # rounds of tightening the limits of her balance in the last of those
 COARSE = 4  # every so many samples of the path are baked in a round
-LOWEST = 0.35  # metres of the pelvis over the pad, however far away a palm shall be
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 HEEL_SMOOTH = 0.06  # seconds over which heels rise for their ankles' sake
 MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
@@ -93,7 +92,7 @@ def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
 
 def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
     """How much deeper (p,) she bends for each press, after palms have drawn the root by (f,) metres at times `at`."""
-    out, most = deeper.copy(), max(context.settings.hands.pelvis - LOWEST, 0.0)
+    out, most = deeper.copy(), max(context.settings.hands.pelvis - context.settings.hands.lowest, 0.0)
     for k, press in enumerate(plan.presses):
         near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
         more = deeper[k] - min(float(drawn[near].min(initial=0.0)), 0.0)

@@ -15,7 +15,7 @@ from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.part import part_of
 
 if TYPE_CHECKING:
-    from dancetutor_cli.bake.pieces import Done, Piece
+    from dancetutor_cli.bake.pieces import BakedPiece, Piece
     from dancetutor_cli.bake.styled import Styled
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
@@ -128,7 +128,7 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
     )
 
 
-def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Done], Piece]]) -> Iterator[Done]:
+def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], BakedPiece], Piece]]) -> Iterator[BakedPiece]:
     """Results of pieces of work in their order, made in up to `jobs` processes."""
     from dancetutor_cli.bake.pieces import in_turn
     from dancetutor_cli.jobs.pool import Task, open_workers
@@ -140,7 +140,7 @@ def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Done], Piece]]) ->
     try:
         for k, (function, piece) in enumerate(work):
             workers.submit(Task(k, _piece, (function, piece)))
-        results: dict[int, Done] = {}
+        results: dict[int, BakedPiece] = {}
         for done in workers.done():
             if done.error is not None:
                 raise done.error
@@ -151,7 +151,7 @@ def _shared(jobs: int, work: Sequence[tuple[Callable[[Piece], Done], Piece]]) ->
         yield results.pop(k)
 
 
-def _piece(_: object, function: Callable[[Piece], Done], piece: Piece) -> Done:
+def _piece(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> BakedPiece:
     return function(piece)
 
 

@@ -7,9 +7,9 @@
       |   trajectory.body.body_trajectory   balance, height, facing, reach, counter-rotation, beat bounce
     trajectory.body.Trajectory     the body over the feet at even times
       |   ik.targets.ik_targets      where pelvis, shoulders, hands and feet shall be
-    ik.solver.Targets
-      |   ik.solver.solve            all joints at once
-    ik.solver.Poses                local rotations and root
+    ik.full_body.Targets
+      |   ik.full_body.solve         all joints at once
+    ik.full_body.Poses             local rotations and root
       |   layers.gaze.look, layers.additive.add_layers   gaze, breath, blinks, wrists
     model.Motion                   what files, films and the quality report get
 

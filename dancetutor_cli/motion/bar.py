@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
-FROM_END = 0.06  # metres that a hand keeps from the ends of the rail
 
 
 def bar_of(pad: Pad, settings: BarSettings) -> Bar:
@@ -34,15 +33,15 @@ def holding(settings: MotionSettings) -> MotionSettings:
     half as far for jumps, for the bar bears a part of that.
     """
     body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
-    body = replace(body, stance=body.stance - bar.knees, soft_reach=body.soft_reach - bar.knees)
+    body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
     body = replace(body, stream_crouch=bar.stream_crouch)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
     return replace(settings, body=body, jump=jump, look=replace(look, torso_weight=bar.square))
 
 
-def on_rail(x: Array, bar: Bar) -> Array:
-    """The nearest place on the rail, a hand's width from its ends."""
-    choices = np.stack([np.clip(x, low + FROM_END, high - FROM_END) for low, high in bar.spans])
+def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
+    """The nearest place on the rail, so far from its ends, metres."""
+    choices = np.stack([np.clip(x, low + from_end, high - from_end) for low, high in bar.spans])
     nearest = np.argmin(np.abs(choices - x), axis=0)
     return np.asarray(np.take_along_axis(choices, nearest[None], axis=0)[0])
 

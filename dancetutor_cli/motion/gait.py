@@ -21,7 +21,7 @@ from dancetutor_cli.motion.settings import numbers
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.body import half_hips
+from dancetutor_cli.rig.dimensions import half_hips
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
@@ -71,11 +71,11 @@ class GaitPose:
 
 def gait_pose(gait: Gait, phase: Array) -> GaitPose:
     """The pose of a gait at normalised times (f,)."""
-    turn = 2 * np.pi * phase
+    angle = 2 * np.pi * phase
     ones = np.ones_like(phase)
     # the left foot lands at 0 and bears the body until 0.6: its hip is highest half-way through that
-    roll = np.radians(gait.hip_drop) * np.sin(turn - 0.1 * np.pi)
-    forward = np.cos(turn)  # 1 as the left foot lands, far ahead
+    roll = np.radians(gait.hip_drop) * np.sin(angle - 0.1 * np.pi)
+    forward = np.cos(angle)  # 1 as the left foot lands, far ahead
     step = (2 * phase) % 1.0
     low = half_hips(dancer_skeleton()) * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
     sink = low + gait.plant * np.sin(np.pi * np.minimum(step / SINKING, 1.0)) ** 2
@@ -156,7 +156,7 @@ def _standing_pose(count: int) -> GaitPose:
     return GaitPose(*(np.zeros((count, 2) if f.name == "hands" else count) for f in fields(GaitPose)))
 
 
-def turned(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:
+def with_gait(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:
     """Rotations of pelvis and chest (f, 4) with the gait on top, in local space, main rotation first."""
     across, up, front = np.eye(3)
     low = quat.multiply(quat.from_axis_angle(up, pose.pelvis_yaw), quat.from_axis_angle(front, pose.roll))

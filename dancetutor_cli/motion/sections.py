@@ -31,10 +31,17 @@ class StepSettings:
     crossover_turn: float
     apart: float
     leap: float
-    leap_stance: float
+    leap_beside: float
     pivot_from: float
     pivot_to: float
     pivot_pitch: float
+    home: float
+    stand: float
+    least_swing: float
+    overlap: float
+    following: float
+    staying: float
+    body_turn: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +66,24 @@ class JumpSettings:
     push: float
     catch: float
     drive: float
+    quick_flat: float
+    crouch_before: float
+    crouch_time: float
+    follow_after: float
+    follow_time: float
+    no_time: float
+    full_time: float
+    arms_after: float
+    arms_time: float
+    lean_before: float
+    lean_after: float
 
 
 @dataclass(frozen=True, slots=True)
 class BodySettings:
     """How the body rides on the feet."""
 
-    stance: float
+    leg: float
     stream_crouch: float
     soft_reach: float
     reach: float
@@ -79,6 +97,9 @@ class BodySettings:
     height_smooth: float
     least_force: float
     most_force: float
+    lean_time: float
+    pelvis_lean: float
+    pelvis_bend: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +113,11 @@ class HandSettings:
     bend_aside: float
     turn_from: float
     turn_most: float
+    bend_time: float
+    lowest: float
+    slap: float
+    follow_in: float
+    follow_out: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +136,33 @@ class ArmSettings:
     wander: float
     cancel: float
     twist: float
+    lowest: float
+    lag: float
+    bend_hang: float
+    effort: float
+    turn_time: float
+    turn_late: float
+    turn_easy: float
+    turn_quick: float
+    drawn_in: float
+    drawn_back: float
+    twist_slowest: float
+    twist_fastest: float
+    wander_slow: float
+    wander_quick: float
+
+
+@dataclass(frozen=True, slots=True)
+class KneeSettings:
+    """Where knees point."""
+
+    to_toes: float
+    out: float
+    most: float
+    straddle: float
+    straddle_most: float
+    straddle_out: float
+    give: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +187,13 @@ class LookSettings:
     eyes_weight: float
     distance: float
     height: float
+    wrung: float
+    neck_share: float
+    neck_easy: float
+    neck_room: float
+    head_tilt: float
+    bent_tilt: float
+    bent_yaw: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +204,9 @@ class InertiaSettings:
     chest_damping: float
     hand_frequency: float
     hand_damping: float
+    pelvis_turn: float
+    chest_turn: float
+    head_turn: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +224,13 @@ class LayerSettings:
     beat_nod: float
     wrists: float
     blink_time: float
+    beat_shortest: float
+    beat_width: float
+    beat_fade: float
+    wrist_time: float
+    blink: float
+    laugh_after: float
+    laugh_rise: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +261,8 @@ class WalkSettings:
     far: float
     wait: float
     ahead: float
+    early: float
+    rest: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,6 +275,8 @@ class AsideSettings:
     pause: float
     quick: float
     slow: float
+    comfortable: float
+    facing: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,3 +284,28 @@ class SamplingSettings:
     """Rates of the bake."""
 
     work_rate: float
+
+
+@dataclass(frozen=True, slots=True)
+class BarSettings:
+    """The bar behind the dancer, and how she holds it."""
+
+    height: float
+    behind: float
+    radius: float
+    posts: float
+    apart: float
+    dip: float
+    forward: float
+    soft: float
+    lean_back: float
+    knees: float
+    stream_crouch: float
+    square: float
+    let_go: float
+    reach_time: float
+    shortest: float
+    from_end: float
+    elbows_in: float
+    lift: float
+    leave: float

@@ -11,11 +11,13 @@ from dancetutor_cli.marked_yaml import MarkedYaml, read
 from dancetutor_cli.motion.sections import (
     ArmSettings,
     AsideSettings,
+    BarSettings,
     BodySettings,
     HairSettings,
     HandSettings,
     InertiaSettings,
     JumpSettings,
+    KneeSettings,
     LayerSettings,
     LookSettings,
     MineSettings,
@@ -41,6 +43,7 @@ __all__ = [
     "HandSettings",
     "InertiaSettings",
     "JumpSettings",
+    "KneeSettings",
     "LayerSettings",
     "LookSettings",
     "MineSettings",
@@ -55,27 +58,6 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class BarSettings:
-    """The bar behind the dancer, and how she holds it."""
-
-    height: float
-    behind: float
-    radius: float
-    posts: float
-    apart: float
-    dip: float
-    forward: float
-    soft: float
-    lean_back: float
-    knees: float
-    stream_crouch: float
-    square: float
-    let_go: float
-    reach_time: float
-    shortest: float
-
-
-@dataclass(frozen=True, slots=True)
 class MotionSettings:
     """All of them, one field per section of the file."""
 
@@ -84,6 +66,7 @@ class MotionSettings:
     body: BodySettings
     hands: HandSettings
     arms: ArmSettings
+    knees: KneeSettings
     mines: MineSettings
     look: LookSettings
     inertia: InertiaSettings

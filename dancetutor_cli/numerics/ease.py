@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+STEEPEST = 1.875  # largest slope of `smooth`
 
 
 def smooth(s: ArrayLike) -> Array:

@@ -185,13 +185,13 @@ def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float,
     s = np.maximum(high - _times_rows(limits, x), 0.1)
     z = np.full(m, 0.1)
     scale = 1.0 + np.abs(right).max()
-    for turn in range(most):
+    for done in range(most):
         dual = _times_band(bands, x) - right
         _add_transposed(limits, z, dual)
         primal = _times_rows(limits, x) + s - give * z - high
         mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
-            return x, True, turn
+            return x, True, done
         system = bands.copy()
         for r in range(m):
             w = z[r] / (s[r] + give[r] * z[r])

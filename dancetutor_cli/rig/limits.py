@@ -63,26 +63,26 @@ def excess(skeleton: Skeleton, rotations: Array) -> dict[str, Array]:
     return out
 
 
-def beyond(skeleton: Skeleton, name: str, turns: Array) -> Array:
-    """Degrees (f,) by which one joint, turned locally by (f, 4), is past its nearest limit; negative within."""
+def beyond(skeleton: Skeleton, name: str, rotations: Array) -> Array:
+    """Degrees (f,) by which one joint, twisted locally by (f, 4), is past its nearest limit; negative within."""
     mirrored = name.startswith("r_")
     limit = LIMITS[name.replace("r_", "l_", 1) if mirrored else name]
-    return _past(limit, turns, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)
+    return _past(limit, rotations, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)
 
 
-def within(skeleton: Skeleton, name: str, turns: Array, margin: float) -> Array:
-    """The turns (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits."""
+def within(skeleton: Skeleton, name: str, rotations: Array, margin: float) -> Array:
+    """The rotations (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits."""
     limit, sign = LIMITS[name.replace("r_", "l_", 1)], -1.0 if name.startswith("r_") else 1.0
     bone = _bone(skeleton, skeleton.index(name))
-    swing, twist = quat.swing_twist(turns, bone)
-    swung, turned = np.degrees(_vector(swing)), sign * np.degrees(_vector(twist) @ bone)
+    swing, twist = quat.swing_twist(rotations, bone)
+    swung, twisted = np.degrees(_vector(swing)), sign * np.degrees(_vector(twist) @ bone)
     swung[:, 0] = np.clip(swung[:, 0], limit.x[0] + margin, limit.x[1] - margin)
     swung[:, 2] = sign * np.clip(sign * swung[:, 2], limit.z[0] + margin, limit.z[1] - margin)
-    turned = np.radians(sign * np.clip(turned, limit.twist[0] + margin, limit.twist[1] - margin))
+    twisted = np.radians(sign * np.clip(twisted, limit.twist[0] + margin, limit.twist[1] - margin))
     size = np.linalg.norm(swung, axis=1)
     axis = np.where(size[:, None] > 1e-9, swung / np.maximum(size, 1e-9)[:, None], [1.0, 0.0, 0.0])
     size = np.minimum(size, limit.cone - margin)
-    return quat.multiply(quat.from_axis_angle(axis, np.radians(size)), quat.from_axis_angle(bone, turned))
+    return quat.multiply(quat.from_axis_angle(axis, np.radians(size)), quat.from_axis_angle(bone, twisted))
 
 
 def _bone(skeleton: Skeleton, joint: int) -> Array:
@@ -97,13 +97,13 @@ def _bone(skeleton: Skeleton, joint: int) -> Array:
 
 def _past(limit: Limit, q: Array, bone: Array, sign: float) -> Array:
     swing, twist = quat.swing_twist(q, bone)
-    turned = np.degrees(_vector(twist) @ bone)
+    twisted = np.degrees(_vector(twist) @ bone)
     swung = np.degrees(_vector(swing))
     past = np.linalg.norm(swung, axis=1) - limit.cone
     for value, (low, high) in (
         (swung[:, 0], limit.x),
         (sign * swung[:, 2], limit.z),
-        (sign * turned, limit.twist),
+        (sign * twisted, limit.twist),
     ):
         past = np.maximum(past, np.maximum(low - value, value - high))
     return np.asarray(past)

@@ -10,9 +10,9 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play
 
 from dancetutor_cli.bake import bake, plan_of, report
+from dancetutor_cli.motion.foot_moves import Jump, Sidestep, Step
 from dancetutor_cli.motion.footwork.footfalls import stand_at
 from dancetutor_cli.motion.footwork.sidesteps import footfalls
-from dancetutor_cli.motion.moves import Jump, Sidestep, Step
 from dancetutor_cli.motion.plan import Plan, Swing
 from dancetutor_cli.motion.settings import default_settings
 

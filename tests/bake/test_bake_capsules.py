@@ -10,9 +10,9 @@ import pytest
 from bake_plays import MEDLEY, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, report
-from dancetutor_cli.bake.quality.body import body_of
 from dancetutor_cli.bake.quality.capsules import limb_depths
 from dancetutor_cli.bake.quality.posture import weight_shifts
+from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.rig import quaternion as quat

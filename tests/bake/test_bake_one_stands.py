@@ -9,7 +9,7 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, mines_of, plan_of, report
-from dancetutor_cli.motion.moves import Hover, Pivot
+from dancetutor_cli.motion.foot_moves import Hover, Pivot
 from dancetutor_cli.motion.plan import Plan, airborne
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.height import LEAST_PHASE

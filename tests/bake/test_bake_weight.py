@@ -12,10 +12,10 @@ from scipy.spatial import ConvexHull
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.bake.bake import plan_of
-from dancetutor_cli.bake.quality.body import GROUND, Body, body_of
 from dancetutor_cli.bake.quality.posture import jump_knees, trunk_lean
+from dancetutor_cli.bake.quality.resampled import GROUND, Body, body_of
 from dancetutor_cli.bake.quality.smoothness import knee_angles
-from dancetutor_cli.motion.moves import Jump, Pivot, Step
+from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
@@ -153,7 +153,7 @@ def test_close_jumps_leave_no_time_to_crouch() -> None:
         events = [(1.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
         body = body_of(bake(chart(), play(events), pad()))
         inside = (body.times > 1.0 + gap) & (body.times < 1.0 + 6 * gap) & body.standing.any(axis=1)
-        return float(SETTINGS.body.stance + 0.09 - np.percentile(body.joints[inside, 0, 1], 5))
+        return float(SETTINGS.body.leg + 0.09 - np.percentile(body.joints[inside, 0, 1], 5))
 
     assert dip(0.8) > dip(0.3) + 0.02
 

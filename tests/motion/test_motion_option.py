@@ -43,7 +43,7 @@ def film(path: Path | None) -> Motion:
 
 def test_a_file_makes_her_stand_lower(tmp_path: Path) -> None:
     low = tmp_path / "low.yaml"
-    low.write_text("body: {stance: 0.75}\nlayers: {bounce: 0}\n", encoding="utf-8")
+    low.write_text("body: {leg: 0.75}\nlayers: {bounce: 0}\n", encoding="utf-8")
     usual, lower = animated(tmp_path), animated(tmp_path, "--motion", str(low))
     assert np.median(usual.root[:, 1]) - np.median(lower.root[:, 1]) > 0.02
     heights = [np.median(film(path).root[:, 1]) for path in (None, low)]

@@ -9,17 +9,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.balance import balance_figures
-from dancetutor_cli.bake.quality.bar import bar_figures
-from dancetutor_cli.bake.quality.body import Body, body_of
 from dancetutor_cli.bake.quality.capsules import capsule_figures
 from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
 from dancetutor_cli.bake.quality.flight import flight_figures
+from dancetutor_cli.bake.quality.grips_kept import bar_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
 from dancetutor_cli.bake.quality.posture import posture_figures
+from dancetutor_cli.bake.quality.resampled import Body, body_of
 from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
+from dancetutor_cli.bake.quality.zero_moment import balance_figures
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.model import Motion
 

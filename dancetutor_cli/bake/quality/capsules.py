@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import Body
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import Body
 from dancetutor_cli.rig.capsules import ANKLE, KNEE, THIGH, Capsule, depth
 from dancetutor_cli.rig.skeleton import Skeleton
 

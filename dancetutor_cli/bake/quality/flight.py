@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import GRAVITY, Body, intervals
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import GRAVITY, Body, intervals
 
 Array = NDArray[np.float64]
 SHORTEST = 5  # frames; fewer say nothing about a parabola

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import GROUND, Body, intervals, over_ground
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import GROUND, Body, intervals, over_ground
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.swing.panels import HALF_PANEL

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import Body, intervals
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import Body, intervals
 from dancetutor_cli.bake.quality.smoothness import knee_angles
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.play.model import StepKind

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import Body
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import Body
 from dancetutor_cli.rig.limits import excess
 from dancetutor_cli.rig.skeleton import Skeleton
 

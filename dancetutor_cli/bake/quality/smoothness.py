@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import Body
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import Body
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.numerics.smoothing import low_pass
 from dancetutor_cli.play.model import Limb

@@ -1,12 +1,16 @@
-"""From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module."""
+"""From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module.
+
+A rule is asked about a row (or a wait) and the footing as it is, changes neither, and returns what it proposes: another
+footing (`footing.Proposal`) or a walk (`walks.WalkProposal`). Only `planner` and `insertion` apply a proposal.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.motion.footwork.insertion import with_walks
 from dancetutor_cli.motion.footwork.planner import Planner
-from dancetutor_cli.motion.footwork.walks import with_walks
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.context import Context

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.foot_moves import Walk
 from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.motion.model import Ground
-from dancetutor_cli.motion.moves import Walk
 from dancetutor_cli.motion.plan import FootTrack, Route, Turn
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at
@@ -93,7 +93,7 @@ def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps |
     slow, quick = load_gait(gait)
     begin, goal, most = trip.begin, trip.goal, context.settings.walk.turn
     distance = float(np.linalg.norm(goal.middle - begin.middle))
-    turning = _turns(begin.heading, trip.heading, most) + _turns(trip.heading, goal.heading, most)
+    turning = _steps_to_turn(begin.heading, trip.heading, most) + _steps_to_turn(trip.heading, goal.heading, most)
     for share in SPEEDS:
         pace = blended(slow, quick, float(share))
         count = max(int(np.ceil(2 * distance / pace.stride - 1e-6)), turning + 1, 2) + 1
@@ -108,7 +108,7 @@ def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps |
     return None
 
 
-def _turns(a: float, b: float, most: float) -> int:
+def _steps_to_turn(a: float, b: float, most: float) -> int:
     """Steps that it takes to turn from one heading to another, at most `most` degrees in each."""
     return int(np.ceil(abs(b - a) / np.radians(most) - 1e-6))
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.footing import Foot, Footing
+from dancetutor_cli.motion.footwork.footing import Footing, FootState
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, CROSSED, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
 from dancetutor_cli.play.model import Part
-from dancetutor_cli.rig.body import BALL_AHEAD
+from dancetutor_cli.rig.dimensions import BALL_AHEAD
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
@@ -21,7 +21,6 @@ _ACROSS = np.arange(-5, 6) / 5
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
-STAYING = 0.7  # part of its way to the wanted place that a foot on its own panel leaves out
 CROSSED_PRICE = 3e3  # of a radian that legs cross too far
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
@@ -39,7 +38,7 @@ class Pose:
         return middle_of(self.ball, self.toes)
 
 
-def pose(footing: Footing, foot: Foot) -> Pose:
+def pose(footing: Footing, foot: FootState) -> Pose:
     """How a foot stands now."""
     return Pose(foot.ball, footing.toes(foot))
 
@@ -68,7 +67,7 @@ class Spot:
     room: Array
 
 
-def landing(footing: Footing, foot: Foot, goal: Goal, other: Pose) -> tuple[Array, float]:
+def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
     """Where the ball lands and how the foot is turned (without toe-out). other : the other foot then"""
     step = footing.settings.step
     if len(goal.columns) > 1:
@@ -80,7 +79,7 @@ def landing(footing: Footing, foot: Foot, goal: Goal, other: Pose) -> tuple[Arra
     way = (foot.ball + (foot.ball if following is None else following)) / 2
     ball = ball + step.on_the_way * goal.cut * (np.clip(way, panel - room, panel + room) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
-        ball = ball + STAYING * (foot.ball - ball)
+        ball = ball + step.staying * (foot.ball - ball)
     return beside(footing, foot, Spot(panel, room), ball, goal.yaw, other)
 
 
@@ -103,7 +102,7 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
     return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))
 
 
-def beside(footing: Footing, foot: Foot, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
+def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
     """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room.
 
     Nor do the legs cross there farther than they must.
@@ -137,7 +136,7 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
     return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - CROSSED, 0.0))
 
 
-def _bracket(footing: Footing, foot: Foot, goal: Goal) -> tuple[Array, float]:
+def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
     """Heel on one panel, toes on the other."""
     panels, parts, columns = footing.context.panels, goal.parts, goal.columns
     toe = next((c for c in columns if parts[c] == Part.TOE), None)
@@ -167,7 +166,7 @@ def shoes_apart(a: Pose, b: Pose) -> float:
 
 
 def around(
-    footing: Footing, foot: Foot, span: tuple[float, float], target: Array, yaw: float, other: Foot
+    footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
 ) -> tuple[float, float]:
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
     apart = footing.settings.step.apart
@@ -176,5 +175,5 @@ def around(
     if max(other.landed, other.turned) <= span[0]:
         return detour(way, other.ball, footing.toes(other), apart, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
-    there = foot_path(footing.track(other, LATEST), times, footing.settings.step.heel_drop)
+    there = foot_path(other.track(LATEST), times, footing.settings.step.heel_drop)
     return detour(way, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)

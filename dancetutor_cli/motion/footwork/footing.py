@@ -1,4 +1,7 @@
-"""Both feet as the planner walks through a song: where they stand, until when they must, which way the body faces."""
+"""Both feet as a song is planned row by row: where they stand, until when they must, which way the body faces.
+
+Nothing here changes: a rule makes another footing of the one it is given, and the planner takes it or leaves it.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.moves import Move, Pivot
-from dancetutor_cli.motion.plan import FootTrack
+from dancetutor_cli.motion.foot_moves import Move, Pivot
+from dancetutor_cli.motion.plan import FootTrack, Turn
+from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import gaps_at, over
 from dancetutor_cli.motion.swing.foot_path import NO_TIME
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
@@ -18,9 +22,6 @@ Array = NDArray[np.float64]
 SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
 SHORTEST_PIVOT = 0.04  # seconds
-STAND = 0.045  # seconds; a foot that has landed stays down so long, if its next note leaves it the time
-FARTHEST_TURN = np.radians(45.0)  # of the body from a foot that stands
-HOME_OUT = 0.080  # metres; a waiting foot stands so far beside the middle of the pad: on no panel
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,37 +34,66 @@ class Evading:
     yaw: float
 
 
-@dataclass
-class Foot:
-    """Where a foot is while the plan is made. side 0 is left; ball : (2,), x and z on the ground."""
+@dataclass(frozen=True, slots=True)
+class FootState:
+    """Where a foot is while the plan is made. side 0 is left; ball : (2,), x and z on the ground.
+
+    yaw : without toe-out, radians; start, start_toes : where it stood before the first of `moves`, the newest ones
+    free : it may not leave before; landed : when it came down; turned : when it last ended a pivot, seconds
+    least_stand : seconds that it stays down after landing, if its next note leaves it the time
+    holds : columns that it holds, each with until when; evading : until its next step
+    """
 
     side: int
     ball: Array
-    yaw: float  # without toe-out
-    free: float = -np.inf  # the foot may not leave before
-    landed: float = -np.inf  # when it came down
-    turned: float = -np.inf  # when it last ended a pivot
-    moves: list[Move] = field(default_factory=list)
-    holds: dict[int, float] = field(default_factory=dict)  # columns that it holds: until when
-    evading: Evading | None = None  # until its next step
+    yaw: float
+    start: tuple[float, float]
+    start_toes: float
+    least_stand: float
+    free: float = -np.inf
+    landed: float = -np.inf
+    turned: float = -np.inf
+    moves: tuple[Move, ...] = ()
+    holds: tuple[tuple[int, float], ...] = ()
+    evading: Evading | None = None
 
     @property
     def outward(self) -> float:
         """1 for the left foot, -1 for the right one: which way its toes turn out."""
         return 1.0 if self.side == 0 else -1.0
 
-    def move(self, move: Move, target: Array, yaw: float) -> None:
-        """Add a move; afterwards the foot stands at its target."""
+    def moved(self, move: Move, target: Array, yaw: float) -> FootState:
+        """The foot after one more move, standing at its target."""
         if self.moves and move.lift - self.moves[-1].land < NO_TIME:
             heel = self.moves[-1].pitches[2]
             move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
-        self.moves.append(move)
-        self.ball, self.yaw, self.free = target, yaw, move.land + FREE_WINDOW
-        self.landed = move.land
+        return replace(
+            self, ball=target, yaw=yaw, free=move.land + FREE_WINDOW, landed=move.land, moves=(*self.moves, move)
+        )
+
+    def moved_otherwise(self, last: Move) -> FootState:
+        """The foot with another last move."""
+        return replace(self, moves=(*self.moves[:-1], last))
+
+    def not_moved(self, evading: Evading) -> FootState:
+        """The foot as if its last move, over a mine, had not begun."""
+        return replace(self, ball=evading.ball, yaw=evading.yaw, moves=self.moves[:-1], evading=None)
+
+    def settled(self, newest: int) -> tuple[tuple[Move, ...], FootState]:
+        """Moves that are older than the newest ones, and the foot without them."""
+        old = self.moves[:-newest]
+        if not old:
+            return (), self
+        return old, replace(self, moves=self.moves[-newest:], start=old[-1].target, start_toes=old[-1].yaw)
+
+    def track(self, newest: int | None = None) -> FootTrack:
+        """What the foot has done, as far as it knows, or only its newest moves."""
+        foot = self if newest is None else self.settled(newest)[1]
+        return FootTrack(foot.start, foot.start_toes, foot.moves)
 
     def holding(self, time: float) -> bool:
         """Whether it is in the middle of a hold."""
-        return any(end > time + FREE_WINDOW for end in self.holds.values())
+        return any(end > time + FREE_WINDOW for _, end in self.holds)
 
     def latest(self, time: float, let_go: float) -> float:
         """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
@@ -77,41 +107,57 @@ class Foot:
 
     def rested(self, time: float) -> float:
         """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
-        return max(self.landed + min(STAND, (time - self.landed) / 3), self.turned + FREE_WINDOW)
+        return max(self.landed + min(self.least_stand, (time - self.landed) / 3), self.turned + FREE_WINDOW)
 
 
+@dataclass(frozen=True, slots=True)
+class TakeOff:
+    """In a gallop: the row at which a foot comes down, and when it leaves the ground, seconds."""
+
+    row: int
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
 class Footing:
     """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
 
-    lead : the foot that leads, as in `Plan`
+    lead : the foot that leads, as in `Plan`; faced : which way the body faced after the last row, radians
+    mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
     """
 
-    def __init__(self, context: Context, lead: int) -> None:
-        self.context, self.settings, self.lead = context, context.settings, lead
-        settings = context.settings
-        self.normal = 0.0
-        self.faced = 0.0  # which way the body faced after the last row, radians
-        self.mined: Array = np.empty((0, 2))  # panels beside which feet land that mines pass soon
-        self.toe_out = float(np.radians(settings.step.toe_out))
-        self.feet = tuple(
-            Foot(side, ball_of(np.array([x * HOME_OUT, 0.0]), x * self.toe_out), 0.0)
-            for side, x in ((0, 1.0), (1, -1.0))
-        )
-        self._start = tuple((pair(f.ball), f.outward * self.toe_out) for f in self.feet)
+    context: Context
+    lead: int
+    feet: tuple[FootState, FootState]
+    normal: float = 0.0
+    faced: float = 0.0
+    mined: Array = field(default_factory=lambda: np.empty((0, 2)))
+    take_offs: tuple[TakeOff, TakeOff] | None = None
 
-    def tracks(self) -> tuple[FootTrack, FootTrack]:
-        """Everything that both feet have done, from the start."""
-        return self.track(self.feet[0]), self.track(self.feet[1])
+    @classmethod
+    def at_home(cls, context: Context, lead: int) -> Footing:
+        """Both feet on the pad's middle, where she waits."""
+        return cls(context, lead, (_at_home(0, context.settings), _at_home(1, context.settings)))
 
-    def track(self, foot: Foot, latest: int | None = None) -> FootTrack:
-        """What a foot has done, all of it or only its latest moves."""
-        first = 0 if latest is None else max(len(foot.moves) - latest, 0)
-        place, yaw = self._start[foot.side]
-        if first > 0:
-            place, yaw = foot.moves[first - 1].target, foot.moves[first - 1].yaw
-        return FootTrack(place, yaw, tuple(foot.moves[first:]))
+    @property
+    def settings(self) -> MotionSettings:
+        """The numbers of her motion."""
+        return self.context.settings
 
-    def toes(self, foot: Foot, yaw: float | None = None) -> float:
+    @property
+    def toe_out(self) -> float:
+        """How far toes point outward, radians."""
+        return float(np.radians(self.context.settings.step.toe_out))
+
+    def other(self, foot: FootState) -> FootState:
+        """The foot that is not this one."""
+        return self.feet[1 - foot.side]
+
+    def with_foot(self, foot: FootState) -> Footing:
+        """The footing in which one foot has done something."""
+        return replace(self, feet=(foot, self.feet[1]) if foot.side == 0 else (self.feet[0], foot))
+
+    def toes(self, foot: FootState, yaw: float | None = None) -> float:
         """Where the toes of a foot point, at its own yaw or at another one; radians."""
         return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
 
@@ -138,11 +184,11 @@ class Footing:
         Where both stand, it is no farther from either than hips and ankles turn.
         """
         left, right = yaws or (self.feet[0].yaw, self.feet[1].yaw)
-        mean = (left + right) / 2
+        mean, farthest = (left + right) / 2, np.radians(self.settings.step.body_turn)
         wanted = mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean)
         if yaws is not None:
             return float(wanted)
-        low, high = max(left, right) - FARTHEST_TURN, min(left, right) + FARTHEST_TURN
+        low, high = max(left, right) - farthest, min(left, right) + farthest
         return float(np.clip(wanted, min(low, mean), max(high, mean)))
 
     def limited(self, yaw: float, body: float) -> float:
@@ -150,7 +196,7 @@ class Footing:
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))
 
-    def pivot_yaw(self, foot: Foot, body: float, other: Array, other_toes: float) -> float:
+    def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
         """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
 
         Nor does it turn over a panel with a mine.
@@ -168,18 +214,36 @@ class Footing:
         clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
         return float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
 
-    def pivot(self, foot: Foot, yaw: float, start: float, time: float) -> None:
-        """The standing foot turns on its ball to a yaw."""
+    def pivoted(self, foot: FootState, yaw: float, start: float, time: float) -> Footing:
+        """The footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""
         begin = max(start, foot.moves[-1].land + FREE_WINDOW if foot.moves else start)
         if yaw == foot.yaw or begin > time - SHORTEST_PIVOT:
-            return
+            return self
         up = float(np.radians(self.settings.step.pivot_pitch))
         rest = foot.moves[-1].pitches[3] if foot.moves else 0.0
         pitches = (rest, max(up, rest), rest, rest)
-        free, landed = foot.free, foot.landed
         move = Pivot(begin, time, pair(foot.ball), self.toes(foot, yaw), pitches)
-        foot.move(move, foot.ball, yaw)
-        foot.free, foot.landed, foot.turned = max(free, foot.free), landed, time
+        done = foot.moved(move, foot.ball, yaw)
+        return self.with_foot(replace(done, free=max(foot.free, done.free), landed=foot.landed, turned=time))
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What a rule would have her do: both feet as they would be then.
+
+    leaves : when a foot leaves the ground for it, seconds; turn : how the body turns for it, if the rule says so
+    """
+
+    footing: Footing
+    leaves: float = np.inf
+    turn: Turn | None = None
+
+
+def _at_home(side: int, settings: MotionSettings) -> FootState:
+    out = 1.0 if side == 0 else -1.0
+    toes = out * float(np.radians(settings.step.toe_out))
+    ball = ball_of(np.array([out * settings.step.home, 0.0]), toes)
+    return FootState(side, ball, 0.0, pair(ball), toes, settings.step.stand)
 
 
 def pair(v: Array) -> tuple[float, float]:

@@ -1,63 +1,51 @@
-"""Both feet leave the ground at once and come down at once: jumps, leaps and hops over mines."""
+"""Jumps: both feet land at one row; where, and how high they go for it (thesis 5.5, 5.6)."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.footwork.foothold import Pitches
-from dancetutor_cli.motion.footwork.footing import Footing, pair
-from dancetutor_cli.motion.moves import Jump
-from dancetutor_cli.motion.swing.jump_ways import jump_ways
+from dancetutor_cli.motion.footwork.brackets import under_the_foot
+from dancetutor_cli.motion.footwork.chart_row import Row
+from dancetutor_cli.motion.footwork.flights import Goals, hop, take_off_for
+from dancetutor_cli.motion.footwork.foothold import Goal, Pose, landing
+from dancetutor_cli.motion.footwork.footing import Footing, Proposal
+from dancetutor_cli.motion.footwork.mines import landed_early
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
-HEEL_UP = 0.12  # seconds on the ground that a heel needs to come down and rise again for a jump
-Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
 
 
-@dataclass(frozen=True, slots=True)
-class Flight:
-    """Both feet in the air from `take_off` to `land`, seconds.
-
-    turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
-    first : when each foot leaves the ground, if before the take-off of both
-    """
-
-    take_off: float
-    land: float
-    turned: float = 0.0
-    eased: float = 1.0
-    first: tuple[float, float] = (np.inf, np.inf)
-
-
-def fly(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) -> None:
-    """Move both feet to their goals, on ways that keep the shoes apart."""
-    jump, feet = footing.settings.jump, footing.feet
-    starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
-    before = np.array([footing.toes(f) for f in feet])
-    after = np.array([footing.toes(f, yaw) for f, (_, yaw) in zip(feet, goals, strict=True)])
-    turn = float(np.radians(flight.turned))
-    share, aside = jump_ways(starts, before, ends, after, turn, footing.settings.step.apart)
-    far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = flight.eased * tuck_for(far, jump.tuck, jump.far)
-    middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
-    for side, foot in enumerate(feet):
-        lift = min(flight.first[side], flight.take_off)
-        height = GRAVITY * (flight.land - lift) ** 2 / 8
-        # heels that have just come down do not get up so far again
-        up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
-        leave, most, land_pitch, rest = pitches[side]
-        rise = (up * leave, most, land_pitch, rest)
-        swing = Jump(
-            lift, flight.land, pair(ends[side]), float(after[side]), rise, height, pair(aside[side]), tuck, turn,
-            middles, share,
-        )  # fmt: skip
-        foot.move(swing, ends[side], goals[side][1])
+def jump(row: Row, footing: Footing) -> Proposal:
+    """Both feet land at a row."""
+    numbers, time = footing.settings.jump, row.time
+    latest = np.inf
+    for foot in footing.feet:
+        down, until = landed_early(foot, footing.settings, time)
+        footing, latest = footing.with_foot(down), min(latest, until)
+    columns = [under_the_foot(row, f) for f in footing.feet]
+    goals = _goals(row, footing, columns)
+    far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
+    apex = numbers.apex_near + min(far / numbers.far, 1.0) * (numbers.apex_far - numbers.apex_near)
+    if row.hands:  # bending down to a panel: feet only just leave the ground
+        apex = numbers.apex_hands
+    take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), numbers.flight_share * row.duration))
+    if latest < take_off:  # over a mine
+        take_off = max(latest, *(f.rested(time) for f in footing.feet))
+    return hop(row, footing, take_off, goals, columns, row.turned)
 
 
-def tuck_for(distance: float, tuck: float, far: float) -> float:
-    """How much more feet are pulled up that go so far: legs that reach far must not lock."""
-    return tuck * (1.0 + 1.5 * min(distance / far, 1.5) ** 2)
+def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
+    """Where both balls land, and the feet's yaws."""
+    body, panels = footing.body_yaw(), row.context.panels
+    share = footing.settings.jump.yaw_to_normal
+    yaws = [footing.limited(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
+    goals: dict[int, tuple[Array, float]] = {}
+    # brackets have no choice: they are first
+    for foot in sorted(footing.feet, key=lambda f: (-len(columns[f.side]), f.side != footing.lead)):
+        side = 1 - foot.side
+        ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
+        other = Pose(ball, footing.toes(footing.feet[side], yaw))
+        wish = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.cut, row.following(foot.side)
+        goals[foot.side] = landing(footing, foot, Goal(*wish), other)
+    return [goals[0], goals[1]]

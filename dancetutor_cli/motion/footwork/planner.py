@@ -1,4 +1,4 @@
-"""From a play to moves, row by row: when each foot leaves and lands, where, and how far it turns (thesis 5.5, 5.6)."""
+"""From a play to moves, row by row: asks the rules what they propose, and is the only one that applies it."""
 
 from __future__ import annotations
 
@@ -10,116 +10,125 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.footwork.contacts import Touches
-from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing
+from dancetutor_cli.motion.foot_moves import Move, Swing
+from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
+from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing, Proposal, pair
+from dancetutor_cli.motion.footwork.holding import hold
+from dancetutor_cli.motion.footwork.jumps import jump
 from dancetutor_cli.motion.footwork.mines import avoid_mines
+from dancetutor_cli.motion.footwork.pressing import press
 from dancetutor_cli.motion.footwork.sidesteps import SideSteps
-from dancetutor_cli.motion.footwork.steps import Steps
-from dancetutor_cli.motion.plan import Plan, Turn
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.motion.footwork.steps import step
+from dancetutor_cli.motion.footwork.turning import leading_foot, turn_of, turn_start
+from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.plan import Plan, Press, Turn
+from dancetutor_cli.play.model import Limb, Play, StepKind
 
 Array = NDArray[np.float64]
-LEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it
-WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
-STEEPEST = 1.875  # largest slope of `ease.smooth`
-NO_WAY = 1e-6  # metres
-HALF_TURN = 1e-6  # degrees from half a turn
-ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
+NEWEST = 8  # moves of a foot that rules may still look at or change
 
 
 class Planner:
     """Walks through the rows of a play once. `second(tick)` gives the time of a tick in seconds of the music."""
 
     def __init__(self, play: Play, second: Callable[[int], float], context: Context) -> None:
-        self.play, self.panels, self.settings = play, context.panels, context.settings
-        self.footing = Footing(context, leading_foot(play, context.panels))
-        self.steps = Steps(play, self.footing)
-        self.touches = Touches(play, second, self.footing)
-        self.asides = SideSteps(play, self.footing)
+        self.play, self.second, self.context, self.settings = play, second, context, context.settings
+        self.footing = Footing.at_home(context, leading_foot(play, context.panels))
+        self.begin = self.footing
+        self.asides = SideSteps(play, context, self.footing.lead)
         self.previous: float | None = None
+        self.moves: tuple[list[Move], list[Move]] = ([], [])  # that no rule changes any more
         self.turns: list[Turn] = []
+        self.presses: list[Press] = []
+        self.touches: list[Contact] = []
 
     def run(self) -> Plan:
         """The plan of the whole song; DancetutorError if the play has no steps."""
         for i in range(len(self.play.rows)):
             self._row(i)
-        touches = self.touches.all()
-        if not touches:
+        if not self.touches:
             raise DancetutorError("the chart has no steps: there is nothing to dance")
-        feet, turns, presses = self.footing.tracks(), tuple(self.turns), tuple(self.touches.presses)
-        plan = Plan(feet, turns, presses, touches, touches[0].start, touches[0].start, lead=self.footing.lead)
+        tracks = []
+        for begin, old, foot in zip(self.begin.feet, self.moves, self.footing.feet, strict=True):
+            tracks.append(replace(begin.track(), moves=(*old, *foot.moves)))
+        touches = self._ended((tracks[0].moves, tracks[1].moves))
+        turns, presses, first = tuple(self.turns), tuple(self.presses), touches[0].start
+        plan = Plan((tracks[0], tracks[1]), turns, presses, touches, first, first, lead=self.footing.lead)
         return replace(plan, last=max(contact.end for contact in plan.contacts))
 
     def _row(self, i: int) -> None:
         time = float(self.play.rows.second[i])
-        pressed: dict[int, list[int]] = {}
-        for column in np.flatnonzero(self.play.limb[i] >= 0):
-            pressed.setdefault(int(self.play.limb[i, column]), []).append(int(column))
+        row = Row(self.play, self.context, i, time, pressed_by(self.play, i))
         soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
-        self.footing.mined = self.panels[self.play.rows.mines[soon][i + 1 :].any(axis=0)]
-        avoid_mines(self.play, i, time, self.footing, set(pressed))
-        self.footing.mined = self.panels[self.play.rows.mines[soon][i:].any(axis=0) & (self.play.limb[i] < 0)]
-        feet = sorted(side for side in pressed if side < Limb.LEFT_HAND)
-        if feet:
-            self._feet(i, time, feet, pressed)
-        for limb, columns in pressed.items():
-            for pressed_column in columns:
-                self.touches.add(i, time, limb, pressed_column)
+        panels, mines = self.context.panels, self.play.rows.mines[soon]
+        self.footing = replace(self.footing, mined=panels[mines[i + 1 :].any(axis=0)])
+        self._apply(avoid_mines(row, self.footing))
+        self.footing = replace(self.footing, mined=panels[mines[i:].any(axis=0) & (self.play.limb[i] < 0)])
+        if row.feet:
+            self._feet(row)
+        for limb, columns in row.pressed.items():
+            for column in columns:
+                self._touch(row, limb, column)
 
     def _stays(self, i: int, time: float) -> float:
         """Until when mines matter to the feet that land at row i: for a while, and as long as they hold."""
         held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
-        return max([time + MINES_AHEAD, *(self.touches.second(int(tick)) for tick in held if tick >= 0)])
+        return max([time + MINES_AHEAD, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
-    def _feet(self, i: int, time: float, feet: list[int], pressed: dict[int, list[int]]) -> None:
+    def _feet(self, row: Row) -> None:
         """One foot steps or both jump, and the body turns with them; before that she may step aside."""
-        longest = self.settings.step.longest
-        aside = None if self.previous is None else self.asides.before(i, time, list(pressed), self.touches.presses)
+        time, longest = row.time, self.settings.step.longest
+        aside = None if self.previous is None else self.asides.before(row, self.presses, self.footing)
         if aside is not None:
-            self.turns.append(aside)
-            self.footing.faced = aside.yaw
+            self._apply(aside)
             self.previous = max(foot.landed for foot in self.footing.feet)
-        turn = (self.play.facing[i] - self.footing.normal + 180.0) % 360.0 - 180.0
-        if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: how the feet stand decides, or which foot steps
-            stand = (self.footing.line() - self.footing.normal + 180.0) % 360.0 - 180.0
-            first = feet[0] if len(feet) == 1 else self.footing.lead
-            turn = 180.0 * float(np.sign(stand) if ASIDE < abs(stand) < 180.0 - ASIDE else 2 * first - 1)
+        turned = turn_of(row, self.footing)
+        # added to what it was, and taken off again: what is left is exactly how far it has turned
         before = self.footing.normal
-        self.footing.normal += turn
+        self.footing = replace(self.footing, normal=before + turned)
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
-        if len(feet) == 2:
-            leaves = self.steps.jump(i, time, duration, pressed, self.footing.normal - before)
-        else:
-            leaves = self.steps.step(i, time, duration, feet[0], pressed[feet[0]])
-        yaw = self.footing.turned_to()
+        row = replace(row, duration=duration, turned=self.footing.normal - before)
+        found = jump(row, self.footing) if len(row.feet) == 2 else step(row, row.feet[0], self.footing)
+        yaw = found.footing.turned_to()
         far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
-        self.turns.append(Turn(_turn_start(time, duration, leaves, float(np.degrees(far))), time, yaw))
-        self.footing.faced = yaw
+        turn = Turn(turn_start(time, duration, found.leaves, float(np.degrees(far))), time, yaw)
+        self._apply(replace(found, footing=replace(found.footing, faced=yaw), turn=turn))
         self.previous = time
 
+    def _touch(self, row: Row, limb: int, column: int) -> None:
+        """A limb comes down on a column."""
+        kind, panel = int(self.play.rows.steps[row.index, column]), pair(self.context.panels[column])
+        end = np.inf
+        if kind == StepKind.HOLD:
+            end = self.second(int(self.play.rows.hold_end[row.index, column]))
+            self._apply(hold(self.footing, limb, column, row.time, end))
+        if limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
+            palm = press(self.footing, limb - Limb.LEFT_HAND, panel, (row.time, end), self.presses)
+            self.presses.append(palm)
+            end = palm.end
+        part = int(self.play.part[row.index, column])
+        self.touches.append(Contact(row.time, end, limb, column, kind, part, row.index, panel))
 
-def leading_foot(play: Play, panels: Array) -> int:
-    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump tells.
+    def _apply(self, proposal: Proposal) -> None:
+        """Take over what a rule proposes; moves that are so old that no rule asks for them are put aside."""
+        for done, foot in zip(self.moves, proposal.footing.feet, strict=True):
+            if len(foot.moves) > 2 * NEWEST:
+                old, foot = foot.settled(NEWEST)
+                done += old
+                proposal = replace(proposal, footing=proposal.footing.with_foot(foot))
+        self.footing = proposal.footing
+        if proposal.turn is not None:
+            self.turns.append(proposal.turn)
 
-    It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
-    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
-    """
-    feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
-    alone = np.flatnonzero(feet[0] != feet[1])
-    if len(alone):
-        return int(feet[1][alone[0]])
-    left, right = (np.asarray(play.limb == side) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT))
-    aside, ahead = (left | right) @ panels[:, 0], (left.astype(np.int8) - right) @ panels[:, 1]
-    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror
-        if max(abs(x), abs(z)) > NO_WAY:
-            return int(x < 0) if abs(x) > NO_WAY else int(z < 0)
-    return 0
+    def _ended(self, moves: tuple[tuple[Move, ...], tuple[Move, ...]]) -> tuple[Contact, ...]:
+        """All touches, in order, each until it must end; a foot that is not needed any more stays a while."""
+        self.touches.sort(key=lambda c: (c.start, c.limb, c.column))
+        lifts = [[m.lift for m in of_foot if isinstance(m, Swing)][-1:] for of_foot in moves]
+        stays = self.settings.step.longest
 
+        def ended(touch: Contact) -> Contact:
+            left = touch.end < np.inf or any(lift >= touch.start for lift in lifts[touch.limb])
+            return touch if left else replace(touch, end=touch.start + stays)
 
-def _turn_start(time: float, duration: float, leaves: float, far: float) -> float:
-    """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
-    ground that body and foot would ever be turned much farther from each other than they are anyway."""
-    ahead = 2.0 * LEAD / (STEEPEST * max(far, LEAD)) * (time - leaves)
-    late = LATE * float(np.clip(far / WIDE - 1.0, 0.0, 1.0))  # for the body's path is smooth: it turns before it begins
-    return max(time - duration, leaves - ahead + late)
+        return tuple(ended(touch) for touch in self.touches)

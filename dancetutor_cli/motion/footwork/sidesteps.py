@@ -6,27 +6,28 @@ so the notes are reached by a normal step and not by a leap. Nor do they wait wi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.foot_moves import Sidestep
+from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
 from dancetutor_cli.motion.footwork.foothold import around, heel_up
-from dancetutor_cli.motion.footwork.footing import Foot, Footing, pair
+from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal, pair
 from dancetutor_cli.motion.footwork.walks import places_along, walk_there
-from dancetutor_cli.motion.moves import Sidestep
 from dancetutor_cli.motion.plan import Press, Turn
+from dancetutor_cli.motion.swing.pace import reduction
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
-from dancetutor_cli.motion.swing.timing import reduction
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.model import Play
 
 Array = NDArray[np.float64]
 SPREADS = np.arange(0.34, 0.67, 0.04)  # metres between the feet as she steps aside, smallest first
-COMFORTABLE = 0.50  # what she takes if there is time
 SAME = 0.05  # metres; a foot so near its place stays where it is
 MOST = 6  # steps: three to the side, three to close
-FACING = 100.0  # degrees from the screen beyond which she does not step aside
 MINE = 0.2  # seconds around a mine
 AHEAD = 2.0  # seconds; a foot whose next note is later may stand anywhere
 
@@ -41,58 +42,54 @@ class _Next:
 
 
 class SideSteps:
-    """Puts side-steps before a row whose notes are far from where she stands."""
+    """Proposes side-steps before a row whose notes are far from where she stands."""
 
-    def __init__(self, play: Play, footing: Footing) -> None:
-        self.play, self.panels, self.footing = play, footing.context.panels, footing
-        self.places = places_along(footing.context.squares, footing.lead)
+    def __init__(self, play: Play, context: Context, lead: int) -> None:
+        self.play, self.panels, self.settings = play, context.panels, context.settings
+        self.places = places_along(context.squares, lead)
         self.mines = play.rows.second[play.rows.mines.any(axis=1)]
         self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
 
-    def before(self, i: int, time: float, limbs: list[int], presses: list[Press]) -> Turn | None:
-        """Step aside before row i if that helps and there is time: the body's turn meanwhile, or None.
+    def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
+        """Step aside before a row if that helps and there is time, and the body's turn meanwhile; or None.
 
-        limbs : those that row i needs; presses : of palms, so far
+        presses : of palms, so far
         """
-        settings, footing = self.footing.settings, self.footing
+        settings, time = self.settings, row.time
         whole = 360.0 * round(footing.normal / 360.0)
-        hands = max(limbs) >= Limb.LEFT_HAND
-        if len(self.places) == 1 or hands or abs(footing.normal - whole) > FACING:
+        if len(self.places) == 1 or row.hands or abs(footing.normal - whole) > settings.aside.facing:
             return None
-        begin = self._begin()
-        following = self._next(i, time, limbs)
+        begin = _begin(footing)
+        following = self._next(row)
         if self._far(begin.balls, following) <= settings.aside.far:
             return None
         free = max([*(foot.free for foot in footing.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
         start, ready = free + settings.aside.pause, time - settings.walk.settle
         busy = (self.mines > start - MINE) & (self.mines < np.nanmax(following.times) + MINE)
-        if ready - start < 2 * settings.aside.quick or busy.any() or self._walks(begin, following, free, time):
+        if ready - start < 2 * settings.aside.quick or busy.any():
+            return None
+        if _walks(begin, following, (free, time), footing):
             return None
         found = self._goal(begin, following, float(np.radians(whole)), ready - start)
         if found is None:
             return None
         falls, duration = found
         for k, (side, fall) in enumerate(falls):
-            self._move(footing.feet[side], fall, start + k * duration, duration)
-        footing.normal = whole
-        return Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
+            footing = _stepped(footing, footing.feet[side], fall, start + k * duration, duration)
+        turn = Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
+        return Proposal(replace(footing, normal=whole, faced=turn.yaw), start, turn)
 
-    def _begin(self) -> Stand:
-        feet = self.footing.feet
-        yaws = np.array([self.footing.toes(foot) for foot in feet])
-        return Stand(np.array([foot.ball for foot in feet]), yaws, self.footing.turned_to())
-
-    def _next(self, i: int, time: float, limbs: list[int]) -> _Next:
+    def _next(self, row: Row) -> _Next:
         rows = self.play.rows
         times, places = np.full(2, np.nan), np.full((2, 2), np.nan)
         for side in (0, 1):
-            k = int(np.searchsorted(self.steps[side], i))
+            k = int(np.searchsorted(self.steps[side], row.index))
             if k < len(self.steps[side]):
-                row = int(self.steps[side][k])
-                times[side] = time if row == i else rows.second[row]
-                if times[side] < time + AHEAD:
-                    places[side] = self.panels[self.play.limb[row] == side].mean(axis=0)
-        return _Next(times, places, tuple(limb for limb in limbs if limb < Limb.LEFT_HAND))
+                found = int(self.steps[side][k])
+                times[side] = row.time if found == row.index else rows.second[found]
+                if times[side] < row.time + AHEAD:
+                    places[side] = self.panels[self.play.limb[found] == side].mean(axis=0)
+        return _Next(times, places, tuple(row.feet))
 
     def _far(self, balls: Array, following: _Next) -> float:
         """How far she would stretch: between the feet now, and for the next row, in a step from the other foot, in a
@@ -103,21 +100,11 @@ class SideSteps:
             far = np.linalg.norm(following.places[following.first[0]] - balls[1 - following.first[0]])
         return float(max(far, np.linalg.norm(balls[0] - balls[1])))
 
-    def _walks(self, begin: Stand, following: _Next, free: float, time: float) -> bool:
-        """Whether there is time to walk, and reason to."""
-        if np.isnan(following.places).any():
-            return False
-        step = self.footing.settings.step
-        ready = time - step.longest * (1.0 - step.double_support)
-        wait = free, ready
-        found = walk_there(begin, following.places, wait, "flat", self.footing.lead, self.footing.context)
-        return found is not None
-
     def _goal(
         self, begin: Stand, following: _Next, heading: float, time: float
     ) -> tuple[list[tuple[int, Footfall]], float] | None:
         """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
-        aside, settings = self.footing.settings.aside, self.footing.settings
+        aside, settings = self.settings.aside, self.settings
         best, least = None, self._far(begin.balls, following) - aside.gain
         for x in _between(self.places):
             goal = stand_at(np.array([x, 0.0]), heading, settings)
@@ -131,8 +118,8 @@ class SideSteps:
 
     def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
         """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
-        aside = self.footing.settings.aside
-        few = len(footfalls(begin, goal, COMFORTABLE)) or MOST
+        aside = self.settings.aside
+        few = len(footfalls(begin, goal, aside.comfortable)) or MOST
         for spread in SPREADS:
             falls = footfalls(begin, goal, float(spread))
             if 0 < len(falls) <= few and time / len(falls) >= aside.quick and self._free(begin, falls):
@@ -143,22 +130,36 @@ class SideSteps:
         """Whether no shoe comes too near the other."""
         places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
         for side, fall in falls:
-            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.footing.settings.step.apart:
+            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.settings.step.apart:
                 return False
             places[side] = (fall.ball, fall.yaw)
         return True
 
-    def _move(self, foot: Foot, fall: Footfall, start: float, duration: float) -> None:
-        step, footing = self.footing.settings.step, self.footing
-        cut = float(reduction(duration, step.fast, step.longest))
-        height = step.height_slow + cut * (step.height_fast - step.height_slow)
-        pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
-        other = footing.feet[1 - foot.side]
-        lift = max(start + step.double_support * duration, foot.free)
-        bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, other)
-        step_aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
-        foot.move(step_aside, fall.ball, fall.heading)
-        foot.evading = None
+
+def _begin(footing: Footing) -> Stand:
+    yaws = np.array([footing.toes(foot) for foot in footing.feet])
+    return Stand(np.array([foot.ball for foot in footing.feet]), yaws, footing.turned_to())
+
+
+def _walks(begin: Stand, following: _Next, wait: tuple[float, float], footing: Footing) -> bool:
+    """Whether there is time to walk, and reason to; wait : from when feet are free to the row, seconds."""
+    if np.isnan(following.places).any():
+        return False
+    step = footing.settings.step
+    ready = wait[1] - step.longest * (1.0 - step.double_support)
+    return walk_there(begin, following.places, (wait[0], ready), "flat", footing.lead, footing.context) is not None
+
+
+def _stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
+    """The footing in which a foot has stepped aside."""
+    step = footing.settings.step
+    cut = float(reduction(duration, step.fast, step.longest))
+    height = step.height_slow + cut * (step.height_fast - step.height_slow)
+    pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
+    lift = max(start + step.double_support * duration, foot.free)
+    bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
+    aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
+    return footing.with_foot(replace(foot.moved(aside, fall.ball, fall.heading), evading=None))
 
 
 def _between(places: Array) -> Array:

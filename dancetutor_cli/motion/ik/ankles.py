@@ -21,6 +21,6 @@ def ease_ankles(skeleton: Skeleton, rotations: Array, feet: tuple[FootPath, Foot
         name = f"{side}_talocrural"
         joint = skeleton.index(name)
         free = np.where(foot.down, 0.0, np.clip((foot.ball[:, 1] - UP_FROM) / (UP_TO - UP_FROM), 0.0, 1.0))
-        turned = np.flatnonzero((beyond(skeleton, name, rotations[:, joint]) > -MARGIN) & (free > 0.0))
-        eased = within(skeleton, name, rotations[turned, joint], MARGIN)
-        rotations[turned, joint] = quat.slerp(rotations[turned, joint], eased, free[turned])
+        bent = np.flatnonzero((beyond(skeleton, name, rotations[:, joint]) > -MARGIN) & (free > 0.0))
+        eased = within(skeleton, name, rotations[bent, joint], MARGIN)
+        rotations[bent, joint] = quat.slerp(rotations[bent, joint], eased, free[bent])

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold
-from dancetutor_cli.motion.ik.solver import arm_rotations
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
-from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.settings import ArmSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.crouch import jump_swing, tempo_factor
@@ -24,25 +24,16 @@ from dancetutor_cli.numerics.smoothing import sample_path, smooth_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.quaternion import UP, leaning
-from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES, palm_points
 
 Array = NDArray[np.float64]
-LOWEST_WRIST = 0.16  # metres; free hands stay so far over the ground
-FARTHEST_LAG = 0.12  # metres that inertia takes a hand from its place at most
-SLAP = 0.8  # metres per second with which a palm meets the floor at least
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
-AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that it keeps farther aside and ahead there
-HANG, SHALLOW, DEEP = 0.28, np.radians(25.0), np.radians(100.0)  # so far they do; of which bends
-WANDER = ((7.9, 0.37), (4.3, 0.23))  # seconds of two waves, and how much of one each hand and axis is behind the last
+AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that a free hand keeps farther aside in deep bends
+SHALLOW, DEEP = np.radians(25.0), np.radians(100.0)  # of bends, in which the other arm goes along
+BEHIND = (0.37, 0.23)  # how much of a slow and a quick wave each hand and axis is behind the last
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
-EFFORT = 2.0  # seconds before and after over which the pace of the steps counts as effort
-TURN_SMOOTH, MOST_LATE = 0.11, np.radians(40.0)  # seconds over which hands follow a turn; and how far behind they are
-EASY_TURN, QUICK_TURN = np.radians((250.0, 450.0))  # a second; slower turns leave hands where they are
-DRAWN_IN, DRAWN_BACK = 0.05, 0.5  # metres, and part of their way ahead, that hands come nearer in the quickest
-PIN_IN, PIN_OUT = 0.40, 0.25  # seconds in which the body begins and ends to follow a palm
 
 
 def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: Context) -> HandTargets:
@@ -51,10 +42,12 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
     bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
-    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, HANG * bent), upright)
+    along = quat.multiply(
+        quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, context.settings.arms.bend_hang * bent), upright
+    )
     hang = hang + bent[:, None, None] * AWAY
     wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
-    wrists[..., 1] = np.maximum(wrists[..., 1], LOWEST_WRIST)
+    wrists[..., 1] = np.maximum(wrists[..., 1], context.settings.arms.lowest)
     out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
     elbows = quat.rotate(upright[:, None], out)
     free = np.tile(quat.IDENTITY, (len(at), 2, 1))
@@ -74,16 +67,16 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     swing = _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))
     rate = 1.0 / float(body.times[1] - body.times[0])
-    effort = lately(tempo_factor(plan, body.times, settings), rate)[:, None]
+    effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
     hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * effort
     hang[..., 2] = arms.forward + swing + arms.stream_forward * effort
-    jump = (jump_swing(plan, body.times) * (1.0 - body.reaching.max(axis=1)))[:, None]
+    jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
     hang[..., 2] += arms.jump * jump
-    hang += arms.wander * _wandering(body.times, plan.lead)
+    hang += arms.wander * _wandering(body.times, plan.lead, arms)
     if context.bar is None:  # a hand that has let go of the bar is soon on it again
-        hang = _behind_the_chest(hang, body.chest_yaw, rate)
+        hang = _behind_the_chest(hang, body.chest_yaw, rate, arms)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
@@ -94,36 +87,38 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
         target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
         lag[:, side] = follow(target, rate, controller) - target
     far = np.linalg.norm(lag, axis=2, keepdims=True)
-    return hang, lag * (FARTHEST_LAG * np.tanh(far / FARTHEST_LAG) / np.maximum(far, 1e-9))
+    return hang, lag * (arms.lag * np.tanh(far / arms.lag) / np.maximum(far, 1e-9))
 
 
-def lately(tempo: Array, rate: float) -> Array:
-    """Mean (n,) of the tempo over the seconds around: effort, by which hands rise slowly."""
-    width = max(1, round(EFFORT * rate))
+def lately(tempo: Array, rate: float, around: float) -> Array:
+    """Mean (n,) of the tempo over so many seconds around: effort, by which hands rise slowly."""
+    width = max(1, round(around * rate))
     summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
     return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
 
 
-def _behind_the_chest(hang: Array, yaw: Array, rate: float) -> Array:
+def _behind_the_chest(hang: Array, yaw: Array, rate: float, arms: ArmSettings) -> Array:
     """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest."""
-    ones = np.ones(len(yaw))
-    late = smooth_path(yaw[:, None], ones, rate, TURN_SMOOTH)[:, 0] - yaw
-    late = MOST_LATE * np.tanh(late / MOST_LATE)
+    ones, most = np.ones(len(yaw)), np.radians(arms.turn_late)
+    late = smooth_path(yaw[:, None], ones, rate, arms.turn_time)[:, 0] - yaw
+    late = most * np.tanh(late / most)
     quick = np.abs(np.gradient(yaw)) * rate
-    drawn = smooth_path(smooth((quick - EASY_TURN) / QUICK_TURN)[:, None], ones, rate, TURN_SMOOTH)
+    drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
+    drawn = smooth_path(drawn, ones, rate, arms.turn_time)
     near = hang.copy()
-    near[..., 0] -= DRAWN_IN * drawn * np.array([1.0, -1.0])
-    near[..., 2] *= 1.0 - DRAWN_BACK * drawn
+    near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
+    near[..., 2] *= 1.0 - arms.drawn_back * drawn
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
 
 
-def _wandering(times: Array, lead: int) -> Array:
+def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
     """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image.
 
     lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
     """
     hands = np.arange(6).reshape(2, 3)
-    slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in WANDER)
+    waves = zip((arms.wander_slow, arms.wander_quick), BEHIND, strict=True)
+    slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
     ways = np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
     return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
@@ -146,12 +141,13 @@ def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
 
 def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, context: Context) -> None:
     """Lead a hand down to its panel and up again, at times `at` (f,)."""
-    down, side, wrists = context.settings.hands.reach_down, press.side, hands.wrists
+    numbers, side, wrists = context.settings.hands, press.side, hands.wrists
+    down = numbers.reach_down
     near = np.flatnonzero((at > press.start - press.lead) & (at < press.end + down))
     if not len(near):
         return
     t = at[near]
-    hand, pole = _lay_down(press, body, context.skeleton)
+    hand, pole = _lay_down(press, body, context)
     wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(
         hand, palm_points(context.skeleton)[side].offset
     )
@@ -163,26 +159,26 @@ def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, contex
     free = wrists[near, side]
     goal = free + across[:, None] * (wrist - free)
     ahead = np.maximum(press.start - t, 0.0)
-    slap = SLAP * ahead * np.exp(-((ahead / 0.1) ** 2))
+    slap = numbers.slap * ahead * np.exp(-((ahead / 0.1) ** 2))
     goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
     wrists[near, side] = goal
     hands.rotation[near, side] = hand
-    pin = smooth(1.0 + (t - press.start) / PIN_IN) * (1.0 - smooth((t - press.end) / PIN_OUT))
+    pin = smooth(1.0 + (t - press.start) / numbers.follow_in) * (1.0 - smooth((t - press.end) / numbers.follow_out))
     for pins in (hands.pinned, hands.pull):
         pins[near, side] = np.maximum(pins[near, side], pin)
     hands.elbows[near, side] += across[:, None] * (pole - hands.elbows[near, side])
 
 
-def _lay_down(press: Press, body: Trajectory, skeleton: Skeleton) -> tuple[Array, Array]:
+def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, Array]:
     """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
 
     Of many ways the one that is easiest for shoulder and wrist as the body is at the note, and then the one whose
     fingers point most from the body to the panel.
     """
-    when, side = np.array([press.start]), press.side
+    when, side, skeleton = np.array([press.start]), press.side, context.skeleton
     ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
     yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
-    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw)
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
     panel = np.array([press.target[0], 0.0, press.target[1]])
@@ -197,9 +193,9 @@ def _lay_down(press: Press, body: Trajectory, skeleton: Skeleton) -> tuple[Array
     wrists = panel - quat.rotate(laid, palm_points(skeleton)[side].offset)
     # the body is drawn on until the arm reaches
     shoulder = np.tile(shoulders[0, side], (len(wrists), 1))
-    turns = arm_rotations(skeleton, side, ArmGoal(shoulder, np.tile(chest, (len(wrists), 1)), wrists, laid, poles))
+    joints = arm_rotations(skeleton, side, ArmGoal(shoulder, np.tile(chest, (len(wrists), 1)), wrists, laid, poles))
     effort = EASY * aside**2
-    for name, joint in (("shoulder", turns[0]), ("radiocarpal", turns[2])):
+    for name, joint in (("shoulder", joints[0]), ("radiocarpal", joints[2])):
         effort += np.maximum(beyond(skeleton, f"{SIDES[side]}_{name}", joint) + EASE, 0.0) ** 2
     best = int(np.argmin(effort))
     return laid[best], poles[best]

@@ -20,7 +20,7 @@ class Torso:
 
 @dataclass(frozen=True, slots=True)
 class HandTargets:
-    """Targets of both hands at f times, as in `ik.solver.Targets`; the second axis is left, right.
+    """Targets of both hands at f times, as in `ik.full_body.Targets`; the second axis is left, right.
 
     Arrays are changed in place by what leads a hand elsewhere: the bar first, then panels.
     """

@@ -45,7 +45,7 @@ NAMES = (
 VL5, VT10, VT4, LEG, ARM = (NAMES.index(n) for n in ("vl5", "vt10", "vt4", "l_hip", "l_sternoclavicular"))
 
 
-class Body(NamedTuple):
+class Rig(NamedTuple):
     """What the kernels know of a skeleton: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
 
     arm : its length; reach, follow : as in `solve`
@@ -68,7 +68,7 @@ class Trunk(NamedTuple):
     shoulders: Array
 
 
-class Hands(NamedTuple):
+class ArmTargets(NamedTuple):
     """The part of `Targets` that is about hands."""
 
     wrists: Array
@@ -78,7 +78,7 @@ class Hands(NamedTuple):
     elbows: Array
 
 
-class Legs(NamedTuple):
+class LegTargets(NamedTuple):
     """The part of `Targets` that is about legs."""
 
     ankles: Array
@@ -100,10 +100,10 @@ class ArmGoal(NamedTuple):
     elbows: Array
 
 
-def body_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Body:
+def rig_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Rig:
     joints = np.array([skeleton.index(name) for name in NAMES])
     upper, lower = (float(np.linalg.norm(skeleton.offsets[joints[ARM + k]])) for k in (2, 3))
-    return Body(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
+    return Rig(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
 
 
 def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
@@ -131,9 +131,9 @@ def _put(out: Array, q: Quat) -> None:
 
 
 @njit(cache=True)
-def _pull_root(root: Vec, turn: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
+def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
     """Move the root as little as needed until both ankles are within reach of their hips."""
-    left, right = qrot(turn, hips[0]), qrot(turn, hips[1])
+    left, right = qrot(pelvis, hips[0]), qrot(pelvis, hips[1])
     for _ in range(PULL_LEGS):
         a, b = sub(ankles[0], add(root, left)), sub(ankles[1], add(root, right))
         far_a, far_b = length(a) - reach, length(b) - reach
@@ -176,25 +176,25 @@ def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
 
 @njit(cache=True)
 def _torso(
-    root: Vec, turn: Quat, chest: Quat, shoulders: tuple[Vec, Vec], body: Body
+    root: Vec, pelvis: Quat, chest: Quat, shoulders: tuple[Vec, Vec], rig: Rig
 ) -> tuple[Quat, Quat, Quat, Vec, Vec]:
     """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
-    offsets, joints = body.offsets, body.joints
+    offsets, joints = rig.offsets, rig.joints
     left, right = shoulders
     o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
     lo = add(_vec(offsets[joints[ARM]]), _vec(offsets[joints[ARM + 1]]))
     ro = add(_vec(offsets[joints[ARM + 4]]), _vec(offsets[joints[ARM + 5]]))
     rest_mid = scale(add(lo, ro), 0.5)
-    p1 = add(root, qrot(turn, _vec(offsets[joints[VL5]])))
-    q1, q2 = qlerp(turn, chest, 0.34), qlerp(turn, chest, 0.67)
+    p1 = add(root, qrot(pelvis, _vec(offsets[joints[VL5]])))
+    q1, q2 = qlerp(pelvis, chest, 0.34), qlerp(pelvis, chest, 0.67)
     # a back that is pushed together always rounds backward: without this it would snap from side to side
     p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
     p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
     middle = scale(add(left, right), 0.5)
     p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
     q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
-    q1 = _aim(qlerp(turn, q3, 0.34), o10, sub(p2, p1))
-    q2 = _aim(qlerp(turn, q3, 0.67), o4, sub(p3, p2))
+    q1 = _aim(qlerp(pelvis, q3, 0.34), o10, sub(p2, p1))
+    q2 = _aim(qlerp(pelvis, q3, 0.67), o4, sub(p3, p2))
     return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
 
 
@@ -205,17 +205,17 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 
 
 @njit(cache=True)
-def solve_frames(body: Body, trunk: Trunk, hands: Hands, legs: Legs, rotations: Array) -> None:
-    offsets, joints = body.offsets, body.joints
+def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, rotations: Array) -> None:
+    offsets, joints = rig.offsets, rig.joints
     hips = (_vec(offsets[joints[LEG]]), _vec(offsets[joints[LEG + 4]]))
-    most = body.arm * ARM_REACH
+    most = rig.arm * ARM_REACH
     for f in range(len(trunk.root)):
-        turn, chest = _quat(trunk.pelvis[f]), _quat(trunk.chest[f])
+        pelvis, chest = _quat(trunk.pelvis[f]), _quat(trunk.chest[f])
         place, out = _vec(trunk.root[f]), rotations[f]
         goals = (_vec(legs.ankles[f, 0]), _vec(legs.ankles[f, 1]))
         left, right = _vec(trunk.shoulders[f, 0]), _vec(trunk.shoulders[f, 1])
-        place = _pull_root(place, turn, hips, goals, body.reach)
-        q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+        place = _pull_root(place, pelvis, hips, goals, rig.reach)
+        q1, q2, q3, sl, sr = _torso(place, pelvis, chest, (left, right), rig)
         if hands.pull[f, 0] > 0.0 or hands.pull[f, 1] > 0.0:
             for _ in range(PULL_ROUNDS):
                 gl = _excess(sl, _vec(hands.wrists[f, 0]), most, hands.pull[f, 0])
@@ -223,18 +223,18 @@ def solve_frames(body: Body, trunk: Trunk, hands: Hands, legs: Legs, rotations: 
                 if length(gl) + length(gr) < 1e-5:
                     break
                 both = add(gl, gr)
-                place = _pull_root(add(place, scale(both, body.follow)), turn, hips, goals, body.reach)
+                place = _pull_root(add(place, scale(both, rig.follow)), pelvis, hips, goals, rig.reach)
                 left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
                 right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
-                q1, q2, q3, sl, sr = _torso(place, turn, chest, (left, right), body)
+                q1, q2, q3, sl, sr = _torso(place, pelvis, chest, (left, right), rig)
         trunk.root[f, 0], trunk.root[f, 1], trunk.root[f, 2] = place
-        _put(out[joints[0]], turn)
-        _put(out[joints[VL5]], qmul(qconj(turn), q1))
+        _put(out[joints[0]], pelvis)
+        _put(out[joints[VL5]], qmul(qconj(pelvis), q1))
         _put(out[joints[VT10]], qmul(qconj(q1), q2))
         _put(out[joints[VT4]], qmul(qconj(q2), q3))
         for side in range(2):
-            _arm((f, side), sl if side == 0 else sr, q3, body, hands, out)
-            _leg((f, side), add(place, qrot(turn, hips[side])), turn, body, legs, out)
+            _arm((f, side), sl if side == 0 else sr, q3, rig, hands, out)
+            _leg((f, side), add(place, qrot(pelvis, hips[side])), pelvis, rig, legs, out)
 
 
 @njit(cache=True)
@@ -246,15 +246,15 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
 
 
 @njit(cache=True)
-def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, body: Body, hands: Hands, out: Array) -> None:
+def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTargets, out: Array) -> None:
     """One arm; at : frame and side."""
     f, side = at
-    offsets, joints, base = body.offsets, body.joints, ARM + 4 * side
+    offsets, joints, base = rig.offsets, rig.joints, ARM + 4 * side
     upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
     pinned = hands.pinned[f, side]
-    most = body.arm * (0.985 + 0.0145 * pinned)
+    most = rig.arm * (0.985 + 0.0145 * pinned)
     reach = sub(_vec(hands.wrists[f, side]), shoulder)
-    world, bend = limb(upper, lower, _vec(body.hinges[side]), reach, _vec(hands.elbows[f, side]), most)
+    world, bend = limb(upper, lower, _vec(rig.hinges[side]), reach, _vec(hands.elbows[f, side]), most)
     _put(out[joints[base + 1]], qmul(qconj(chest), world))
     _put(out[joints[base + 2]], bend)
     forearm = qmul(world, bend)
@@ -264,25 +264,25 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, body: Body, hands: Han
 
 
 @njit(cache=True)
-def _leg(at: tuple[int, int], hip: Vec, turn: Quat, body: Body, legs: Legs, out: Array) -> None:
+def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets, out: Array) -> None:
     """One leg; at : frame and side."""
     f, side = at
-    offsets, joints, base = body.offsets, body.joints, LEG + 4 * side
+    offsets, joints, base = rig.offsets, rig.joints, LEG + 4 * side
     upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
     reach = sub(_vec(legs.ankles[f, side]), hip)
-    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(legs.knees[f, side]), body.reach + 1e-5)
+    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(legs.knees[f, side]), rig.reach + 1e-5)
     shank, foot = qmul(world, bend), _quat(legs.soles[f, side])
-    _put(out[joints[base]], qmul(qconj(turn), world))
+    _put(out[joints[base]], qmul(qconj(pelvis), world))
     _put(out[joints[base + 1]], bend)
     _put(out[joints[base + 2]], qmul(qconj(shank), foot))
     _put(out[joints[base + 3]], qmul(qconj(foot), _quat(legs.toes[f, side])))
 
 
 @njit(cache=True)
-def one_arm(body: Body, side: int, goal: ArmGoal, out: Array) -> None:
-    hands = Hands(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
+def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
+    hands = ArmTargets(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
     for f in range(len(goal.shoulders)):
         hands.wrists[0, side] = goal.wrists[f]
         hands.rotation[0, side] = goal.hands[f]
         hands.elbows[0, side] = goal.elbows[f]
-        _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), body, hands, out[f])
+        _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), rig, hands, out[f])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.settings import KneeSettings
 from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
@@ -14,13 +15,8 @@ from dancetutor_cli.rig.capsules import depth, leg_capsules
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-STRADDLE = np.radians((20.0, 34.0))  # legs that lean so far aside begin to turn their knees outward, and do so fully
-FROM_TOES = np.radians(28.0)  # then a knee points so far outward of the toes
 OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
-KNEE_TO_TOES = 0.6  # part of the way from the body's front to the toes that a knee points
-KNEE_OUT, MOST_ASIDE = np.radians(4.5), np.radians(46.0)  # and outward of that; at most so far aside
 ROOM = 0.004  # metres between the legs from which on knees give way
-MOST_GIVEN = np.radians(24.0)  # that a knee gives way
 LOOKED = 0.03  # metres; legs farther apart are left alone
 TRIED = np.radians(1.5)  # how far a knee is turned to see what that does
 FLAT = 1e-4  # square metres per radian; where turning a knee does less it is no use
@@ -36,37 +32,39 @@ class Hung:
     ankles: Array
 
 
-def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float) -> Array:
+def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSettings) -> Array:
     """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
 
     legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
     In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
     """
     left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
-    out = []
+    out, most_aside = [], np.radians(knees.most)
+    begin, full = np.radians((knees.straddle, knees.straddle_most))
     for side, foot in enumerate(feet):
         outward = 1.0 if side == 0 else -1.0
         leg = legs[:, side]
         lean = np.arctan2(outward * np.sum(leg * left, axis=1) - hips - OUTSIDE, -leg[:, 1])
         toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
-        aside = np.arctan2(KNEE_TO_TOES * np.sin(toes), 1.0 - KNEE_TO_TOES + KNEE_TO_TOES * np.cos(toes))
-        aside = outward * np.clip(aside, -MOST_ASIDE, MOST_ASIDE) + KNEE_OUT
-        most = np.minimum(outward * toes + FROM_TOES, MOST_ASIDE)
-        straddled = smooth((lean - STRADDLE[0]) / (STRADDLE[1] - STRADDLE[0]))
+        aside = np.arctan2(knees.to_toes * np.sin(toes), 1.0 - knees.to_toes + knees.to_toes * np.cos(toes))
+        aside = outward * np.clip(aside, -most_aside, most_aside) + np.radians(knees.out)
+        most = np.minimum(outward * toes + np.radians(knees.straddle_out), most_aside)
+        straddled = smooth((lean - begin) / (full - begin))
         aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
         out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
     return np.stack(out, axis=1)
 
 
-def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array) -> Array:
+def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, give: float) -> Array:
     """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
 
+    give : degrees that a knee gives way at most
     Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
     """
     hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
     hips = hung.pelvis[:, None] + quat.rotate(hung.rotation[:, None], hips)
     bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
-    near = np.arange(len(poles))
+    near, most = np.arange(len(poles)), np.radians(give)
     given = np.zeros((len(poles), 2))
     for _ in range(ROUNDS):
         legs = _Legs(hips[near], hung.ankles[near], poles[near], (bones[0], bones[1]))
@@ -77,10 +75,10 @@ def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array) -> Array:
             break
         slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
         need = np.maximum(deep + ROOM, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
-        given[near] = np.clip(given[near] - need[:, None] * slope, -MOST_GIVEN, MOST_GIVEN)
+        given[near] = np.clip(given[near] - need[:, None] * slope, -most, most)
     out = poles.copy()
-    turned = np.abs(given).max(axis=1) > 0.0
-    out[turned] = _swivelled(hung.ankles[turned] - hips[turned], poles[turned], given[turned])
+    moved = np.abs(given).max(axis=1) > 0.0
+    out[moved] = _swivelled(hung.ankles[moved] - hips[moved], poles[moved], given[moved])
     return out
 
 

@@ -14,7 +14,6 @@ from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_po
 
 Array = NDArray[np.float64]
 BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # where the fingers of a hand on the bar point
-ELBOWS_IN = 0.4  # how far inward elbows of hands on the bar point; without it forearms would turn past their limit
 
 
 def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
@@ -54,7 +53,11 @@ def rest_on_bar(
     return along + over, hand
 
 
-def elbows_on_bar(chest: Array) -> Array:
-    """Where elbows of hands on the bar point (f, 2, 3), for chests turned by (f, 4): back, and a little inward."""
+def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
+    """Where elbows of hands on the bar point (f, 2, 3), for chests turned by (f, 4): back, and a little inward.
+
+    Otherwise forearms would turn past their limit.
+    """
+    inward = settings.elbows_in
     upright = quat.swing_twist(chest, UP)[1]
-    return quat.rotate(upright[:, None], np.array([[-ELBOWS_IN, 0.0, -1.0], [ELBOWS_IN, 0.0, -1.0]]))
+    return quat.rotate(upright[:, None], np.array([[-inward, 0.0, -1.0], [inward, 0.0, -1.0]]))

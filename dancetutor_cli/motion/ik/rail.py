@@ -19,7 +19,6 @@ CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on it
 TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
 SOFT, FIRST, LAST = 8.0, 0.2, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
 PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
-LIFT = 0.05  # metres that a hand rises on its way to the rail
 
 
 def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, context: Context) -> None:
@@ -33,13 +32,13 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
         wrist, hand = rest_on_bar(bar, grip.side, grip.x, context.skeleton, settings)
         share = grip_share(grip, at[near], settings.reach_time)
         weight[near, grip.side] += share
-        goal[near, grip.side] += share[:, None] * (wrist + [0.0, LIFT, 0.0] * (1.0 - share[:, None]))
+        goal[near, grip.side] += share[:, None] * (wrist + [0.0, settings.lift, 0.0] * (1.0 - share[:, None]))
         hands.rotation[near, grip.side] = hand
     weight = np.minimum(weight, 1.0)
     hands.wrists[:] += goal - weight[..., None] * hands.wrists
     hands.wrists[:] += _around(hands.wrists, weight, torso)
     hands.pinned[:] = np.maximum(hands.pinned, weight**PIN)
-    hands.elbows[:] += weight[..., None] * (elbows_on_bar(torso.chest) - hands.elbows)
+    hands.elbows[:] += weight[..., None] * (elbows_on_bar(torso.chest, settings) - hands.elbows)
 
 
 def _around(wrists: Array, weight: Array, torso: Torso) -> Array:

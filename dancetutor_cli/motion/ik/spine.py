@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.settings import BodySettings
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.quaternion import leaning
@@ -12,18 +13,17 @@ from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES
 
 Array = NDArray[np.float64]
-PELVIS_SHARE, BENT_SHARE = 0.58, 0.42  # the pelvis tilts this part of the chest's tilt; and so much of a deep bend
-DEEP = np.radians(75.0)  # that is one by so much
+DEEP = np.radians(75.0)  # a bend by so much is a deep one
 SPINE = (0.0, 0.34, 0.67)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
-def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array) -> tuple[Array, Array, Array]:
-    """Rotations (f, 4) of pelvis and chest for a chest that leans by tilt (f, 2) as in `paths.leaning`; yaws (f,).
+def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array, settings: BodySettings) -> tuple[Array, Array, Array]:
+    """Rotations (f, 4) of pelvis and chest for a chest that leans by tilt (f, 2) as in `quaternion.leaning`; yaws (f,).
 
     And how deep (f,) that bend is, 0 to 1.
     """
     bent = smooth(np.linalg.norm(tilt, axis=1) / DEEP)
-    share = PELVIS_SHARE + (BENT_SHARE - PELVIS_SHARE) * bent
+    share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
     return leaning(share[:, None] * tilt, yaw), leaning(tilt, chest_yaw), bent
 
 
@@ -34,8 +34,8 @@ def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, ch
     """
     place, offset = pelvis, skeleton.offsets
     for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):
-        turn = quat.slerp(pelvis_rotation, chest, np.full(len(pelvis), share))
-        place = place + quat.rotate(turn, offset[skeleton.index(name)])
+        rotation = quat.slerp(pelvis_rotation, chest, np.full(len(pelvis), share))
+        place = place + quat.rotate(rotation, offset[skeleton.index(name)])
     out = []
     for side in SIDES:
         shoulder = skeleton.index(f"{side}_shoulder")

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.gait import turned, walking
+from dancetutor_cli.motion.gait import walking, with_gait
 from dancetutor_cli.motion.ik.arms import arm_targets
+from dancetutor_cli.motion.ik.full_body import Targets
 from dancetutor_cli.motion.ik.hands import Torso
 from dancetutor_cli.motion.ik.knees import Hung, knee_poles, knees_apart
-from dancetutor_cli.motion.ik.solver import Targets
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet
@@ -20,7 +20,7 @@ from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.legs import ankle_of
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.body import half_hips
+from dancetutor_cli.rig.dimensions import half_hips
 from dancetutor_cli.rig.quaternion import UP
 
 Array = NDArray[np.float64]
@@ -33,10 +33,10 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
     yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw)
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
     gait = walking(plan.walks, at)
     if gait is not None:
-        pelvis_rotation, chest = turned(gait, pelvis_rotation, chest)
+        pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
     hands = arm_targets(plan, body, at, Torso(shoulders, chest), context)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
@@ -47,8 +47,8 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
         quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
         for t, f in zip(straight, feet, strict=True)
     ]
-    poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton))
-    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles)
+    poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
+    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles, context.settings.knees.give)
     return Targets(
         pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,

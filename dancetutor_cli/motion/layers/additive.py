@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.ik.solver import Poses
+from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
@@ -20,9 +20,6 @@ from dancetutor_cli.rig.soles import hand_direction, palm_normal
 
 Array = NDArray[np.float64]
 ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-WRIST_TIME = 5.7  # seconds in which a free hand drops and comes up
-BLINK = 0.16  # seconds from open to open
-LAUGH_AFTER, LAUGH_RISE = 0.35, 0.40  # seconds after the last contact until she begins to laugh, and until she does
 SEED = 20140513
 
 
@@ -50,7 +47,7 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
         _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * raised)
     for side, phase, bent in (("lr"[lead], 0.0, 0.8), ("rl"[lead], 0.4, 1.2)):
         hand = hand_direction(skeleton, side)
-        drop = bent + 0.35 * np.sin(2 * np.pi * (times / WRIST_TIME + phase))
+        drop = bent + 0.35 * np.sin(2 * np.pi * (times / settings.wrist_time + phase))
         _turn(
             skeleton,
             rotations,
@@ -62,10 +59,10 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
     _turn(skeleton, rotations, "skullbase", FRONT, -bob)
     nod = np.radians(settings.breath_nod) * breath
     _turn(skeleton, rotations, "vc4", ACROSS, nod)
-    closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time)
+    closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time, settings.blink)
     for side in "lr":
         _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
-    laugh = smooth(np.clip((times - doing.last - LAUGH_AFTER) / LAUGH_RISE, 0.0, 1.0))
+    laugh = smooth(np.clip((times - doing.last - settings.laugh_after) / settings.laugh_rise, 0.0, 1.0))
     _turn(skeleton, rotations, "temporomandibular", ACROSS, np.radians(JAW_LAUGH) * laugh)
 
 
@@ -75,13 +72,13 @@ def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: 
         rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle(axis, angle))
 
 
-def eyelids(times: Array, every: float) -> Array:
-    """How far the lids are closed (f,), 0 to 1: a blink about `every` seconds, always at the same ones."""
+def eyelids(times: Array, every: float, blink: float) -> Array:
+    """How far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
     cell = np.floor(times / every).astype(np.int64)
     out = np.zeros_like(times)
     for c in np.unique(cell):
         start = (c + np.random.default_rng([SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
-        s = (times - start) / BLINK
+        s = (times - start) / blink
         near = (s > 0) & (s < 1)
         out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]
     return out

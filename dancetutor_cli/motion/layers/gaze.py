@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.ik.solver import Poses
+from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.facing import screen_yaw
 from dancetutor_cli.numerics.ease import smooth
@@ -16,9 +16,6 @@ from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.quaternion import UP, leaning
 
 Array = NDArray[np.float64]
-NECK_SHARE = 0.4  # part of the head's turn that the neck takes
-HEAD_TILT, BENT_TILT = 0.35, 0.6  # the head leans this part of the chest's lean; and so much of a deep bend
-BENT_YAW = 0.35  # in a deep bend the head turns only this part of the way from the chest to the screen
 SHALLOW, DEEP = np.radians(25.0), np.radians(85.0)  # of bends: the first changes nothing, the second is deep
 
 
@@ -31,10 +28,10 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     tilt = sample_path(body.tilt, body.times, at)
     # who bends down to a panel looks at it: no neck turns so far back
     bent = smooth((np.linalg.norm(tilt, axis=1) - SHALLOW) / (DEEP - SHALLOW))
-    head_yaw = chest_yaw + (1.0 + (BENT_YAW - 1.0) * bent) * (head_yaw - chest_yaw)
-    lean = HEAD_TILT + (BENT_TILT - HEAD_TILT) * bent
+    head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * (head_yaw - chest_yaw)
+    lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
     whole = quat.multiply(quat.conjugate(chest), leaning(lean[:, None] * tilt, head_yaw))
-    neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), NECK_SHARE))
+    neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), settings.look.neck_share))
     rotations[:, skeleton.index("vc4")] = neck
     rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)
     limit = np.radians(settings.look.eyes_limit)

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
+from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
-from dancetutor_cli.motion.swing.timing import swung, travelled
-from dancetutor_cli.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
+from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, ball_to_ankle
+from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
 _ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
@@ -19,7 +20,7 @@ _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a pat
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
 OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
-ANKLE = 0.069  # metres by which the ankle lies behind the middle of the shoe
+ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
 CROSSED = np.radians(112.0)  # legs may cross so far: the line between the ankles, as seen from that between the hips
 WRONG = 0.10  # metres of room that a radian beyond it counts as
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it

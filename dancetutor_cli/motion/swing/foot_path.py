@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.moves import Gallop, Hover, Jump, Move, Pivot, Swing, Walk
+from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.swing.clearance import bend
 from dancetutor_cli.motion.swing.jump_ways import turning
-from dancetutor_cli.motion.swing.timing import swung, travelled
+from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.rig.body import dancer_foot
+from dancetutor_cli.rig.dimensions import dancer_foot
 
 Array = NDArray[np.float64]
 EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it

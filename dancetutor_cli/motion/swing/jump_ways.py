@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.swing.clearance import SHARES, bend, enough, headings, segment_gaps, shoe_line
-from dancetutor_cli.motion.swing.timing import swung, travelled
-from dancetutor_cli.rig.body import BALL_AHEAD
+from dancetutor_cli.motion.swing.pace import swung, travelled
+from dancetutor_cli.rig.dimensions import BALL_AHEAD
 
 Array = NDArray[np.float64]
 TURNING = 0.5  # part of a jump's way that turns about the middle between the feet; the rest is straight

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.rig.body import BALL_AHEAD
+from dancetutor_cli.rig.dimensions import BALL_AHEAD
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad

@@ -18,7 +18,7 @@ from dancetutor_cli.motion.trajectory.height import span
 from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
 from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
 from dancetutor_cli.numerics.smoothing import cubic, low_pass, sample_path
-from dancetutor_cli.rig.body import ball_to_ankle
+from dancetutor_cli.rig.dimensions import ball_to_ankle
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]

@@ -13,13 +13,13 @@ from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.motion.trajectory.balance import Pendulum, balanced_path
-from dancetutor_cli.motion.trajectory.bar import kept_back, leaning_share
 from dancetutor_cli.motion.trajectory.beat_bounce import beat_bounce
 from dancetutor_cli.motion.trajectory.counter_rotation import counter_rotation
 from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_drive, jump_lean, tempo_factor
 from dancetutor_cli.motion.trajectory.facing import chest_and_head, pelvis_yaw
 from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, height_path
+from dancetutor_cli.motion.trajectory.leaning_back import kept_back, leaning_share
 from dancetutor_cli.motion.trajectory.legs import leg_room
 from dancetutor_cli.motion.trajectory.reach import bent_down, leaning_tilt, reaching
 from dancetutor_cli.numerics.controller import Controller, follow
@@ -32,7 +32,6 @@ from dancetutor_cli.rig.skeleton import Skeleton
 Array = NDArray[np.float64]
 BALANCE, HEIGHT = "her balance", "the height of her body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
-LEAN_SMOOTH = 0.15  # seconds over which she leans into a stream and out of it
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
 
 
@@ -80,27 +79,27 @@ class Known:
 def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, known: Known | None = None) -> Trajectory:
     """The body on evenly spaced `times` (n,), feet sampled at the same times; known : None in the first round."""
     settings = context.settings
-    held = leaning_share(plan.grips, times)
+    held = leaning_share(plan.grips, times, settings.bar)
     course, softened = _course(plan, times, feet, context, known)
     reached = reaching(plan.presses, times, settings.hands)
     gait = walking(plan.walks, times)
     own = np.zeros(len(times)) if gait is None else gait.own
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
-    beat = beat_bounce(context.beats, times, tempo, reached.sum(axis=1) + held + own)
-    leg = settings.body.stance - settings.body.stream_crouch * tempo - crouch
+    beat = beat_bounce(context, times, tempo, reached.sum(axis=1) + held + own)
+    leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
     sink = (np.zeros(len(times)) if gait is None else gait.sink) + settings.layers.bounce * beat
-    push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times))
+    push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
-    legs = Legs(leg, sink, bent, settings.jump.drive * np.maximum(push, catch))
+    legs = LegWish(leg, sink, bent, settings.jump.drive * np.maximum(push, catch))
     mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
     chest = chest + loose * counter_rotation(feet, course, chest, head, context)
-    calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, LEAN_SMOOTH)[:, 0]
+    calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
     lean = settings.body.lean + settings.body.stream_lean * calm
     lean = np.radians(lean - held * (lean + settings.bar.lean_back))
     tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
@@ -130,7 +129,7 @@ def _course(
     pendulum = _pendulum(times, None if known is None else known.trajectory.mass_height, above)
     mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand)
     if context.bar is not None:
-        mass = kept_back(mass, leaning_share(plan.grips, times), context.bar, settings.bar)
+        mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar)
     return Course(times, mass, above, yaw), (BALANCE,) if swept else ()
 
 
@@ -161,7 +160,7 @@ def _slowness(y: Array, acceleration: Array, least: float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Legs:
+class LegWish:
     """How she would like to stand at n times.
 
     length : (n,) hip to ankle; sink : (n,) how far a plant or a beat lets her sink, metres
@@ -174,7 +173,7 @@ class Legs:
     firm: Array
 
 
-def _wish(feet: Feet, course: Course, context: Context, legs: Legs) -> HeightWish:
+def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> HeightWish:
     """How high the centre of mass would like to be and may be."""
     settings, above = context.settings, course.above[:, 1]
     wanted = np.full(len(course.yaw), np.inf)

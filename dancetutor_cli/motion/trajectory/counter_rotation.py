@@ -16,13 +16,11 @@ from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.legs import hip_over
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import smooth_path
-from dancetutor_cli.rig.body import ball_to_ankle, leg_masses
+from dancetutor_cli.rig.dimensions import ball_to_ankle, leg_masses
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 PELVIS, CHEST = 0.0031, 0.0100  # inertia about the vertical of pelvis and belly; of chest, head and arms: m^2 per mass
-NECK_EASY, NECK_ROOM = np.radians(35.0), np.radians(30.0)  # the neck turns so far with ease, and so much farther
-SLOWEST, FASTEST = 0.32, 0.050  # time constants in seconds, 0.5 and 3.2 Hz: the chest turns against what is between
 
 
 def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, context: Context) -> Array:
@@ -34,12 +32,13 @@ def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, cont
     lower = leg_momentum(feet, course, context.skeleton) + PELVIS * np.gradient(course.yaw, step)
     turned = (np.cumsum(lower) * step / CHEST + chest)[:, None]
     ones = np.ones(len(chest))
-    slow = smooth_path(turned, ones, course.rate, SLOWEST)
-    against = -arms.cancel * smooth_path(turned - slow, ones, course.rate, FASTEST)[:, 0]
+    slow = smooth_path(turned, ones, course.rate, arms.twist_slowest)
+    against = -arms.cancel * smooth_path(turned - slow, ones, course.rate, arms.twist_fastest)[:, 0]
     most = np.radians(arms.twist)
     if most <= 0.0:
         return np.zeros(len(chest))
-    free = 1.0 - smooth((np.abs(head - chest) - NECK_EASY) / NECK_ROOM)
+    look = context.settings.look
+    free = 1.0 - smooth((np.abs(head - chest) - np.radians(look.neck_easy)) / np.radians(look.neck_room))
     return np.asarray(free * most * np.tanh(against / most))
 
 

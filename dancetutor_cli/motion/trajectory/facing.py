@@ -14,15 +14,13 @@ from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import smooth_path
 
 Array = NDArray[np.float64]
-WRUNG = np.radians(120.0)  # before the screen is right behind her, the chest gives up looking at it over so far
-PELVIS_SMOOTH, CHEST_SMOOTH, HEAD_SMOOTH = 0.08, 0.05, 0.04  # seconds over which each of them turns
 
 
 def pelvis_yaw(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     """Yaw (n,) of the pelvis at even times, radians, unwrapped: it turns with the steps, and for hands behind it."""
     turned = _turned(plan.turns, times) + turned_for_hands(plan.presses, times, settings.hands)
     rate = 1.0 / float(times[1] - times[0])
-    return np.asarray(smooth_path(turned[:, None], np.ones(len(times)), rate, PELVIS_SMOOTH)[:, 0])
+    return np.asarray(smooth_path(turned[:, None], np.ones(len(times)), rate, settings.inertia.pelvis_turn)[:, 0])
 
 
 def _turned(turns: tuple[Turn, ...], times: Array) -> Array:
@@ -51,15 +49,17 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     to_screen = screen_yaw(course.ground, settings)
     gap = wrapped(to_screen - course.yaw)
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
-    torso = torso * smooth((np.pi - np.abs(gap)) / WRUNG)  # a spine is not wrung from one side to the other at once
+    torso = torso * smooth(
+        (np.pi - np.abs(gap)) / np.radians(look.wrung)
+    )  # a spine is not wrung from one side to the other at once
     torso = torso * (1.0 - ahead)
     for press in (p for p in plan.presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
         share = press_share(press, course.times, settings.hands.reach_down)
         torso = torso + share * (np.copysign(np.radians(look.torso_limit), press.turn) - torso)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
-    smoothed = smooth_path(torso[:, None], ones, course.rate, CHEST_SMOOTH)
+    smoothed = smooth_path(torso[:, None], ones, course.rate, settings.inertia.chest_turn)
     chest = course.yaw + follow(smoothed, course.rate, controller)[:, 0]
     gap = wrapped(to_screen - chest)
     head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
     head = head * (1.0 - settings.walk.ahead * ahead)
-    return chest, chest + smooth_path(head[:, None], ones, course.rate, HEAD_SMOOTH)[:, 0]
+    return chest, chest + smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0]

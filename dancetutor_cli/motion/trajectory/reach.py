@@ -14,7 +14,6 @@ from dancetutor_cli.numerics.smoothing import smooth_path
 Array = NDArray[np.float64]
 Presses = tuple[Press, ...]
 BEFORE_HER = 0.15  # metres that the place from which she looks to a panel is behind her root
-TILT_SMOOTH = 0.05  # seconds over which the lean changes
 
 
 def press_share(press: Press, times: Array, down: float) -> Array:
@@ -71,7 +70,7 @@ def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, se
         to = np.column_stack((np.sin(way), np.cos(way)))
         share = press_share(press, times[near], down)
         tilt[near] = tilt[near] + share[:, None] * (np.radians(hands.bend) * to - tilt[near])
-    return smooth_path(tilt, np.ones(len(times)), course.rate, TILT_SMOOTH)
+    return smooth_path(tilt, np.ones(len(times)), course.rate, hands.bend_time)
 
 
 def wrapped(angle: Array) -> Array:

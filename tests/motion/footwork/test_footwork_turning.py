@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bake_plays import context
 
 from dancetutor_cli.bake.settle import _may_rise
-from dancetutor_cli.motion.footwork.footing import FARTHEST_TURN, FREE_WINDOW, NO_TIME, Footing
-from dancetutor_cli.motion.footwork.jumps import Flight, fly
-from dancetutor_cli.motion.footwork.planner import LEAD, _turn_start
+from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
+from dancetutor_cli.motion.footwork.flights import Flight, flown
+from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, NO_TIME, Footing
+from dancetutor_cli.motion.footwork.turning import AHEAD, turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
-from dancetutor_cli.motion.ik.knees import FROM_TOES, knee_poles
+from dancetutor_cli.motion.ik.knees import knee_poles
 from dancetutor_cli.motion.model import Contact
-from dancetutor_cli.motion.moves import Jump, Pivot, Step
 from dancetutor_cli.motion.plan import FootTrack, Plan
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
-from dancetutor_cli.motion.swing.timing import swung
+from dancetutor_cli.motion.swing.pace import swung
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.play.model import Part
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.body import half_hips
+from dancetutor_cli.rig.dimensions import half_hips
 from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+SETTINGS = default_settings()
 
 
 @pytest.mark.parametrize("far", [60.0, 120.0, 180.0, 220.0])
@@ -30,37 +35,36 @@ from dancetutor_cli.rig.skeleton import dancer_skeleton
 def test_a_body_that_turns_is_little_ahead_of_the_foot_that_turns_with_it(
     far: float, duration: float, flight: float
 ) -> None:
-    begin = _turn_start(10.0, duration, 10.0 - flight, far)
+    begin = turn_start(10.0, duration, 10.0 - flight, far)
     times = np.linspace(10.0 - duration, 10.0, 200)
     body = far * smooth((times - begin) / (10.0 - begin))
     foot = far * swung((times - 10.0 + flight) / flight)
-    assert (body - foot).max() <= LEAD + 3.0
+    assert (body - foot).max() <= AHEAD + 3.0
     assert begin >= 10.0 - duration
 
 
 def test_small_turns_begin_with_their_move() -> None:
-    assert _turn_start(10.0, 0.4, 9.64, 10.0) == 9.6
+    assert turn_start(10.0, 0.4, 9.64, 10.0) == 9.6
 
 
 @pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
 def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[float, float]) -> None:
-    footing = Footing(context(), 0)
-    footing.normal = 180.0  # the play would have her face backward
+    footing = replace(Footing.at_home(context(), 0), normal=180.0)  # the play would have her face backward
     for foot, yaw in zip(footing.feet, np.radians(yaws), strict=True):
-        foot.yaw = float(yaw)
+        footing = footing.with_foot(replace(foot, yaw=float(yaw)))
     body = footing.turned_to()
     apart = abs(np.radians(yaws[0] - yaws[1])) / 2  # from feet that point so far apart it is in the middle
-    assert max(abs(body - foot.yaw) for foot in footing.feet) <= max(FARTHEST_TURN, apart) + 1e-9
+    assert max(abs(body - foot.yaw) for foot in footing.feet) <= max(np.radians(SETTINGS.step.body_turn), apart) + 1e-9
 
 
 def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
-    footing = Footing(context(), 0)
+    footing = Footing.at_home(context(), 0)
     goals = [(f.ball + np.array([0.6, 0.0]), f.yaw) for f in footing.feet]
-    fly(footing, Flight(1.0, 1.24), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    footing = flown(footing, Flight(1.0, 1.24), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
     swing = footing.feet[0].moves[-1]
     for share, least in ((0.1, 0.25), (0.2, 0.5)):
-        height = foot_path(footing.tracks()[0], np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        height = foot_path(footing.feet[0].track(), np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
         assert isinstance(swing, Jump)
         falling = swing.height * 4 * share * (1 - share)
         assert height - falling >= least * swing.tuck
@@ -68,13 +72,13 @@ def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
 
 def test_a_heel_does_not_drop_in_no_time() -> None:
     """A foot that leaves or pivots a moment after it has landed keeps its heel where it is: no jump of its pitch."""
-    footing = Footing(context(), 0)
+    footing = Footing.at_home(context(), 0)
     foot = footing.feet[0]
     there = (0.3, 0.1), 0.2, (0.2, 0.4, 0.15, 0.0)
     for move in (Step(1.0, 1.2, *there, 0.05), Pivot(1.2 + FREE_WINDOW, 1.4, *there), Step(1.41, 1.6, *there, 0.05)):
-        foot.move(move, foot.ball, foot.yaw)
+        foot = foot.moved(move, foot.ball, foot.yaw)
     times = np.linspace(1.19, 1.43, 2401)
-    path = foot_path(footing.tracks()[0], times, 0.09)
+    path = foot_path(foot.track(), times, 0.09)
     assert NO_TIME > 0.01
     assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
 
@@ -87,11 +91,11 @@ def test_knees_point_farther_outward_in_a_straddle() -> None:
     pelvis = np.tile([0.0, 0.85, 0.0], (2, 1))
     ankles = np.array([[[0.10, 0.08, 0.0], [-0.10, 0.08, 0.0]], [[0.62, 0.08, 0.0], [-0.62, 0.08, 0.0]]])
     hips = half_hips(dancer_skeleton())
-    poles = knee_poles(still, (feet[0], feet[1]), ankles - pelvis[:, None], hips)
+    poles = knee_poles(still, (feet[0], feet[1]), ankles - pelvis[:, None], hips, SETTINGS.knees)
     aside = np.arctan2(poles[..., 0], poles[..., 2]) * [1.0, -1.0]  # outward, radians: (stand or straddle, side)
     np.testing.assert_allclose(aside[:, 0], aside[:, 1], atol=1e-9)
     assert (aside[1] > aside[0] + 0.15).all()
-    assert (aside[1] <= 0.2 + FROM_TOES + 1e-9).all()
+    assert (aside[1] <= 0.2 + np.radians(SETTINGS.knees.straddle_out) + 1e-9).all()
 
 
 def test_an_ankle_is_eased_only_where_its_foot_is_high() -> None:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
-from test_ik_solver import REACH, random_targets
+from test_ik_full_body import REACH, random_targets
 
-from dancetutor_cli.motion.ik.solver import Targets, solve
+from dancetutor_cli.motion.ik.full_body import Targets, solve
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 

@@ -55,14 +55,15 @@ def test_where_head_and_eyes_can_they_look_at_the_screen(motion: Motion) -> None
 
 
 def test_she_blinks_every_few_seconds_and_shuts_her_eyes_wholly() -> None:
-    every = default_settings().layers.blink_time
+    layers = default_settings().layers
+    every, blink = layers.blink_time, layers.blink
     times = np.arange(0.0, 120.0, 1 / 240)
-    shut = eyelids(times, every)
+    shut = eyelids(times, every, blink)
     begins = times[1:][(shut[1:] > 0.5) & (shut[:-1] <= 0.5)]
     assert len(begins) == pytest.approx(120 / every, abs=2)
     assert shut.max() > 0.99 and (shut == 0).mean() > 0.9
     assert np.diff(begins).min() > 0.5 and np.ptp(np.diff(begins)) > 0.5  # not like a clock
-    np.testing.assert_array_equal(eyelids(times[1000:2000], every), shut[1000:2000])
+    np.testing.assert_array_equal(eyelids(times[1000:2000], every, blink), shut[1000:2000])
 
 
 def test_the_lids_of_the_motion_close(motion: Motion) -> None:

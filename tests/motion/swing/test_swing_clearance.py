@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bake_plays import context
@@ -10,9 +12,9 @@ from dancetutor_cli.motion.footwork.foothold import Spot, beside, pose
 from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, over
+from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
-from dancetutor_cli.motion.swing.timing import swung, travelled
-from dancetutor_cli.rig.body import HALF_SHOE
+from dancetutor_cli.rig.dimensions import HALF_SHOE
 
 APART = default_settings().step.apart
 
@@ -29,10 +31,11 @@ def gap(a: np.ndarray, b: np.ndarray) -> float:
 @pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
 def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
     """The right foot lands on the panel on whose middle the left one stands."""
-    footing = Footing(context(), 0)
+    footing = Footing.at_home(context(), 0)
     panel = np.array([0.14, 0.0])
     left, right = footing.feet
-    left.ball, left.yaw = ball_of(panel, yaw), yaw
+    left = replace(left, ball=ball_of(panel, yaw), yaw=float(yaw))
+    footing = footing.with_foot(left)
     ball, turned = beside(footing, right, Spot(panel, np.full(2, 0.116)), left.ball, yaw, pose(footing, left))
     shoes = [
         line_points(middle_of(b, footing.toes(f, y)), footing.toes(f, y))
@@ -61,11 +64,11 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
 
 
 def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
-    footing = Footing(context(), 0)
     panel, neighbour = np.array([0.14, 0.0]), np.array([-0.14, 0.0])
-    footing.mined = neighbour[None]
+    footing = replace(Footing.at_home(context(), 0), mined=neighbour[None])
     left, right = footing.feet
-    right.ball = np.array([0.5, 0.3])
+    right = replace(right, ball=np.array([0.5, 0.3]))
+    footing = footing.with_foot(right)
     ball, yaw = beside(footing, left, Spot(panel, np.full(2, 0.1)), np.array([0.05, 0.09]), 0.6, pose(footing, right))
     toes = footing.toes(left, yaw)
     heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
@@ -100,12 +103,12 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
 
 def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
     """Its toes on the left panel; turned to the front its heel would lie on the down panel, which has a mine."""
-    footing = Footing(context(), 0)
-    left = footing.feet[0]
-    left.ball, left.yaw = np.array([0.187, -0.046]), float(np.radians(65.0))
+    footing = Footing.at_home(context(), 0)
+    left = replace(footing.feet[0], ball=np.array([0.187, -0.046]), yaw=float(np.radians(65.0)))
+    footing = footing.with_foot(left)
     far = np.array([-0.2, 0.1])
     free = footing.pivot_yaw(left, 0.0, far, 0.0)
-    footing.mined = np.array([[0.0, -0.28]])
+    footing = replace(footing, mined=np.array([[0.0, -0.28]]))
     kept = footing.pivot_yaw(left, 0.0, far, 0.0)
     assert over(footing.mined, left.ball[None], np.array([footing.toes(left, free)]))[0]
     assert not over(footing.mined, left.ball[None], np.array([footing.toes(left, kept)]))[0]

@@ -7,11 +7,11 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake
-from dancetutor_cli.bake.quality.body import body_of
 from dancetutor_cli.bake.quality.capsules import limb_depths
+from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.motion.ik.knees import Hung, knees_apart
 from dancetutor_cli.motion.swing.clearance import CROSSED, SHARES, Way, detour, wrung
-from dancetutor_cli.motion.swing.timing import travelled
+from dancetutor_cli.motion.swing.pace import travelled
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 SCENES: dict[str, tuple[list[Event], bool]] = {
@@ -66,7 +66,7 @@ def test_knees_that_meet_give_way_and_others_stay() -> None:
     inward = np.array([[-0.45, 0.0, 1.0], [0.45, 0.0, 1.0]])
     poles = np.stack([np.tile([0.0, 0.0, 1.0], (2, 1)), inward, inward])
     turned = np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
-    given = knees_apart(skeleton, Hung(pelvis, turned, ankles), poles)
+    given = knees_apart(skeleton, Hung(pelvis, turned, ankles), poles, 24.0)
     np.testing.assert_array_equal(given[0], poles[0])
     for frame in (1, 2):
         assert given[frame, 0, 0] > poles[frame, 0, 0] + 0.02 and given[frame, 1, 0] < poles[frame, 1, 0] - 0.02

@@ -1,6 +1,6 @@
 """Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames.
 
-Order of work in a frame (spec/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
+Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
 Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
 pulled after it; then rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
 """
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.ik.kernels import ARM, ArmGoal, Hands, Legs, Trunk, body_of, one_arm, solve_frames
+from dancetutor_cli.motion.ik.kernels import ARM, ArmGoal, ArmTargets, LegTargets, Trunk, one_arm, rig_of, solve_frames
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
@@ -71,10 +71,10 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
     root = np.array(targets.pelvis, dtype=np.float64)
     pull = targets.pinned if targets.pull is None else targets.pull
     solve_frames(
-        body_of(skeleton, reach, follow),
+        rig_of(skeleton, reach, follow),
         Trunk(root, targets.pelvis_rotation, targets.chest, targets.shoulders),
-        Hands(targets.wrists, targets.hand_rotation, targets.pinned, pull, targets.elbows),
-        Legs(targets.ankles, targets.soles, targets.toes, targets.knees),
+        ArmTargets(targets.wrists, targets.hand_rotation, targets.pinned, pull, targets.elbows),
+        LegTargets(targets.ankles, targets.soles, targets.toes, targets.knees),
         rotations,
     )
     return Poses(rotations, root)
@@ -82,8 +82,8 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
 
 def arm_rotations(skeleton: Skeleton, side: int, goal: ArmGoal) -> tuple[Array, Array, Array]:
     """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
-    body = body_of(skeleton)
+    rig = rig_of(skeleton)
     out = np.zeros((len(goal.shoulders), len(skeleton.names), 4))
-    one_arm(body, side, goal, out)
+    one_arm(rig, side, goal, out)
     first = ARM + 4 * side
-    return out[:, body.joints[first + 1]], out[:, body.joints[first + 2]], out[:, body.joints[first + 3]]
+    return out[:, rig.joints[first + 1]], out[:, rig.joints[first + 2]], out[:, rig.joints[first + 3]]

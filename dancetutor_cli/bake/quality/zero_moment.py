@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import GRAVITY, GROUND, Body
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import GRAVITY, GROUND, Body
 from dancetutor_cli.numerics.smoothing import low_pass
 
 Array = NDArray[np.float64]

@@ -45,7 +45,7 @@ def body_of(motion: Motion) -> Body:
     """Resample a motion at its own rate, but at least 60 per second, at even times."""
     rate = max(motion.fps, 60.0)
     times = np.arange(np.ceil(motion.times[0] * rate - 1e-6), np.floor(motion.times[-1] * rate + 1e-6) + 1) / rate
-    joints, soles, mass, turns, heads = [], [], [], [], []
+    joints, soles, mass, locals_, heads = [], [], [], [], []
     feet, skull = sole_points(motion.skeleton), motion.skeleton.index("skullbase")
     for start in range(0, len(times), PIECE):
         rotations, root = sample(motion, times[start : start + PIECE])
@@ -53,9 +53,9 @@ def body_of(motion: Motion) -> Body:
         joints.append(positions)
         soles.append(np.stack([over_ground(place(f, positions, world), motion.ground) for f in feet], axis=1))
         mass.append(centre_of_mass(motion.skeleton, positions, world))
-        turns.append(rotations)
+        locals_.append(rotations)
         heads.append(positions[:, skull])
-    return Body(rate, times, *(np.concatenate(x) for x in (joints, soles, mass, turns, heads)))
+    return Body(rate, times, *(np.concatenate(x) for x in (joints, soles, mass, locals_, heads)))
 
 
 def over_ground(points: Array, ground: Ground | None) -> Array:

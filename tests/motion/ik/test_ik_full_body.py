@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from dancetutor_cli.motion.ik.solver import Targets, solve
+from dancetutor_cli.motion.ik.full_body import Targets, solve
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton

@@ -10,21 +10,20 @@ from dancetutor_cli.motion.settings import BarSettings
 from dancetutor_cli.numerics.ease import smooth
 
 Array = NDArray[np.float64]
-REST = 1.2  # seconds; the body leaves the bar only if no hand is on it for longer
 
 
-def leaning_share(grips: tuple[Grip, ...], times: Array) -> Array:
+def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) -> Array:
     """How much the body leans on the bar (n,), 0 to 1: wholly while hands hold it, also while one takes it anew."""
-    out = np.zeros(len(times))
+    out, rest = np.zeros(len(times)), settings.leave
     spans: list[list[float]] = []
     for grip in grips:
-        if spans and grip.start - spans[-1][1] < REST:
+        if spans and grip.start - spans[-1][1] < rest:
             spans[-1][1] = max(spans[-1][1], grip.end)
         else:
             spans.append([grip.start, grip.end])
     for start, end in spans:
-        before = smooth((times - start + REST / 2) / (REST / 2))
-        out = np.maximum(out, before * smooth((end + REST / 2 - times) / (REST / 2)))
+        before = smooth((times - start + rest / 2) / (rest / 2))
+        out = np.maximum(out, before * smooth((end + rest / 2 - times) / (rest / 2)))
     return out
 
 

@@ -1,0 +1,103 @@
+"""Both feet leave the ground at once and come down at once: what jumps, leaps and hops over mines have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.foot_moves import Jump
+from dancetutor_cli.motion.footwork.chart_row import Row
+from dancetutor_cli.motion.footwork.foothold import Pitches, around, heel_up
+from dancetutor_cli.motion.footwork.footing import Footing, Proposal, pair
+from dancetutor_cli.motion.swing.jump_ways import jump_ways
+from dancetutor_cli.rig.mass import GRAVITY
+
+Array = NDArray[np.float64]
+HEEL_UP = 0.12  # seconds on the ground that a heel needs to come down and rise again for a jump
+LONGER = 0.03  # metres; a foot with so much the longer way leaves first in quick jumps
+Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """Both feet in the air from `take_off` to `land`, seconds.
+
+    turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
+    first : when each foot leaves the ground, if before the take-off of both
+    """
+
+    take_off: float
+    land: float
+    turned: float = 0.0
+    eased: float = 1.0
+    first: tuple[float, float] = (np.inf, np.inf)
+
+
+def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) -> Footing:
+    """The footing after both feet have gone to their goals, on ways that keep the shoes apart."""
+    jump, feet = footing.settings.jump, footing.feet
+    starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
+    before = np.array([footing.toes(f) for f in feet])
+    after = np.array([footing.toes(f, yaw) for f, (_, yaw) in zip(feet, goals, strict=True)])
+    turn = float(np.radians(flight.turned))
+    share, aside = jump_ways(starts, before, ends, after, turn, footing.settings.step.apart)
+    far = float(np.linalg.norm(ends - starts, axis=1).max())
+    tuck = flight.eased * tuck_for(far, jump.tuck, jump.far)
+    middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
+    for side, foot in enumerate(feet):
+        lift = min(flight.first[side], flight.take_off)
+        height = GRAVITY * (flight.land - lift) ** 2 / 8
+        # heels that have just come down do not get up so far again
+        up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
+        leave, most, land_pitch, rest = pitches[side]
+        rise = (up * leave, most, land_pitch, rest)
+        swing = Jump(
+            lift, flight.land, pair(ends[side]), float(after[side]), rise, height, pair(aside[side]), tuck, turn,
+            middles, share,
+        )  # fmt: skip
+        footing = footing.with_foot(foot.moved(swing, ends[side], goals[side][1]))
+    return footing
+
+
+def hop(
+    row: Row, footing: Footing, take_off: float, goals: Goals, columns: list[list[int]], turned: float = 0.0
+) -> Proposal:
+    """Both feet in the air from `take_off` until the row.
+
+    columns : that each foot stands over then; turned : degrees that the line between the feet turns
+    """
+    jump, step = footing.settings.jump, footing.settings.step
+    eased = 1.0 - jump.quick_flat * row.cut
+    lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
+    pitches = [heel_up(step, row.cut, lift, lift, land, c) for c in columns]
+    flight = Flight(take_off, row.time, turned, eased, _first(row, footing, take_off, goals))
+    return Proposal(flown(footing, flight, goals, pitches), take_off)
+
+
+def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[float, float]:
+    """When each foot leaves the ground in a quick jump: the one with the longer way before both take off."""
+    step, feet, time = footing.settings.step, footing.feet, row.time
+    ways = [float(np.linalg.norm(ball - f.ball)) for (ball, _), f in zip(goals, feet, strict=True)]
+    side = int(ways[1] > ways[0])
+    foot, (target, yaw) = feet[side], goals[side]
+    out = [take_off, take_off]
+    early = max(foot.earliest(time), time - row.duration * (1.0 - step.double_support_fast))
+    straight = around(footing, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
+    if straight and ways[side] > ways[1 - side] + LONGER:
+        out[side] -= row.cut * max(take_off - early, 0.0)
+    return out[0], out[1]
+
+
+def take_off_for(footing: Footing, time: float, flight: float) -> float:
+    """When both feet take off to land at `time`, if they would fly for so many seconds."""
+    feet = footing.feet
+    latest = (f.latest(time, footing.settings.step.let_go) for f in feet)
+    take_off = min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
+    return max(take_off, *(f.rested(time) for f in feet))
+
+
+def tuck_for(distance: float, tuck: float, far: float) -> float:
+    """How much more feet are pulled up that go so far: legs that reach far must not lock."""
+    return tuck * (1.0 + 1.5 * min(distance / far, 1.5) ** 2)

@@ -1,0 +1,99 @@
+"""A rule proposes, only the planner applies: no rule changes a footing or a plan, and the planner asks each."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bake_plays import context, play
+
+import dancetutor_cli.motion.footwork as room
+from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Step
+from dancetutor_cli.motion.footwork import footing as footing_module
+from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
+from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal
+from dancetutor_cli.motion.footwork.holding import hold
+from dancetutor_cli.motion.footwork.jumps import jump
+from dancetutor_cli.motion.footwork.mines import avoid_mines
+from dancetutor_cli.motion.footwork.planner import NEWEST, Planner
+from dancetutor_cli.motion.footwork.steps import step
+from dancetutor_cli.play.model import Limb
+
+L, R = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
+FOLDER = Path(room.__file__).parent
+APPLIES = {"planner.py", "insertion.py", "__init__.py"}
+EVENTS = [(1.0, {0: L}), (1.4, {3: R}), (2.4, {0: L}), (2.5, {3: R}), (3.2, {1: L, 2: R}), (3.7, {3: R})]
+
+
+def test_what_rules_are_given_cannot_be_changed() -> None:
+    footing = Footing.at_home(context(), 0)
+    for thing in (footing, footing.feet[0], Proposal(footing)):
+        assert is_dataclass(thing)
+        with pytest.raises(FrozenInstanceError):
+            setattr(thing, fields(thing)[0].name, None)
+    assert isinstance(footing.feet, tuple) and isinstance(footing.feet[0].moves, tuple)
+
+
+def rule_files() -> list[Path]:
+    return [path for path in sorted(FOLDER.glob("*.py")) if path.name not in APPLIES]
+
+
+@pytest.mark.parametrize("path", rule_files(), ids=lambda path: path.stem)
+def test_no_rule_changes_a_plan_or_what_belongs_to_others(path: Path) -> None:
+    """No attribute is set, no list of another's is changed, and no plan is made of another one."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        for target in targets:
+            if isinstance(target, ast.Attribute):
+                assert isinstance(target.value, ast.Name) and target.value.id == "self", ast.unparse(node)
+        if isinstance(node, ast.Call):
+            called = ast.unparse(node.func)
+            assert called != "Plan" and not (called == "replace" and ast.unparse(node.args[0]) == "plan"), called
+    for method in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.name != "__init__"):
+        for node in ast.walk(method):
+            if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+                raise AssertionError(f"{method.name} sets {ast.unparse(node)}")
+
+
+def test_the_same_footing_gets_the_same_proposal_again() -> None:
+    danced = play(EVENTS)
+    footing, own = Footing.at_home(context(), 0), context()
+    for i in range(len(danced.rows)):
+        row = Row(danced, own, i, float(danced.rows.second[i]), pressed_by(danced, i), 0.4)
+        before = repr(footing)
+        rule = jump if len(row.feet) == 2 else lambda row, on: step(row, row.feet[0], on)
+        first, again = rule(row, footing), rule(row, footing)
+        avoid_mines(row, footing)
+        hold(footing, row.feet[0], 0, row.time, row.time + 1.0)
+        assert repr(footing) == before
+        assert repr(first) == repr(again)
+        footing = first.footing
+
+
+def test_each_rule_is_asked() -> None:
+    """Steps, a gallop and a jump of one play are each there, from the planner that applied them."""
+    danced = play(EVENTS)
+    plan = Planner(danced, lambda tick: tick / 48.0, context()).run()
+    kinds = {type(move) for track in plan.feet for move in track.moves}
+    assert {Step, Gallop, Jump} <= kinds
+    assert Hover not in kinds
+
+
+def test_moves_that_are_put_aside_are_in_the_plan() -> None:
+    """A long stream: rules see only the newest moves of a foot, the plan has all of them in order."""
+    count = 12 * NEWEST
+    danced = play([(1.0 + 0.3 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(count)])
+    planner = Planner(danced, lambda tick: tick / 48.0, context())
+    plan = planner.run()
+    assert all(len(foot.moves) <= 2 * NEWEST for foot in planner.footing.feet)
+    for track in plan.feet:
+        steps = [move.land for move in track.moves if isinstance(move, Step)]
+        assert len(steps) == count // 2
+        assert (np.diff(steps) > 0.5).all()
+    whole = FootState.track(replace(planner.begin.feet[0], moves=plan.feet[0].moves))
+    assert whole == plan.feet[0]
+    assert footing_module.FREE_WINDOW > 0
