@@ -58,7 +58,12 @@ def subjects(folder: Path) -> Iterator[tuple[ChartSubject, Any]]:
 def quickest(rule: type[TimedRule], subject: ChartSubject, sure: float) -> float:
     """Milliseconds of the quickest move of a rule in a chart, endless without one."""
     assert subject.play is not None
-    options = {**default_rules()[rule.code], "severity": "info", "max_seconds": 9.0, "least_meter": 10**9}
+    options = {
+        **default_rules()[rule.code],
+        "severity": "info",
+        "max_seconds": MILLISECONDS[-1] / 1000,
+        "least_meter": 10**9,
+    }
     found = [float("inf")]
     for row, seconds, _, _ in rule(options).happens(subject):
         confidence = subject.sureness(float(subject.play.rows.tick[row]) / 48)[1]

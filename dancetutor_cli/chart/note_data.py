@@ -192,7 +192,7 @@ class _Grid:
                 findings.setdefault(finding, []).append(int(self.line[row]))
         for what, found_at in foreign.items():
             message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
-            warnings.append(ReadWarning("compound-note", message, found_at[0]))
+            warnings.append(ReadWarning("stepf2-note", message, found_at[0]))
         for (code, text), found_at in findings.items():
             report(warnings, code, text, np.array(found_at))
         for which, code, text in (

@@ -123,6 +123,10 @@ class Feet:
         steps = self._play.rows.steps
         return np.asarray(((self._play.limb >= 0).sum(axis=1) == 1) & ~(steps == _ROLL_TAP).any(axis=1))
 
+    def crossed(self, row: int) -> bool:
+        """Whether the feet are crossed after a row."""
+        return bool(abs(self._play.facing[row]) > 90 + _EPSILON)
+
     def follows_freely(self, row: int) -> bool:
         """Whether one panel is stepped on in a row and one in that before it, and neither a mine nor a hold has a say.
 
@@ -250,9 +254,9 @@ class Feet:
     def mines_under_held(self) -> Iterator[tuple[int, int, int, float]]:
         """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
-        The other foot holds a panel. Where the foot holds its other panel itself, there is no time that would do: 0.
-        A foot that steps elsewhere in the row has left, and before a wall of mines everybody waits between the panels:
-        those are told only of a foot that has hardly stepped.
+        The other foot holds a panel, or the foot itself holds the panel beside it. A foot that steps elsewhere in the
+        row has left, and before a wall of mines everybody waits between the panels: those are told only of a foot that
+        has hardly stepped.
         """
         if not self._has_mines:
             return
@@ -272,7 +276,7 @@ class Feet:
             at, since = int(row[mine]), self._since_step(foot, int(row[mine]))
             if (play.limb[at] == foot).any() or (rows.mines[at].sum() >= WALL and since > HARDLY):
                 continue
-            yield at, int(column[mine]), foot, 0.0 if brackets[mine, foot] else since
+            yield at, int(column[mine]), foot, since
 
     def _since_step(self, foot: int, row: int) -> float:
         """Seconds since the last step of a foot before a row."""

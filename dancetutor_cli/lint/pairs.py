@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dancetutor_cli.chart import Chart, Song, load
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.errors import FileError
 
 Key = tuple[str, str, str]
@@ -27,19 +28,26 @@ def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
         return
     here, there = _by_key(song), _by_key(other)
     for key, chart in here.items():
-        if key not in there:
-            yield f"{chart.label} is not in {name}", chart.line, chart.index
-        elif what := _difference(chart, there[key]):
+        if key in there and (what := _difference(chart, there[key])):
             yield f"{chart.label} has other {what} in {name}", chart.line, chart.index
-    for key, chart in there.items():
-        if key not in here:
-            yield f"{chart.label} of {name} is missing here", None, None
+    if added := [chart for key, chart in here.items() if key not in there]:
+        yield f"{_labels(added)} not in {name}", added[0].line, added[0].index
+    if lost := [chart for key, chart in there.items() if key not in here]:
+        yield f"{_labels(lost)} only in {name}, missing here", None, None
+
+
+def _labels(charts: list[Chart]) -> str:
+    """ "dance-single Hard 9 and dance-single Easy 3 are"."""
+    names = [chart.label for chart in charts]
+    return f"{', '.join(names[:-1])} and {names[-1]} are" if len(names) > 1 else f"{names[0]} is"
 
 
 def _by_key(song: Song) -> dict[Key, Chart]:
-    """Charts by type and difficulty, and by their place among those that share both."""
+    """Charts, but of lights, by type and difficulty, and by their place among those that share both."""
     found: dict[Key, Chart] = {}
     for chart in song.charts:
+        if is_lights(chart.steps_type):
+            continue
         place = 0
         while (key := (chart.steps_type, chart.difficulty, str(place))) in found:
             place += 1

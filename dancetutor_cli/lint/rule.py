@@ -40,7 +40,9 @@ class Rule(ABC):
 
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
         """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
-        return Finding(self.code, self.name, self.options["severity"], message, **{**place, **more})
+        return Finding(
+            **{"severity": self.options["severity"], **place, **more}, rule=self.code, name=self.name, message=message
+        )
 
 
 class FileRule(Rule):
@@ -60,12 +62,25 @@ class ChartRule(Rule):
 
 
 class ReaderRule(Rule):
-    """A rule that hands on warnings of the reader, about the song or about a chart: those of its `codes`."""
+    """A rule that hands on warnings of the reader, about the song or about a chart: those of its `codes`.
+
+    usual : codes of what some authors do on purpose: never more than an info
+    """
+
+    usual: ClassVar[frozenset[str]] = frozenset()
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
-        """One finding for each warning that is claimed."""
-        for message, place in subject.warnings(self.codes):
-            yield self.finding(message, place)
+        """One finding for each line with warnings that are claimed."""
+        kinds: tuple[tuple[frozenset[str], dict[str, str]], ...]
+        kinds = (self.codes - self.usual, {}), (self.usual, {"severity": "info"})
+        for codes, least in kinds:
+            told: dict[int | None, tuple[list[str], dict[str, Any]]] = {}
+            for message, place in subject.warnings(codes):
+                messages, _ = told.setdefault(place["line"], ([], place))
+                if not any(known in message for known in messages):
+                    messages.append(message)
+            for messages, place in told.values():
+                yield self.finding("; also: ".join(messages), place, **least)
 
 
 class Happening(NamedTuple):
@@ -81,10 +96,12 @@ class TimedRule(ChartRule):
     """A rule about moves that are worth a word only if they are quick.
 
     Option `max_seconds` says how quick: a number, or "by-meter": what at most `share` per cent of the charts of this
-    meter contain, see `lint.times`. `times` : what the move is called there
+    meter contain, see `lint.times`. `times` : what the move is called there. `passage_beats` : those at most so many
+    beats apart are one finding, at the surest of them; 0: each is one
     """
 
     times: ClassVar[str] = ""
+    passage_beats: ClassVar[float] = 0
     about_feet: ClassVar[bool] = True
 
     @classmethod
@@ -99,11 +116,24 @@ class TimedRule(ChartRule):
         """Every time it happens, however slow."""
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each that is quick enough."""
+        """One finding for each that is quick enough, or for each passage of them."""
         longest = self.longest(subject) + EPSILON
-        for row, seconds, said, column in self.happens(subject):
-            if seconds <= longest:
-                yield self.finding(said, subject.at_row(row, column))
+        for passage in self._passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
+            rows = [one.row for one in passage]
+            row, _, said, column = passage[subject.surest(rows) if self.about_feet else 0]
+            if len(rows) > 1:
+                said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
+            yield self.finding(said, subject.at_row(row, column))
+
+    def _passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+        passage: list[Happening] = []
+        for one in found:
+            if passage and subject.beat(one.row) - subject.beat(passage[-1].row) > self.passage_beats - EPSILON:
+                yield passage
+                passage = []
+            passage.append(one)
+        if passage:
+            yield passage
 
     def longest(self, subject: ChartSubject) -> float:
         """The longest time (s) that is still quick in this chart; 0: nothing is."""

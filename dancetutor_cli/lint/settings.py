@@ -45,7 +45,7 @@ class Settings:
 
     layers: tuple[Layer, ...] = ()
     stream_rows: int = 16
-    sure_feet: float = 80
+    sure_feet: float = 85
     coin_toss: int = 5
     _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
 

@@ -162,6 +162,17 @@ class ChartSubject:
         sure = [] if play.confidence is None else [float(play.confidence[one]) for one in rows]
         return min(margins, default=None), min((one for one in sure if one == one), default=None)
 
+    def surest(self, rows: list[int]) -> int:
+        """Place in some rows of the one whose feet are surest, of several the first."""
+        known = [self.sureness(self.beat(row))[1] for row in rows]
+        sure = [1.0 if one is None else one for one in known]
+        return sure.index(max(sure))
+
+    def beat(self, row: int) -> float:
+        """Beat of a row of the play."""
+        assert self.play is not None
+        return round(int(self.play.rows.tick[row]) / TICKS_PER_BEAT, 6)
+
     def ties(self) -> Iterator[tuple[int, bool]]:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
         if self.play is None or self.play.margin is None:

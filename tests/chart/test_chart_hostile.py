@@ -80,7 +80,7 @@ def test_music_that_is_refused(row: dict[str, str]) -> None:
         ("eightcol_in_single.sm", "long-row"),
         ("single_slash.sm", "unknown-note"),
         ("keysounds.ssc", "odd-keysound"),
-        ("braces.ssc", "compound-note"),
+        ("braces.ssc", "stepf2-note"),
         ("rows_384.sm", "row-collision"),
         ("head_in_hold.sm", "unmatched-head"),
         ("routine.ssc", "several-players"),

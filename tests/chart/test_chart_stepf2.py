@@ -40,7 +40,7 @@ def test_letters_of_players_are_no_notes() -> None:
     found, said = notes("000X000000", "00y00000Y0", "0030000000", "1000000000", steps_type="pump-double")
     assert found == [(3, 0, "TAP")]
     (only,) = said
-    assert only.startswith("compound-note: X, Y and Z are steps of several players") and only.endswith("2 rows")
+    assert only.startswith("stepf2-note: X, Y and Z are steps of several players") and only.endswith("2 rows")
 
 
 def test_an_end_without_a_head_is_still_told() -> None:

@@ -12,6 +12,7 @@ from dancetutor_cli.resources import charts_path, config_path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
+import lint_reading  # noqa: E402
 import lint_table  # noqa: E402
 import lint_times  # noqa: E402
 
@@ -48,10 +49,30 @@ def test_bands(steps_type: str, meter: int, said: str) -> None:
     assert lint_table.band(steps_type, meter) == said
 
 
-def test_findings_are_counted_and_sampled_with_their_rows() -> None:
+def test_findings_are_counted() -> None:
     found = lint_table.kept(DEMO)
     assert sum(found["charts"].values()) == 12 and "DT202" in found["names"]
-    said = lint_table.sample(DEMO, "DT202", 5, 1, "warning")
-    assert said == lint_table.sample(DEMO, "DT202", 5, 1, "warning")
-    (marked,) = [line for line in said.split("#1 ")[1].split("#2 ")[0].splitlines() if line.startswith(" > ")]
-    assert "spin" in marked and " ms " in marked
+
+
+def test_findings_are_written_to_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = ["lint_reading.py", str(DEMO), "--rules", "DT202,DT5", "--count", "2", "--severity", "warning", "--to"]
+    for name in ("first", "again"):
+        monkeypatch.setattr(sys, "argv", [*words, str(tmp_path / name)])
+        assert lint_reading.main() == 0
+    (said,) = (tmp_path / "first").iterdir()
+    assert said.name == "DT202-warning.txt"  # of DT5xx the defaults have no warning
+    text = said.read_text("utf-8")
+    assert text == (tmp_path / "again" / said.name).read_text("utf-8")
+    assert "would I want to know this?" in text and " BPM" in text
+    for one in text.split("\n#")[1:]:
+        (marked,) = [line for line in one.splitlines() if line.startswith("   >")]
+        assert "spin" in marked
+
+
+def test_a_finding_about_the_file_is_read_with_its_lines(tmp_path: Path) -> None:
+    path = tmp_path / "x.sm"
+    path.write_text("#TITLE:T;\n#BPMS:0=120,4=fast;\n#NOTES:dance-single::Hard:9::\n1000\n;\n", encoding="utf-8")
+    ((subject, findings), *_) = lint_table.linted(tmp_path)
+    finding = next(one for one in findings if one.rule == "DT105")
+    said = lint_reading.drawn(subject, finding)
+    assert "   >     2  #BPMS:0=120,4=fast;" in said and "        1  #TITLE:T;" in said

@@ -18,7 +18,8 @@ class Crossover(TimedRule):
     dancetutor.yaml may do so for others.
 
     `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
-    but begins anew. by-meter: what at most `share` per cent of the charts of a meter have; on two pads, where walking
+    but begins anew; nor where the steps from one rest or jump to the next can be danced uncrossed on the other foot.
+    by-meter: what at most `share` per cent of the charts of a meter have; on two pads, where walking
     from one to the other crosses the feet, few crossings are so quick.
 
     Bad (max_seconds = 0.6):
@@ -42,5 +43,10 @@ class Crossover(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each step after which the feet are newly crossed."""
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
+
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
-            yield Happening(first, subject.pause(first), "the feet cross here")
+            if goes_on_the_other_foot(subject, first, self.longest(subject)):
+                continue
+            said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"
+            yield Happening(first, subject.pause(first), said)

@@ -17,7 +17,8 @@ class Footswitch(MoveRule):
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
-    by-meter: what at most `share` per cent of the charts of a meter have.
+    by-meter: what at most `share` per cent of the charts of a meter have. Nor where a rest comes soon after it, to
+    which it can be danced as a jack without crossing.
 
     Bad (max_seconds = 0.6):
 
@@ -42,4 +43,8 @@ class Footswitch(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Footswitches on one panel; what a bracket does beside it is DT210's."""
-        return [row for row in subject.rows_with_any(self.move) if not subject.brackets(row)]
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
+
+        rows = [row for row in subject.rows_with_any(self.move) if not subject.brackets(row)]
+        quick = self.longest(subject)
+        return [row for row in rows if not goes_on_the_other_foot(subject, row, quick, jacked=True)]

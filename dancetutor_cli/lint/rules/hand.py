@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class Hand(MoveRule):
-    """Three panels are down at once, so a hand has to help, in a chart whose players do not use hands yet.
+    """Three panels are down at once: a foot brackets two of them, or a hand helps; these players do neither yet.
 
-    Held panels count; on pads with panels side by side some players bracket two of the three.
+    The games count such rows as hands. Held panels count. Those at most two measures apart are one finding.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
 
@@ -37,10 +37,15 @@ class Hand(MoveRule):
     name = "hand"
     move = "hand"
     about_feet = False  # it is the number of panels that asks for it
-    said = "three panels at once: a hand has to press one"
+    passage_beats = 8
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
         if subject.feet is None:
             return []
         return sorted({*subject.rows_with_any(self.move), *subject.feet.triples()})
+
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """Whether a bracket would do."""
+        bracketed = self.move not in (subject.play.moves[row] if subject.play else ())
+        return "three panels at once: " + ("a bracket, or a hand" if bracketed else "a hand has to press one")

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 class MineUnderHold(TimedRule):
     """A mine comes under a foot that can hardly step aside: the weight is on a panel that is held down.
 
-    The foot holds the panel beside it; or the other foot holds one, and the step was just now. Before a wall of three
-    mines or more everybody waits between the panels: it counts only right after a step. `max_seconds`: just now means
-    at most this long before the mine; by-meter: what at most `share` per cent of the charts of a meter have.
+    The foot holds the panel beside it, or the other foot holds one, and the step was just now. Before a wall of three
+    mines or more everybody waits between the panels. `max_seconds`: just now means at most this long before the mine:
+    who taps a panel has left it after about a tenth of a second; by-meter: what at most `share` per cent of the charts
+    of a meter have.
 
     Bad (max_seconds = 1.5):
 

@@ -8,7 +8,8 @@ from dancetutor_cli.lint.rule import ReaderRule
 class OddNotes(ReaderRule):
     """Rows are too short or too long, characters are unknown, or rows are so close that one overwrites the other.
 
-    The games read around it, each in its own way, and so does the program, as ITGmania does.
+    The games read around it, each in its own way, and so does the program, as ITGmania does. What StepF2 writes for
+    itself, and charts for several players, are told as an info.
 
     Bad:
 
@@ -36,5 +37,7 @@ class OddNotes(ReaderRule):
             "unknown-note",
             "row-collision",
             "several-players",
+            "stepf2-note",
         }
     )
+    usual = frozenset({"several-players", "stepf2-note"})

@@ -11,13 +11,18 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
+BESIDE = 179.0  # degrees: the feet stand side by side, the right one on the left
+ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
 class Spin(MoveRule):
-    """The shortest turn to this row passes behind the dancer's back, beyond 180 degrees: she spins (in a jump: DT203).
+    """The pattern goes on round behind the dancer's back, beyond 180 degrees: a spin, or a doublestep to avoid it.
+
+    Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot, nor of
+    a walk along two pads, on which one foot passes the other. A spin in a jump is DT203.
 
     `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
-    back: of the 71 spins in 168,000 rows that players have labelled, three of four come within 0.4 s.
+    back.
 
     Bad (max_seconds = 0.6): the crossover goes on in place of being unwound.
 
@@ -37,7 +42,7 @@ class Spin(MoveRule):
     code = "DT202"
     name = "spin"
     move = "spin"
-    said = "the body turns beyond 180 degrees: a spin"
+    said = "the pattern goes all the way round: a spin, or a doublestep to avoid it"
     times = "spin"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
@@ -46,6 +51,8 @@ class Spin(MoveRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
+
         play = subject.play
         if play is None:
             return
@@ -53,5 +60,17 @@ class Spin(MoveRule):
             first = row
             while first and abs(play.facing[first - 1]) > UNCROSSED:
                 first -= 1
+            if goes_on_the_other_foot(subject, row, self.longest(subject)) or self._walks(subject, row):
+                continue
             steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
             yield Happening(row, max(map(subject.pause, steps)), self.said)
+
+    def _walks(self, subject: ChartSubject, row: int) -> bool:
+        """Whether she only goes along a pad for two: a foot has passed the other, side by side."""
+        import numpy as np
+
+        play, pad = subject.play, subject.pad
+        if play is None or pad is None or row == 0:
+            return False
+        beside = max(abs(play.facing[row - 1]), abs(play.facing[row])) >= BESIDE
+        return bool(beside and np.ptp(pad.panels[:, 0]) > ONE_PAD)

@@ -1,0 +1,48 @@
+"""What is told as an info by default, whatever else a rule tells: habits of authors, and what nobody can be sure of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.lint.check import check_chart
+from dancetutor_cli.lint.configuration import default_rules, load_configuration, with_assignments
+from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.subject import ChartSubject
+
+SPLIT = "#TITLE:T;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:{};#DIFFICULTY:Hard;#METER:9;#BPMS:{};#NOTES:\n{}\n;"
+
+
+def found(rule: str, steps_type: str, bpms: str, rows: list[str], *assigned: str) -> list[Finding]:
+    """What a rule finds in the one chart of a .ssc, without feet."""
+    song = parse(SPLIT.format(steps_type, bpms, "\n".join(rows)).encode(), Path("x.ssc"))
+    settings = with_assignments(load_configuration(None), assigned).settings
+    findings = check_chart(ChartSubject(song, song.charts[0], None), settings)
+    return [one for one in findings if one.rule == rule]
+
+
+@pytest.mark.parametrize("code", ["DT103", "DT214", "DT306"])
+def test_rules_that_are_infos(code: str) -> None:
+    assert default_rules()[code]["severity"] == "info"
+
+
+@pytest.mark.parametrize("assigned", [(), ("DT102.severity=error",)])
+def test_what_stepf2_writes_is_an_info(assigned: tuple[str, ...]) -> None:
+    (one,) = found("DT102", "pump-single", "0=120", ["{1|n|1|0}0000", "10000"], *assigned)
+    assert one.severity == "info" and "StepF2" in one.message
+
+
+def test_several_players_are_an_info() -> None:
+    rows = ["0000000000", "&", "0000000000"]
+    assert [one.severity for one in found("DT102", "pump-routine", "0=120", rows)] == ["info"]
+
+
+def test_other_odd_notes_are_warnings() -> None:
+    assert [one.severity for one in found("DT102", "pump-single", "0=120", ["1000", "10000"])] == ["warning"]
+
+
+@pytest.mark.parametrize(("bpms", "severity"), [("0=120,4=1e9,5=120", "info"), ("0=120,4=fast", "warning")])
+def test_a_gimmick_is_an_info_and_a_slip_a_warning(bpms: str, severity: str) -> None:
+    assert [one.severity for one in found("DT105", "dance-single", bpms, ["1000"])] == [severity]
