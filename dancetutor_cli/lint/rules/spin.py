@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
-BESIDE = 179.0  # degrees: the feet stand side by side, the right one on the left
+BESIDE = 140.0  # degrees: one foot is across the other, more beside it than before it
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
