@@ -19,7 +19,8 @@ from dancetutor_cli.outputs import check_folder
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.annotate import Item, Order, Outcome
 
-STYLES = ("measure", "rows", "sidecar", "smeditor", "edit")
+STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
+STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
 _MANY = 24  # songs from which on starting worker processes pays
 _COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 
@@ -29,11 +30,11 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
         return None
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
-        if name not in STYLES:
+        if name not in STRIPPED:
             raise UsageError(f"there is no style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}")
     if not names:
         raise UsageError(f"--style: name one or more of {', '.join(STYLES)}")
-    return tuple(name for name in STYLES if name in names)
+    return tuple(name for name in STRIPPED if name in names)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,8 @@ class AnnotateWish:
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
 @click.option(
     "--style", "styles", callback=_styles, metavar="STYLE[,STYLE]",
-    help=f"Where to write the feet: {', '.join(STYLES)} [default: measure; with --strip all of them].",
+    help=f"Where to write the feet (theme: what comes next): {', '.join(STYLES)} [default: measure; with --strip all "
+    "and background, a film that render has entered].",
 )  # fmt: skip
 @click.option("--strip", is_flag=True, help="Take the markers out again: of every style, or only of --style.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
@@ -88,7 +90,9 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
     from dancetutor_cli.library import find_files
     from dancetutor_cli.lint.presets import choice_of
 
-    wanted = wish.styles or (STYLES if wish.strip else STYLES[:1])
+    if not wish.strip and "background" in (wish.styles or ()):
+        raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
+    wanted = wish.styles or (STRIPPED if wish.strip else STYLES[:1])
     if wish.into_file and "edit" not in wanted:
         raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
     order = Order(

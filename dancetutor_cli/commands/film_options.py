@@ -18,6 +18,7 @@ from dancetutor_cli.commands.chart_options import (
     section_option,
     style_option,
 )
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
 if TYPE_CHECKING:
@@ -50,7 +51,9 @@ _OPTIONS = (
     click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
     section_option,
     click.option(
-        "--layout", default="side-by-side", show_default=True, metavar="NAME|FILE", help="A file of configs/layouts."
+        "--layout",
+        metavar="NAME|FILE",
+        help="A file of configs/layouts [default: side-by-side; with --background background].",
     ),
     character_option,
     click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
@@ -130,7 +133,12 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
     from dancetutor_cli.video.media.encoder import even_size
     from dancetutor_cli.video.scroll import parse_scroll
 
-    layout = load_layout(options["layout"])
+    background = bool(options.get("background"))
+    layout = load_layout(options["layout"] or ("background" if background else "side-by-side"))
+    if background and (layout.highway is not None or layout.dancer is None):
+        raise UsageError(
+            "--background is the dancer alone, the game draws the notes: choose a layout without a highway"
+        )
     if options["font"] is not None:
         from dancetutor_cli.video.overlay.fonts import font
 
@@ -168,6 +176,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
         gait=options["gait"],
         motion=options["motion"],
         style=options["style"],
+        background=background,
     )
 
 

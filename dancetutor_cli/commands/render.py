@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_request import Request, Subject
 
 
+# Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
+_NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "assist_tick", "srt", "sync_offset")
+
+
 @click.command()
 @click.argument("path", type=click.Path(path_type=Path))
 @click.option(
@@ -36,6 +40,14 @@ if TYPE_CHECKING:
 @click.option("--poses", type=click.Path(path_type=Path), metavar="DIR", help="Write one PNG per row into this folder.")
 @click.option("--poster", type=click.Path(path_type=Path), metavar="FILE", help="Also write a PNG for a title page.")
 @click.option("--srt", is_flag=True, help="Also write subtitles that name the moves, beside the film.")
+@click.option(
+    "--background",
+    is_flag=True,
+    help="Film the dancer alone, as long as the music, for a game to play behind the notes.",
+)
+@click.option(
+    "--into-file", is_flag=True, help="With --background: enter the film into the chart file's #BGCHANGES, too."
+)
 @click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
 @click.option("--yes", is_flag=True, help="Render even a very long film without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
@@ -66,11 +78,12 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     """
     _end_on_term()
     poses = options["poses"]
+    files = _background(path, frames, options)
     if sum(one is not None for one in (output, frames, poses)) > 1:
         raise UsageError("give one of --output, --frames and --poses")
     path = _one_film(path, output, options)
     if path.is_dir():
-        for name in ("poses", "poster", "srt"):
+        for name in ("poses", "poster", "srt", "background"):
             if options[name]:
                 raise UsageError(f"--{name} is for one chart, and {path} is a folder")
         from dancetutor_cli.commands.render_batch import render_batch
@@ -80,13 +93,62 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     for name in ("meter", "name", "shard", "results", "scheduler"):
         if options[name] is not None:
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
+    if files:
+        output = output or path.with_name(into_file_name(path, options))
+        _check_entry(output, files)
     _render_one(path, output, frames or poses, yes, quiet, options)
+    if files and output is not None:
+        _enter(output, files, quiet)
+
+
+def _background(path: Path, frames: Path | None, options: dict[str, Any]) -> list[Path]:
+    """The chart files that get an entry of the film; UsageError for options that make no film behind notes."""
+    if not options["background"]:
+        if options["into_file"]:
+            raise UsageError("--into-file belongs to --background")
+        return []
+    given = [name for name in _NO_BACKGROUND if options[name]] + (["frames"] if frames is not None else [])
+    if given:
+        raise UsageError(
+            f"--{given[0].replace('_', '-')} does not go with --background: the game plays it from the start"
+        )
+    if not options["into_file"]:
+        return []
+    from dancetutor_cli.jobs.background import files_of_song
+
+    return files_of_song(path)
+
+
+def into_file_name(path: Path, options: dict[str, Any]) -> str:
+    """What a film is called that is entered into a chart file: SONG-which.dancetutor.mp4."""
+    from dancetutor_cli.jobs.film_list import plain_name
+
+    which = options["difficulty"] or (f"{options['index']}" if options["index"] is not None else "")
+    stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
+    return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
+
+
+def _check_entry(film: Path, files: Sequence[Path]) -> None:
+    from dancetutor_cli.jobs.background import check_place
+
+    check_place(film, files)
+
+
+def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
+    from dancetutor_cli.jobs.background import enter
+    from dancetutor_cli.reports.safe import safe
+
+    for line in enter(film, files):
+        if not quiet or line.startswith("warning"):
+            click.echo(safe(line), err=line.startswith("warning"))
 
 
 def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
     """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
     film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
-    if not path.is_dir() or not (film or options["poses"] or options["poster"] or options["srt"]):
+    if not path.is_dir() or not (
+        film or options["poses"] or options["poster"] or options["srt"] or options["background"]
+    ):
         return path
     from dancetutor_cli.library import one_song
 

@@ -156,14 +156,19 @@ class _Work:
     def strip(self) -> None:
         """Plan the removal of all styles that are asked for."""
         from dancetutor_cli.markers import beside, planning
-        from dancetutor_cli.markers.changes import EDIT, Lack
+        from dancetutor_cli.markers.changes import BACKGROUND, EDIT, Lack
 
         base = self._without_added() if EDIT in self.order.styles else self.song
+        added = base
+        if BACKGROUND in self.order.styles:
+            base = self._without_background(base)
         charts = self._charts(base)
         plan = planning.unmark(base, charts, self.order.styles, self.order.force)
         planning.checked(base, plan)
         self._take(plan)
-        if base is not self.song:
+        if base is not added:
+            self.lacks.append(Lack("has a film in its background changes to take out"))
+        if added is not self.song:
             self.lacks.append(Lack("has charts for two pads to take out"))
         for style in self.beside if self._in_place else ():
             try:
@@ -211,6 +216,15 @@ class _Work:
 
         splices = edit.without_added(self.song, self._charts(self.song))
         return reader.parse(apply(self.song.data, splices), self.song.path) if splices else self.song
+
+    def _without_background(self, song: Song) -> Song:
+        """The song without the entries of films; the very same object if there are none."""
+        from dancetutor_cli import chart as reader
+        from dancetutor_cli.markers import background
+        from dancetutor_cli.markers.splice import apply
+
+        splices = background.remove(song)
+        return reader.parse(apply(song.data, splices), song.path) if splices else song
 
     def _take(self, plan: Plan) -> None:
         from dancetutor_cli.markers.changes import Change

@@ -83,13 +83,13 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         pad=pad,
         rows=step_rows(play),
         character=character,
-        callouts=callouts_of(replace(solved, play=play), _calls(look), scrolls),
+        callouts=() if request.background else callouts_of(replace(solved, play=play), _calls(look), scrolls),
         cues=cues_of(play, chart.timing, subtitle_style().moves),
     )
     fade = 0.0 if request.section else 1.0
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
     clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
-    sound = None if request.mute else SoundPlan(subject.music, request.sync, clicks, fade)
+    sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
     return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
 

@@ -33,6 +33,7 @@ class Request:
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
+    background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
     sync : seconds by which the music plays late against the notes
     """
@@ -52,6 +53,7 @@ class Request:
     gait: str = "flat"
     motion: Path | None = None
     style: str | None = None
+    background: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,10 +90,20 @@ def look_up(request: Request) -> Subject:
         check_style(request.style, request.bar)
     song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section)
     music, missing = (None, None) if request.mute else find_music(song, chart)
-    warnings = () if missing is None else (f"{missing}; the film has claps on the steps instead",)
+    instead = "the film ends after the last note" if request.background else "the film has claps on the steps instead"
+    warnings = () if missing is None else (f"{missing}; {instead}",)
     start, end = _section(request, song, chart, preset)
+    if request.background:
+        start, end = _with_the_music(end, music)
     clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
     return Subject(song, chart, preset, clock, music, request.section is not None, (*warnings, *notes))
+
+
+def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
+    """The film behind the notes begins with the music and is as long, or lasts until after the last note."""
+    from dancetutor_cli.video.media.sound import seconds_of
+
+    return 0.0, end if music is None else max(end, seconds_of(music))
 
 
 def _section(request: Request, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:

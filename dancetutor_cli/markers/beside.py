@@ -1,4 +1,4 @@
-"""The styles that write beside a chart file: the sidecar, SMEditor's `data.sme` and `.edit` files."""
+"""The styles that write beside a chart file: the sidecar, SMEditor's `data.sme`, `.edit` files and a theme's cues."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet import sme
 from dancetutor_cli.library.feet_files import song_stems
-from dancetutor_cli.markers import edit, sidecar, smeditor
-from dancetutor_cli.markers.changes import EDIT, SIDECAR, SMEDITOR, Change, ChartFeet, Lack
+from dancetutor_cli.markers import edit, sidecar, smeditor, theme
+from dancetutor_cli.markers.changes import EDIT, SIDECAR, SMEDITOR, THEME, Change, ChartFeet, Lack
 
 Planned = tuple[Change, list[Lack]]
 
@@ -43,6 +43,14 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
             old = _present(path, song)
             lacks = [] if old == data else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
             yield Change(path, old, data), lacks
+    elif style == THEME:
+        table, lua = (folder / path.name for path in theme.paths_for(song.path))
+        before, script = _present(table, song), _present(lua, song)
+        theme.check_lua(lua, script)
+        said = theme.write(table, before, song, feet)
+        for path, old, new in ((table, before, theme.as_json(said)), (lua, script, theme.as_lua(said))):
+            lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
+            yield Change(path, old, new), lacks
 
 
 def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
@@ -58,6 +66,14 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
     elif style == EDIT:
         for path in edit.edit_paths(song, charts):
             yield _removed(path, read_bytes(path, CHART_LIMIT), None)
+    elif style == THEME:
+        table, lua = theme.paths_for(song.path)
+        old, script = _read(table), _read(lua)
+        theme.check_lua(lua, script)
+        kept = theme.without(table, old, charts)
+        said = {**theme.write(table, None, song, ()), "charts": kept}
+        yield _removed(table, old, theme.as_json(said) if kept and old else None)
+        yield _removed(lua, script, theme.as_lua(said) if kept and script else None)
 
 
 def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:

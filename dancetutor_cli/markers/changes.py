@@ -9,9 +9,11 @@ from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.measures import StepRows
 from dancetutor_cli.play.model import Play
 
-MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT = "measure", "rows", "sidecar", "smeditor", "edit"
-BESIDE = (SIDECAR, SMEDITOR, EDIT)  # styles that write files beside the chart file
-STYLES = (MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT)
+MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME = "measure", "rows", "sidecar", "smeditor", "edit", "theme"
+BACKGROUND = "background"  # no style of feet: what `render --background --into-file` has entered, to be taken out
+BESIDE = (SIDECAR, SMEDITOR, EDIT, THEME)  # styles that write files beside the chart file
+STYLES = (MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME)
+STRIPPED = (*STYLES, BACKGROUND)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,9 @@ class HarmError(FileError):
     """A change would alter what a game reads; it is not written. A fault of the program, or a very odd file."""
 
 
-def unchanged(before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False) -> Song:
+def unchanged(
+    before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False, free: Collection[str] = ()
+) -> Song:
     """Read `after` back and compare it with the song it was made from.
 
     Parameters
@@ -28,6 +30,7 @@ def unchanged(before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda
     before : the song as it was read
     after : the bytes to be written in its place
     ours : which charts the program itself has added, and which therefore do not count
+    free : the song's tags that may differ
 
     Returns the song as read from `after`. Raises `HarmError` naming the first difference.
     """
@@ -35,7 +38,7 @@ def unchanged(before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda
         song = parse(after, before.path)
     except FileError as error:
         raise _harm(before.path, error.message) from error
-    for what in _differences(before, song, ours):
+    for what in _differences(before, song, ours, free):
         raise _harm(before.path, f"{what} would change")
     return song
 
@@ -44,10 +47,13 @@ def _harm(path: Path, what: str) -> HarmError:
     return HarmError(path, f"refused, nothing was written: {what}; please report this file")
 
 
-def _differences(before: Song, after: Song, ours: Callable[[Chart], bool]) -> Iterator[str]:
-    for name in ("format", "title", "subtitle", "artist", "music", "tags", "timing"):
+def _differences(before: Song, after: Song, ours: Callable[[Chart], bool], free: Collection[str]) -> Iterator[str]:
+    for name in ("format", "title", "subtitle", "artist", "music", "timing"):
         if getattr(before, name) != getattr(after, name):
             yield f"the song's {name}"
+    tags = ({key: value for key, value in song.tags.items() if key not in free} for song in (before, after))
+    if next(tags) != next(tags):
+        yield "the song's tags"
     old, new = ([c for c in song.charts if not ours(c)] for song in (before, after))
     if len(old) != len(new):
         yield "the number of charts"

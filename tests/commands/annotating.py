@@ -13,7 +13,7 @@ from dancetutor_cli.commands.annotate import command
 from dancetutor_cli.errors import DancetutorError
 
 SONG = Path(__file__).resolve().parent.parent.parent / "charts" / "two_left_feet"
-ALL = "measure,rows,sidecar,smeditor,edit"
+ALL = "measure,rows,sidecar,smeditor,edit,theme"
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX modes and links")
 
 

@@ -93,6 +93,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "gait": ["heels", str(folder / "strut.yaml")],
         "motion": [folder / "motion.yaml"],
         "style": ["neutral", str(folder / "sway.yaml")],
+        "background": [True],
     }
 
 

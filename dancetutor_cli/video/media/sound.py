@@ -66,6 +66,17 @@ def decode(music: Path, start: float, end: float) -> Samples:
     return out
 
 
+def seconds_of(music: Path) -> float:
+    """How long a music file plays; EncoderError if it is no music."""
+    rate = 1000
+    arguments = (*ffmpeg.INPUT_GUARD, *_MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
+    raw = ("-ac", "1", "-ar", str(rate), "-f", "u8", "-c:a", "pcm_u8", "pipe:1")
+    with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
+        data = process.read()
+        process.finish()
+    return len(data) / rate
+
+
 def stretch(samples: Samples, rate: float) -> Samples:
     """Play slower or faster at the same pitch; onsets end up within a few milliseconds of where they belong."""
     count = round(len(samples) / rate)

@@ -128,7 +128,7 @@ def test_every_layout_loads_and_names_are_listed() -> None:
     assert {"side-by-side", "dancer", "highway", "television", "vertical", "practice"} <= set(layout_names())
     for name in layout_names():
         load_layout(name)
-    with pytest.raises(UsageError, match="there are: dancer, highway"):
+    with pytest.raises(UsageError, match="there are: background, dancer, highway"):
         load_layout("nope")
 
 

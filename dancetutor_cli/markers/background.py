@@ -1,0 +1,132 @@
+"""The entry of a film in `#BGCHANGES`, which the games play behind the notes: put in beside what is there, and out.
+
+An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to tell whose it is, and
+an editor that saves the file keeps it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.msd import Tag, blanked, scan
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.markers.splice import Splice
+
+TAG = "BGCHANGES"
+OURS = ".dancetutor"  # before the suffix of a film that this program has made for a song
+MARK = b"//{dt1 background}"  # before a tag that was not there
+_NAME = re.compile(rf"[^,;:=#\\/\r\n\x00-\x1f]+{re.escape(OURS)}\.\w+")
+_ENTRY = re.compile(rf"[^,;=]*=\s*[^,;=]*{re.escape(OURS)}\.\w+\s*(?:=[^,;]*)?".encode())
+_SONG_ENDS = ("NOTES", "NOTES2", "NOTEDATA")
+
+
+@dataclass(frozen=True, slots=True)
+class Added:
+    """The replacements that put an entry in. later : beats of others' entries after it, which take the film away"""
+
+    splices: tuple[Splice, ...]
+    later: tuple[float, ...]
+
+
+def check_name(name: str) -> None:
+    """UsageError for a film's file name that the games would not read, or that `annotate --strip` would not know."""
+    if not _NAME.fullmatch(name):
+        raise UsageError(
+            f"{name}: with --into-file the film's name ends in {OURS}.mp4, so that `annotate --strip` knows it, and "
+            "has none of , ; : = # \\ in it"
+        )
+
+
+def entry(song: Song, name: str) -> bytes:
+    """The text of the entry: the film begins with the music, at the beat of its first moment by the song's timing."""
+    beat = float(song.timing.beats(np.array([0.0]))[0])
+    return f"{beat:.3f}={name}=1.000=0=0=0=StretchNoLoop====".encode()
+
+
+def add(song: Song, name: str) -> Added:
+    """Put the entry of a film into a chart file that has none of ours. FileError where there is no place for it."""
+    text, tag = entry(song, name), _tag(song.data)
+    if tag is None:
+        return Added((_new_tag(song, text),), ())
+    start, end = tag.spans[0]
+    value, _ = blanked(song.data[start:end])
+    at = start + len(value.rstrip())
+    text = b"," + text if value.strip() else text
+    later = tuple(beat for beat in _beats(value) if beat > float(song.timing.beats(np.array([0.0]))[0]))
+    return Added((Splice(at, at, text),), later)
+
+
+def remove(song: Song) -> list[Splice]:
+    """Replacements that take our entries out of a chart file, and the tag if it came with one."""
+    tag = _tag(song.data)
+    if tag is None or not tag.spans:
+        return []
+    start, end = tag.spans[0]
+    value, _ = blanked(song.data[start:end])
+    found = [match.span() for match in _ENTRY.finditer(value)]
+    spans = [_with_comma(value, *span) for span in found]
+    if not spans:
+        return []
+    rest = b"".join(value[a:b] for a, b in _between(spans, len(value)))
+    mark = re.compile(re.escape(MARK) + rb"\r?\n\Z").search(song.data, 0, tag.start)
+    if not rest.strip() and mark is not None:
+        after = re.compile(rb";\r?\n?").match(song.data, end)
+        return [Splice(mark.start(), after.end() if after else end, b"")]
+    return [Splice(start + a, start + b, b"") for a, b in spans]
+
+
+def _with_comma(value: bytes, start: int, end: int) -> tuple[int, int]:
+    """An entry's span with the comma that came with it: the one before, or the one after if it is the first."""
+    while start < end and value[start : start + 1].isspace():
+        start += 1
+    while end > start and value[end - 1 : end].isspace():
+        end -= 1
+    if value[start - 1 : start] == b"," and start:
+        return start - 1, end
+    return start, end + (value[end : end + 1] == b",")
+
+
+def _between(spans: list[tuple[int, int]], length: int) -> Iterator[tuple[int, int]]:
+    at = 0
+    for start, end in spans:
+        yield at, start
+        at = end
+    yield at, length
+
+
+def _tag(data: bytes) -> Tag | None:
+    """The tag that counts: the last of its name among those of the song."""
+    found, in_chart = None, False
+    for tag in scan(data):
+        if tag.name == "NOTEDATA":
+            in_chart = True
+        elif tag.name in ("NOTES", "NOTES2"):
+            in_chart = False
+        elif tag.name == TAG and not in_chart and tag.spans:
+            found = tag
+    return found
+
+
+def _new_tag(song: Song, text: bytes) -> Splice:
+    """The tag on lines of its own before the first chart."""
+    first = next((tag for tag in scan(song.data) if tag.name in _SONG_ENDS), None)
+    if first is None:
+        raise FileError(song.path, "has no chart before which the tag of its backgrounds could stand")
+    at = song.data.rfind(b"\n", 0, first.start) + 1
+    if song.data[at : first.start].strip():
+        raise FileError(song.path, "its first chart begins in the middle of a line; put #BGCHANGES:; before it")
+    eol = b"\r\n" if song.data[max(at - 2, 0) : at] == b"\r\n" else b"\n"
+    return Splice(at, at, MARK + eol + b"#BGCHANGES:" + text + b";" + eol)
+
+
+def _beats(value: bytes) -> Iterator[float]:
+    for part in value.split(b","):
+        try:
+            yield float(part.split(b"=")[0])
+        except ValueError:
+            continue

@@ -1,0 +1,132 @@
+"""The style `theme`: what comes next, as `SONG.cues.json` and `SONG.cues.lua` beside the file, for themes to show."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.bounded import parse_json
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.files import encoded
+from dancetutor_cli.markers.changes import ChartFeet
+from dancetutor_cli.markers.cues import KINDS, ThemeCue, cues_of
+from dancetutor_cli.markers.sidecar import notes_hash
+
+JSON, LUA = ".cues.json", ".cues.lua"
+_SCHEMA = 1
+_HEAD = b"-- dancetutor cues"  # first words of a Lua table that is ours
+
+
+def paths_for(song: Path) -> tuple[Path, Path]:
+    """The two files of a song; its .sm and its .ssc share them."""
+    return song.with_name(song.stem + JSON), song.with_name(song.stem + LUA)
+
+
+def write(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> dict[str, Any]:
+    """What the files say, from the old JSON at `path` and new charts; charts that are not in `feet` stay.
+
+    Raises FileError if the old file is not ours.
+    """
+    new = {one.chart.index: _entry(one) for one in feet}
+    kept = [entry for entry in charts_in(path, old) if entry["index"] not in new and entry["index"] < len(song.charts)]
+    charts = sorted([*kept, *new.values()], key=lambda entry: int(entry["index"]))
+    return {"schema": _SCHEMA, "program": "dancetutor", "title": song.title, "charts": charts}
+
+
+def without(path: Path, old: bytes | None, charts: Sequence[Chart]) -> list[Any]:
+    """The entries of the JSON at `path` that belong to other charts than these."""
+    gone = {chart.index for chart in charts}
+    return [entry for entry in charts_in(path, old) if entry["index"] not in gone]
+
+
+def charts_in(path: Path, old: bytes | None) -> list[Any]:
+    """The charts of an old JSON file; FileError if it is not ours."""
+    if old is None:
+        return []
+    try:
+        data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
+        if data["program"] == "dancetutor" and all(isinstance(entry["index"], int) for entry in data["charts"]):
+            return list(data["charts"])
+    except (FileError, KeyError, TypeError):
+        pass
+    raise FileError(path, "is no table of dancetutor's cues; move it away or choose another style")
+
+
+def check_lua(path: Path, old: bytes | None) -> None:
+    """FileError if the Lua file that is there is not ours."""
+    if old is not None and not old.startswith(_HEAD):
+        raise FileError(path, "is no table of dancetutor's cues; move it away or choose another style")
+
+
+def as_json(said: dict[str, Any]) -> bytes:
+    """The JSON file: a line for each cue, so that version control shows which have changed."""
+    head = {key: value for key, value in said.items() if key != "charts"}
+    blocks = []
+    for chart in said["charts"]:
+        about = json.dumps({key: value for key, value in chart.items() if key != "cues"}, ensure_ascii=False)
+        cues = ",\n".join("   " + json.dumps(cue, ensure_ascii=False) for cue in chart["cues"])
+        blocks.append(f'  {about[:-1]}, "cues": [\n{cues}]}}' if cues else f'  {about[:-1]}, "cues": []}}')
+    text = json.dumps(head, ensure_ascii=False)[:-1] + ', "charts": [\n' + ",\n".join(blocks) + "]}\n"
+    return encoded(text)
+
+
+def as_lua(said: dict[str, Any]) -> bytes:
+    """The Lua file: a chunk that returns the same table; it calls nothing."""
+    body = "\n".join(_lua_lines(said, 0))
+    return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encoded(body) + b"\n"
+
+
+def _lua_lines(value: Any, depth: int) -> Iterator[str]:
+    inner, outer = "\t" * (depth + 1), "\t" * depth
+    if isinstance(value, dict) and not any(isinstance(one, dict | list) for one in value.values()):
+        yield "{" + ", ".join(f"{key} = {_lua(one)}" for key, one in value.items()) + "}"
+    elif isinstance(value, dict | list):
+        yield "{"
+        pairs = value.items() if isinstance(value, dict) else ((None, one) for one in value)
+        for key, one in pairs:
+            lines = list(_lua_lines(one, depth + 1))
+            lines[0] = f"{inner}{lines[0]}" if key is None else f"{inner}{key} = {lines[0]}"
+            yield from (*lines[:-1], lines[-1] + ",")
+        yield outer + "}"
+    else:
+        yield _lua(value)
+
+
+def _lua(value: Any) -> str:
+    """A number or a text; a text in the form that every Lua reads, whatever is in it."""
+    if isinstance(value, int | float):
+        return repr(value) if math.isfinite(value) else "0"
+    letters = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r"}
+    return '"' + "".join(letters.get(c) or (c if c >= " " else f"\\{ord(c):03d}") for c in str(value)) + '"'
+
+
+def _entry(one: ChartFeet) -> dict[str, Any]:
+    chart = one.chart
+    kind = "_".join(part.capitalize() for part in chart.steps_type.split("-"))
+    return {
+        "index": chart.index,
+        "steps_type": f"StepsType_{kind}",
+        "difficulty": f"Difficulty_{chart.difficulty}",
+        "meter": chart.meter,
+        "description": chart.description,
+        "notes_sha256": notes_hash(chart),
+        "cues": [_cue(cue) for cue in cues_of(one.play)],
+    }
+
+
+def _cue(cue: ThemeCue) -> dict[str, Any]:
+    assert cue.kind in KINDS
+    return {
+        "kind": cue.kind,
+        "beat": round(cue.tick / TICKS_PER_BEAT, 3),
+        "second": round(cue.second, 3),
+        "beats": round(cue.ticks / TICKS_PER_BEAT, 3),
+        "seconds": round(cue.seconds, 3),
+        "foot": cue.foot,
+        "count": cue.count,
+        "way": cue.way,
+    }

@@ -1,0 +1,84 @@
+"""A film's entry in #BGCHANGES: beside what is there, byte for byte out again, and where it begins."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import pytest
+from markers_songs import SM_CHART, song_of
+
+from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.markers.background import add, check_name, entry, remove
+from dancetutor_cli.markers.splice import apply
+
+FILM = "song-hard.dancetutor.mp4"
+NOTES = SM_CHART + b"\n0000\n1000\n0100\n0010\n;\n"
+VALUES = [
+    None, b"", b" ", b"\n", b"0.000=a.avi=1.000=1=1=0", b"0.000=a.avi=1.000=1=1=0,", b"0=a.avi,\n4=b.png=1=0=0=1,\n",
+    b"0=a.avi // the intro\n", b"0=a.avi,99999=-nosongbg-=1.000=0=0=0 // don't automatically add -songbackground-\n",
+    b"2=caf\xe9\\,bar.mpg=1", b"0=not.dancetutor=1=0=0=0", b"0=dancetutor.mp4=1=0",
+]  # fmt: skip
+
+
+def sm(value: bytes | None, eol: bytes = b"\n", end: bytes = b";\n", offset: str = "0.000") -> Song:
+    tag = b"" if value is None else b"#BGCHANGES:" + value + end
+    head = f"#TITLE:T;\n#OFFSET:{offset};\n#BPMS:0=120;\n".encode()
+    return song_of((head + tag + NOTES).replace(b"\n", eol))
+
+
+@pytest.mark.parametrize(("value", "eol", "end"), list(itertools.product(VALUES, (b"\n", b"\r\n"), (b";\n", b"\n"))))
+def test_it_stands_beside_what_is_there_and_comes_out_byte_for_byte(
+    value: bytes | None, eol: bytes, end: bytes
+) -> None:
+    song = sm(value, eol, end)
+    new = parse(apply(song.data, add(song, FILM).splices), song.path)
+    old_value, new_value = song.tags.get("BGCHANGES", ""), new.tags["BGCHANGES"]
+    assert new_value.startswith(old_value.strip()) and new_value.endswith(entry(song, FILM).decode())
+    assert {**new.tags, "BGCHANGES": ""} == {**song.tags, "BGCHANGES": ""}
+    assert len(new.charts) == 1 and len(new.charts[0].notes) == 3
+    assert apply(new.data, remove(new)) == song.data
+    assert remove(song) == []
+
+
+def test_it_comes_out_too_after_an_editor_has_put_more_behind_it() -> None:
+    song = sm(b"0=a.avi=1")
+    data = apply(song.data, add(song, FILM).splices).replace(b"NoLoop====", b"NoLoop====,8=b.avi=1")
+    assert apply(data, remove(song_of(data))) == sm(b"0=a.avi=1,8=b.avi=1").data
+    song = sm(b"")
+    data = apply(song.data, add(song, FILM).splices).replace(b"NoLoop====", b"NoLoop====,8=b.avi=1")
+    assert apply(data, remove(song_of(data))) == sm(b"8=b.avi=1").data
+
+
+@pytest.mark.parametrize(("offset", "beat"), [("0.000", "0.000"), ("-0.500", "-1.000"), ("0.250", "0.500")])
+def test_the_film_begins_with_the_music(offset: str, beat: str) -> None:
+    """#OFFSET:-0.5 has beat 0 at half a second: at 120 BPM the music begins a beat before it."""
+    assert entry(sm(None, offset=offset), FILM) == f"{beat}={FILM}=1.000=0=0=0=StretchNoLoop====".encode()
+
+
+def test_entries_after_it_are_told() -> None:
+    assert add(sm(b"-5=a.avi=1,12.5=b.avi=1,7=c.avi=1"), FILM).later == (12.5, 7.0)
+
+
+def test_of_several_tags_the_last_counts_and_charts_are_left_alone() -> None:
+    first, last = b"#BGCHANGES:1=a.avi;\n", b"#BGCHANGES:2=b.avi;\n"
+    song = song_of(b"#TITLE:T;\n#BPMS:0=120;\n" + first + last + NOTES)
+    new = apply(song.data, add(song, FILM).splices)
+    assert first in new and b"2=b.avi,0.000=" in new
+    assert apply(new, remove(song_of(new))) == song.data
+
+
+def test_a_file_without_a_line_for_it_is_refused() -> None:
+    with pytest.raises(FileError, match="put #BGCHANGES:; before it"):
+        add(parse(b"#TITLE:T;#BPMS:0=120;" + NOTES.replace(b"\n", b""), Path("x.sm")), FILM)
+
+
+@pytest.mark.parametrize(
+    "name", ["film.mp4", "a,b.dancetutor.mp4", "a=b.dancetutor.mp4", "a\\b.dancetutor.mp4", "a;.dancetutor.mp4"]
+)
+def test_names_that_would_not_be_known_again_are_refused(name: str) -> None:
+    with pytest.raises(UsageError, match="--into-file"):
+        check_name(name)
+    check_name("Größe (x) #1".replace("#", "") + ".dancetutor.mp4")
