@@ -10,7 +10,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help page-tools setup setup-dev demo test lint bench fit motion-report character clean
+.PHONY: help page-tools setup setup-dev demo test lint bench fit fit-meter motion-report character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -21,6 +21,7 @@ help:
 	@echo "make bench   measure speed; print a table"
 	@echo "make motion-report  the quality of the motion on sections of COUNT=100 charts; a table in build/"
 	@echo "make fit     fit the presets itg and pump to labelled feet; the table of all sets, by method"
+	@echo "make fit-meter  fit the meters of configs/meter/ to the charts in CHARTS=folder; the table of songs not seen"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
@@ -82,6 +83,10 @@ kill-test: setup-dev
 
 fit: setup-dev
 	@$(BIN)/python tools/fit_weights.py $(FIT_ARGS)
+
+# CHARTS: a folder of charts whose meters are to be learned
+fit-meter: setup-dev
+	@$(BIN)/python tools/fit_meter.py $(CHARTS) $(FIT_ARGS)
 
 COUNT ?= 100
 motion-report: setup-dev

@@ -13,6 +13,7 @@ import click
 from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.meter.bill import AUTO, SCALES
 from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
 
@@ -105,6 +106,20 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option("--diff", is_flag=True, help="With --fix: write nothing; print what would change.")
 @click.option("--backup", is_flag=True, help="With --fix: keep the old file as NAME.bak.")
+@click.option(
+    "--meter-scale",
+    type=click.Choice(SCALES),
+    default=AUTO,
+    show_default=True,
+    help="The scale that the estimated meters of dance charts are on; auto: that of the song's other charts.",
+)
+@click.option(
+    "--rate",
+    type=click.FloatRange(min=0.1, max=10),
+    default=1.0,
+    show_default=True,
+    help="Estimate meters for music that plays at this rate; the feet stay those of rate 1.",
+)
 @click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
@@ -137,7 +152,8 @@ def command(**options: Any) -> int:  # fmt: skip
         want_figures=options["format_name"] == "csv",
         want_excerpts=options["format_name"] == "text",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
-                                            "baseline", "update_baseline", "suggest", "alternatives")},
+                                            "baseline", "update_baseline", "suggest", "alternatives", "meter_scale",
+                                            "rate")},
     )  # fmt: skip
     if not options["fix"] and (options["diff"] or options["backup"]):
         raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.meter.bill import AUTO
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -32,6 +33,7 @@ class Task:
     alternatives : how many other plays shall be told of
     want_figures : whether the result shall carry densities and technical steps, for CSV
     want_excerpts : whether findings shall carry the rows around them, for text
+    meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
     """
 
     path: Path
@@ -44,6 +46,8 @@ class Task:
     alternatives: int = 0
     want_figures: bool = False
     want_excerpts: bool = True
+    meter_scale: str = AUTO
+    rate: float = 1.0
 
 
 def analyze_file(task: Task) -> FileResult:
@@ -58,7 +62,7 @@ def analyze_file(task: Task) -> FileResult:
     from dancetutor_cli.lint.subject import FileSubject
 
     selected = task.selection.charts(song)
-    charts = tuple(_chart_result(subject, task) for subject in solved(song, selected, task))
+    charts = _chart_results(song, selected, task)
     return FileResult(
         str(task.path),
         song.title,
@@ -68,6 +72,24 @@ def analyze_file(task: Task) -> FileResult:
         check_file(FileSubject(song), task.settings),
         charts,
         _unselected(song, selected),
+    )
+
+
+def _chart_results(song: Song, selected: tuple[Chart, ...], task: Task) -> tuple[ChartResult, ...]:
+    """The charts one by one, then what only all of them together tell: the scale of the meters."""
+    from dancetutor_cli.lint.meters import Meters
+
+    meters = Meters(song, task.settings)
+    charts: list[ChartResult] = []
+    for subject in solved(song, selected, task):  # one play at a time: a file may hold thousands of charts
+        charts.append(_chart_result(subject, task))
+        meters.add(subject, task.rate)
+    told = meters.told(task.meter_scale)
+    return tuple(
+        replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
+        if chart.index in told
+        else chart
+        for chart in charts
     )
 
 

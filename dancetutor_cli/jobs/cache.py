@@ -24,7 +24,7 @@ from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
 _CHARTS = (".sm", ".ssc")
-_ROOMS = ("chart", "library", "pads", "feet", "play", "lint", "jobs")
+_ROOMS = ("chart", "library", "pads", "feet", "play", "meter", "lint", "jobs")
 _LARGEST = CHART_LIMIT  # bytes of a kept result
 _KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
 
@@ -45,7 +45,10 @@ class ResultCache:
         except FileError:
             return None
         digest = hashlib.sha256(data)
-        wanted = (task.presets, task.selection, task.suggest, task.alternatives, task.want_figures, task.want_excerpts)
+        wanted = (
+            task.presets, task.selection, task.suggest, task.alternatives, task.want_figures, task.want_excerpts,
+            task.meter_scale, task.rate,
+        )  # fmt: skip
         asked = f"{task.path}|{task.path.absolute()}|{wanted}"
         for part in (_program(), asked, task.settings.fingerprint(), *self._beside(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))

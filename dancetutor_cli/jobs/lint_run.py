@@ -21,6 +21,7 @@ from dancetutor_cli.lint.configuration import (
     with_selection,
 )
 from dancetutor_cli.lint.presets import PresetChoice, choice_of
+from dancetutor_cli.meter.bill import AUTO
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +45,8 @@ class Request:
     want_excerpts: bool = True
     suggest: bool = False
     alternatives: int = 0
+    meter_scale: str = AUTO
+    rate: float = 1.0
 
 
 @dataclass
@@ -104,7 +107,7 @@ class LintRun:
         request = self.request
         return Task(
             path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
-            request.alternatives, request.want_figures, request.want_excerpts,
+            request.alternatives, request.want_figures, request.want_excerpts, request.meter_scale, request.rate,
         )  # fmt: skip
 
     def fail_on(self, path: Path) -> str:

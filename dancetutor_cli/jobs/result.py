@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.meter.bill import Estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,7 @@ class ChartResult:
     playable : False if the steps type has no pad; then there are no rows and no cost
     arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
     ambiguous : beat of each row with ties, and "resolved" or "open", see `play.model.Ambiguity`; None likewise
+    estimate : how hard it plays; None for a pad without a model of meters
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
     """
 
@@ -41,6 +43,7 @@ class ChartResult:
     ambiguous: tuple[tuple[float, str], ...] | None = None
     preset: str | None = None
     mismatch: str | None = None
+    estimate: Estimate | None = None
 
     @property
     def label(self) -> str:

@@ -16,10 +16,11 @@ from typing import Any
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, DifferentRun, Figures
 from dancetutor_cli.lint.finding import ExcerptRow, Finding
+from dancetutor_cli.meter.bill import Estimate
 
-_HEAD = b"dancetutor result 1\n"  # another number whenever the form below changes
+_HEAD = b"dancetutor result 2\n"  # another number whenever the form below changes
 _DIGEST = 32  # bytes of SHA-256
-_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause)
+_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate)
 _VALUES = {kind: attrgetter(*(field.name for field in fields(kind))) for kind in _CLASSES}
 _CHART_FIELDS = tuple(field.name for field in fields(ChartResult))
 _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
@@ -71,6 +72,9 @@ def _chart(values: list[Any]) -> ChartResult:
         given["causes"] = tuple(Cause(*cause) for cause in given["causes"])
     if given["ambiguous"] is not None:
         given["ambiguous"] = tuple(map(tuple, given["ambiguous"]))
+    if given["estimate"] is not None:
+        meter, low, high, scale, known, terms, rate = given["estimate"]
+        given["estimate"] = Estimate(meter, low, high, scale, known, tuple(map(tuple, terms)), rate)
     return ChartResult(**given)
 
 

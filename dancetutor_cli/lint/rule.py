@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from dancetutor_cli.lint.finding import Finding
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+    from dancetutor_cli.meter.bill import Estimate
 
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
@@ -59,6 +60,25 @@ class ChartRule(Rule):
     @abstractmethod
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """Findings in one chart."""
+
+
+class Played(NamedTuple):
+    """A chart with how hard it plays, as a `SongRule` sees it; place : where it starts, for `Finding`."""
+
+    steps_type: str
+    difficulty: str
+    meter: int
+    label: str
+    estimate: Estimate
+    place: Mapping[str, Any]
+
+
+class SongRule(Rule):
+    """A rule about how hard the charts of a song play; those of one pad come together."""
+
+    @abstractmethod
+    def check(self, chart: Played, charts: Sequence[Played]) -> Iterable[Finding]:
+        """Findings in one chart, beside all charts of its pad."""
 
 
 class ReaderRule(Rule):

@@ -177,7 +177,8 @@ def _counts(chart: ChartResult) -> str:
     moves = ("doublestep", "crossover-full", "spin", "bracket", "hand")
     counted = [f"{chart.counts[move]} {move}" for move in moves if chart.counts.get(move)]
     rows = f"{chart.row_count} rows" if chart.playable else "no pad"
-    return f"{safe(chart.label)}: {', '.join([rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
+    plays = [f"plays like {chart.estimate.meter:.1f}"] if chart.estimate else []
+    return f"{safe(chart.label)}: {', '.join([*plays, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
 
 
 def _sum(entries: list[_Entry]) -> int:

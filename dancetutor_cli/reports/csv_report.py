@@ -71,4 +71,17 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
         "findings": len(chart.findings) if chart else 0,
         "preset": safe(chart.preset or "") if chart else "",
+        **_estimated(chart),
+    }
+
+
+def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
+    """How hard it plays; empty where the pad has no model of meters."""
+    told = chart.estimate if chart else None
+    return {
+        "plays_like": round(told.meter, 2) if told else "",
+        "plays_low": round(told.low, 2) if told else "",
+        "plays_high": round(told.high, 2) if told else "",
+        "meter_scale": told.scale if told else "",
+        "bill": "; ".join(f"{name} {meters:.2f}" for name, meters in told.terms) if told else "",
     }

@@ -9,6 +9,7 @@ from typing import IO, Any
 import dancetutor_cli
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.meter.bill import Estimate
 from dancetutor_cli.reports.tally import Tally
 
 SCHEMA = 1
@@ -72,9 +73,23 @@ def _chart_text(chart: ChartResult) -> str:
         "preset": chart.preset,
         "doublesteps": [asdict(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
+        "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
     }
     return f'{{{_members(head)}, "rows": {chart.rows or "[]"}, {_members(tail)}}}'
+
+
+def _estimate_object(estimate: Estimate) -> dict[str, Any]:
+    """How hard a chart plays, rounded to hundredths of a meter."""
+    return {
+        "meter": round(estimate.meter, 2),
+        "low": round(estimate.low, 2),
+        "high": round(estimate.high, 2),
+        "scale": estimate.scale,
+        "scale_known": estimate.known,
+        "rate": estimate.rate,
+        "terms": {name: round(meters, 2) for name, meters in estimate.terms},
+    }
 
 
 def _members(data: dict[str, Any]) -> str:

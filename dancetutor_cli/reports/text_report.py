@@ -62,6 +62,8 @@ class TextReport:
         self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset, "dim"))
         if chart.playable:
             self._stream.write(chart_table(chart, self._console))
+            if chart.estimate is not None:
+                self._line(f"plays like {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:

@@ -1,0 +1,123 @@
+"""The estimated meter of a chart with its bill, on the scale that its song is numbered on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from dancetutor_cli.meter.bill import AUTO, Estimate
+from dancetutor_cli.meter.features import features
+from dancetutor_cli.meter.model import Model, Scale, model_for
+from dancetutor_cli.play.model import Play
+
+# What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: not trusted.
+_TAGS = {"ITG": "itg", "DDR X": "ddr"}
+_UNUSUAL = 0.5  # meters that a scale other than the usual one has to fit better by, over all charts of a song
+_WORTH = 0.1  # meters that a term has to add to stand on the bill; less goes into its "rest"
+_FEWEST = 2  # other charts of a song that tell its scale surely
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """A chart before its scale is known.
+
+    label : the meter it has in the file; on : scale -> its meter there at rate 1
+    values, played : the features of `model.wanted` at rate 1, and at the rate asked for
+    """
+
+    model: Model
+    label: int
+    difficulty: str
+    on: Mapping[str, float]
+    values: Sequence[float]
+    played: Sequence[float]
+    rate: float = 1.0
+
+
+def size(play: Play, steps_type: str, label: tuple[int, str], rate: float = 1.0) -> Sized | None:
+    """A chart's meters on every scale; None for a pad without a model. label : its meter and difficulty"""
+    model = model_for(steps_type)
+    if model is None:
+        return None
+    values = features(play, model.wanted)
+    played = values if rate == 1.0 else features(play, model.wanted, rate)
+    return Sized(model, *label, meters_on(model, values), values, played, rate)
+
+
+def meters_on(model: Model, values: Sequence[float]) -> dict[str, float]:
+    """Scale -> the meter on it. values : those of `model.wanted`"""
+    return {scale.name: scale.start + sum(_terms(model, scale, values).values()) for scale in model.scales}
+
+
+def _terms(model: Model, scale: Scale, values: Sequence[float]) -> dict[str, float]:
+    """Name of the term -> the meters that it adds."""
+    place = model.place
+    return {name: sum([curve(values[place[curve.feature]]) for curve in of]) for name, of in scale.terms.items()}
+
+
+def _interval(scale: Scale, meter: float) -> tuple[float, float]:
+    band = sum(meter > end for end in scale.up_to)
+    return max(meter - scale.below[band], 0.0), meter + scale.above[band]
+
+
+def scales_of(charts: Sequence[Sized], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
+    """The scale of each of a song's charts for one pad, and whether it is known.
+
+    What the user or #METERTYPE says; else the scale on which the labels of the other charts are missed least, of which
+    it takes two. A chart's own label is not asked: that is what the estimate is for.
+    """
+    if charts and len(charts[0].on) == 1:
+        return [(next(iter(charts[0].on)), True)] * len(charts)
+    if said != AUTO:
+        return [(said, True)] * len(charts)
+    if tag.strip().upper() in _TAGS:
+        return [(_TAGS[tag.strip().upper()], True)] * len(charts)
+    all_, main = _Misses(), _Misses()
+    tells = [one.difficulty != "Edit" and one.label > 0 for one in charts]  # an Edit may be a guest's
+    for one, told in zip(charts, tells, strict=True):
+        all_.add(one, 1)
+        if told:
+            main.add(one, 1)
+    return [
+        (main if main.count > told else all_).best_without(one, told or main.count <= told)
+        for one, told in zip(charts, tells, strict=True)
+    ]
+
+
+class _Misses:
+    """How far the labels of some charts are from the estimates on each scale."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._by: dict[str, float] = {}
+
+    def add(self, one: Sized, times: int) -> None:
+        """Count a chart in, or with -1 out."""
+        self.count += times
+        for name, meter in one.on.items():
+            self._by[name] = self._by.get(name, 0.0) + times * abs(meter - one.label)
+
+    def best_without(self, one: Sized, is_in: bool) -> tuple[str, bool]:
+        """The scale that fits the others best, the usual one unless another does clearly; whether they are enough."""
+        usual = next(iter(one.on))
+        if is_in:
+            self.add(one, -1)
+        found = min(one.on, key=lambda name: self._by.get(name, 0.0) + (_UNUSUAL if name != usual else 0.0))
+        count = self.count
+        if is_in:
+            self.add(one, 1)
+        return (found, count >= _FEWEST) if count else (usual, False)
+
+
+def on_scale(one: Sized, name: str, known: bool, *, faster: bool = True) -> Estimate:
+    """The estimate on a scale (its usual one if the pad lacks it), at the rate asked for unless not `faster`."""
+    model = one.model
+    scale = next((scale for scale in model.scales if scale.name == name), model.scales[0])
+    terms = _terms(model, scale, one.played if faster else one.values)
+    meter = scale.start + sum(terms.values())
+    billed = sorted(((term, value) for term, value in terms.items() if value >= _WORTH), key=lambda bill: -bill[1])
+    rest = meter - sum(value for _, value in billed)
+    low, high = _interval(scale, meter)
+    if not known:
+        low, high = min(low, max(meter - model.alone[0], 0.0)), max(high, meter + model.alone[1])
+    return Estimate(meter, low, high, scale.name, known, (*billed, ("rest", rest)), one.rate if faster else 1.0)

@@ -1,0 +1,140 @@
+"""The model of meters: named terms, each a few curves that only rise; read from configs/meter/."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.marked_yaml import MarkedYaml, read
+from dancetutor_cli.meter.features import HOWS, THINGS, Feature
+from dancetutor_cli.resources import config_path
+
+# Steps type -> file of configs/meter/. Two players' charts and other pads have no model: nobody's meters to learn from.
+_PADS = {
+    "dance-single": "dance-single",
+    "dance-double": "dance-double",
+    "pump-single": "pump-single",
+    "pump-double": "pump-double",
+    "pump-halfdouble": "pump-double",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Meters that a feature adds: straight between the points (`at`, `meters`), both rising; on as at the end."""
+
+    feature: Feature
+    at: tuple[float, ...]
+    meters: tuple[float, ...]
+
+    def __call__(self, value: float) -> float:
+        """Meters for a value of the feature, 0 or more."""
+        n = min(max(bisect_left(self.at, value), 1), len(self.at) - 1)
+        low, high = self.at[n - 1], self.at[n]
+        return self.meters[n - 1] + (self.meters[n] - self.meters[n - 1]) * (value - low) / (high - low)
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """How a community numbers its charts.
+
+    start : meter of a chart that asks for nothing; terms : name -> its curves, whose meters are added
+    up_to : estimate at which each band of the interval ends, one less than there are bands
+    below, above : of each band, how far under and over the estimate 80 of 100 labels lie
+    """
+
+    name: str
+    about: str
+    charts: int
+    start: float
+    terms: Mapping[str, tuple[Curve, ...]]
+    up_to: tuple[float, ...]
+    below: tuple[float, ...]
+    above: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale."""
+
+    scales: tuple[Scale, ...]
+    alone: tuple[float, float]
+    wanted: tuple[Feature, ...]  # every feature that a curve asks for, once
+    place: Mapping[Feature, int]  # of each in `wanted`
+
+
+@cache
+def model_for(steps_type: str) -> Model | None:
+    """The model of a steps type; None where nobody has fitted one. FileError says what is wrong with its file."""
+    pad = _PADS.get(steps_type)
+    return None if pad is None else load_model(config_path(f"meter/{pad}.yaml"))
+
+
+def load_model(path: Path) -> Model:
+    """Read a model; FileError names the line of what cannot be."""
+    source = read(path)
+    source.only((), ("scales", "alone"))
+    scales = source.data.get("scales")
+    if not isinstance(scales, dict) or not scales:
+        raise FileError(path, "'scales' must be a mapping of names to scales", 1)
+    found = tuple(_scale(source, name) for name in scales)
+    alone = _numbers(source, ("alone",), source.data.get("alone"), 2)
+    curves = [curve for scale in found for curves in scale.terms.values() for curve in curves]
+    return model_of(found, (alone[0], alone[1]), tuple(dict.fromkeys(curve.feature for curve in curves)))
+
+
+def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> Model:
+    """A model for features in this order."""
+    return Model(scales, alone, wanted, {feature: n for n, feature in enumerate(wanted)})
+
+
+def _scale(source: MarkedYaml, name: str) -> Scale:
+    keys = ("scales", name)
+    source.only(keys, ("about", "charts", "start", "terms", "interval"))
+    said = source.data["scales"][name]
+    terms = said.get("terms")
+    if not isinstance(terms, dict) or not terms:
+        raise source.error((*keys, "terms"), "'terms' must be a mapping of names to lists of curves")
+    source.only((*keys, "interval"), ("up_to", "below", "above"))
+    interval = said["interval"]
+    up_to = _numbers(source, (*keys, "interval", "up_to"), interval.get("up_to"), None)
+    below, above = (
+        _numbers(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
+    )
+    start, charts = _numbers(source, keys, [said.get("start"), said.get("charts")], 2)
+    curves = {
+        term: tuple(_curve(source, (*keys, "terms", term, n), one) for n, one in enumerate(listed))
+        for term, listed in terms.items()
+    }
+    return Scale(name, str(said.get("about", "")), int(charts), start, curves, up_to, below, above)
+
+
+def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
+    if not isinstance(said, dict) or set(said) != {"of", "seconds", "how", "at", "meters"}:
+        raise source.error(keys, "a curve has the keys of, seconds, how, at, meters")
+    if said["of"] not in THINGS or said["how"] not in HOWS:
+        raise source.error(keys, f"'of' is one of {', '.join(THINGS)}; 'how' one of {', '.join(HOWS)}")
+    at = _numbers(source, keys, said["at"], None)
+    meters = _numbers(source, keys, said["meters"], len(at))
+    if len(at) < 2 or any(b <= a for a, b in pairwise(at)):
+        raise source.error(keys, "'at' must have two numbers or more, each above the one before")
+    if any(b < a for a, b in pairwise(meters)):
+        raise source.error(keys, "'meters' must not fall: what is played faster is never easier")
+    seconds = _numbers(source, keys, [said["seconds"]], 1)[0]
+    if seconds < 0 or (seconds == 0) != (said["how"] == "count"):
+        raise source.error(keys, "'seconds' must be above 0, and 0 for a count")
+    return Curve(Feature(said["of"], seconds, said["how"]), at, meters)
+
+
+def _numbers(source: MarkedYaml, keys: tuple[str | int, ...], given: Any, length: int | None) -> tuple[float, ...]:
+    """A list of numbers, of this length if one is asked for."""
+    right = isinstance(given, Sequence) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in given)
+    if not right or (length is not None and len(given) != length):
+        raise source.error(keys, f"must be a list of {'' if length is None else f'{length} '}numbers")
+    return tuple(map(float, given))
