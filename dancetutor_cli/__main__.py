@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -14,7 +15,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if sys.stdout is None:
         _say("standard output is closed; send it to a file, or to /dev/null")
         sys.exit(2)
+    for stream in (sys.stdout, sys.stderr):
+        _say_what_it_can(stream)
     try:
+        if os.environ.get("_DANCETUTOR_COMPLETE", "").startswith("powershell"):
+            from dancetutor_cli.commands import completion  # noqa: F401 (makes this shell known)
         _run(arguments)
     except KeyboardInterrupt:  # while the first modules are imported
         _say("interrupted")
@@ -67,6 +72,13 @@ def _run(arguments: Sequence[str] | None) -> None:
         status = 2
     leave_garbage()
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _say_what_it_can(stream: object) -> None:
+    """On a console that is not UTF-8, letters that it lacks come as \\uXXXX: a title must not end the run."""
+    encoding = str(getattr(stream, "encoding", None) or "utf-8").lower().replace("_", "-")
+    if encoding not in ("utf-8", "utf8", "utf-16") and isinstance(stream, io.TextIOWrapper):
+        stream.reconfigure(errors="backslashreplace")
 
 
 def _interrupt_again(unraisable: sys.UnraisableHookArgs) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
 import venv
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -41,6 +43,25 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return python.parent
 
 
+@pytest.fixture
+def read_only(installed: Path) -> Iterator[list[str]]:
+    """What comes before a command so that it runs with the wheel, but can write neither there nor at home."""
+    inside = [path for path in (installed.parent, *installed.parent.rglob("*")) if not path.is_symlink()]
+    modes = {path: path.stat().st_mode for path in inside}
+    for path in inside:
+        path.chmod(modes[path] & ~0o222)
+    before = []
+    if hasattr(os, "getuid") and os.getuid() == 0:  # modes bind root only without this right
+        if shutil.which("setpriv") is None:
+            pytest.skip("root can write everywhere, and there is no setpriv to take that from it")
+        before = ["setpriv", "--bounding-set", "-dac_override", "--inh-caps", "-dac_override"]
+    try:
+        yield before
+    finally:
+        for path, mode in modes.items():
+            path.chmod(mode)
+
+
 def run(installed: Path, cwd: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([installed / arguments[0], *arguments[1:]], cwd=cwd, capture_output=True, text=True)
 
@@ -69,3 +90,38 @@ def test_a_dancer_comes_out_of_the_wheel(installed: Path, tmp_path: Path) -> Non
     result = run(installed, tmp_path, "dancetutor", *arguments)
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out.glb").read_bytes()[:4] == b"glTF"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="modes of folders mean nothing there")
+def test_it_runs_read_only_without_a_home_on_an_old_console(
+    installed: Path, read_only: list[str], tmp_path: Path
+) -> None:
+    """An empty home that cannot be written, an installation that cannot either, odd paths, a console of 1981."""
+    home = tmp_path / "home"
+    home.mkdir(mode=0o500)
+    song = tmp_path / "Lieder Größe ♥" / "mein Lied"
+    song.mkdir(parents=True)
+    for suffix in ("sm", "ssc"):
+        shutil.copy(ROOT / "charts" / "two_left_feet" / f"two_left_feet.{suffix}", song / f"Zwei linke Füße.{suffix}")
+    asked = subprocess.run(
+        [*read_only, installed / "python", "-c", "open(__import__('dancetutor_cli').__file__, 'a')"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "Permission denied" in asked.stderr
+    plain = {"PATH": os.environ["PATH"], "HOME": str(home)}
+    for more in ({"LC_ALL": "C", "PYTHONIOENCODING": "ascii"}, {"PYTHONIOENCODING": "cp437"}):
+        for arguments, status, says in (
+            ([], 0, b"Try next"),
+            (["analyze", str(song), "--full"], 1, b"DT202"),
+            (["annotate", str(song), "--check"], 1, b"have no feet yet"),
+            (["annotate", str(song), "-o", str(tmp_path / "mit Füßen")], 0, b"2 files: 2 "),
+            (["analyze", str(song / "nicht da ♥.sm")], 2, b""),
+            (["doctor"], 0, b"disk"),
+        ):
+            done = subprocess.run(
+                [*read_only, installed / "dancetutor", *arguments],
+                cwd=tmp_path, env={**plain, **more}, capture_output=True, check=False,
+            )  # fmt: skip
+            assert done.returncode == status and says in done.stdout, (arguments, done.stdout, done.stderr)
+            assert b"internal error" not in done.stderr and b"Traceback" not in done.stderr
+    assert {path.suffix for path in (tmp_path / "mit Füßen").rglob("*.s*")} == {".sm", ".ssc"}

@@ -18,6 +18,7 @@ COMMANDS = {
     "page": ("page", "Make a page to practise a chart with: loops, speeds, a pad."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
     "warmup": ("warmup", "Compile everything once, so that later runs start at once."),
+    "completion": ("completion", "Let the Tab key complete commands, options and names."),
 }
 
 
@@ -48,10 +49,21 @@ class _LazyGroup(click.Group):
             formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
 
 
-@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+@click.group(
+    cls=_LazyGroup,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+)
 @click.version_option(dancetutor_cli.__version__, prog_name="dancetutor")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Find the feet of a stepchart, lint it, annotate it, and make a dancer play it.
 
     Charts are .sm and .ssc files of StepMania, ITGmania and their kin.
     """
+    if context.invoked_subcommand is None:
+        from pathlib import Path
+
+        from dancetutor_cli.commands.first_steps import first_steps
+
+        click.echo(first_steps(Path()))

@@ -12,6 +12,7 @@ import click
 
 from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.names import fixes, folder, named, rules
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.meter.bill import AUTO, SCALES
 from dancetutor_cli.outputs import check_file
@@ -56,12 +57,24 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--exit-zero", is_flag=True, help="Findings do not fail the run; unreadable files still do.")
 @click.option(
     "--select",
+    shell_complete=named(rules, files=False),
     multiple=True,
     metavar="RULES",
     help="Run only these rules: codes, names (those that are off, too), families (DT2).",
 )
-@click.option("--ignore", multiple=True, metavar="RULES", help="Do not run these rules.")
-@click.option("--config", metavar="FILE|NAME", help="Configuration, in place of the dancetutor.yaml up the tree.")
+@click.option(
+    "--ignore",
+    shell_complete=named(rules, files=False),
+    multiple=True,
+    metavar="RULES",
+    help="Do not run these rules.",
+)
+@click.option(
+    "--config",
+    shell_complete=named(folder("lint")),
+    metavar="FILE|NAME",
+    help="Configuration, in place of the dancetutor.yaml up the tree.",
+)
 @click.option(
     "--set",
     "assignments",
@@ -99,6 +112,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--fix",
+    shell_complete=named(fixes, files=False),
     multiple=True,
     metavar="RULE[:N]|safe",
     help="Write the edit that --suggest tells into the file: for each finding of a rule, or its N-th; safe: what none "
@@ -131,6 +145,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--explain",
+    shell_complete=named(rules, files=False),
     callback=_explain,
     expose_value=False,
     is_eager=True,

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
+from dancetutor_cli.commands.names import characters, difficulties, folder, named, steps_types
 from dancetutor_cli.library.selection import Selection
 
 __all__ = [
@@ -25,8 +26,18 @@ __all__ = [
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 _OPTIONS = (
-    click.option("--steps-type", metavar="TYPE", help="Only charts of this steps type, for example dance-single."),
-    click.option("--difficulty", metavar="NAME", help="Only charts of this difficulty, for example hard."),
+    click.option(
+        "--steps-type",
+        metavar="TYPE",
+        shell_complete=named(steps_types, files=False),
+        help="Only charts of this steps type, for example dance-single.",
+    ),
+    click.option(
+        "--difficulty",
+        metavar="NAME",
+        shell_complete=named(difficulties, files=False),
+        help="Only charts of this difficulty, for example hard.",
+    ),
     click.option("--index", type=click.IntRange(min=0), metavar="N", help="Only the chart at this place, from 0."),
 )
 
@@ -42,6 +53,7 @@ def preset_option(command: _Command) -> _Command:
     """Add --preset; the function gets keyword argument `preset`, to be given to `lint.presets`."""
     option = click.option(
         "--preset",
+        shell_complete=named(folder("presets")),
         metavar="NAME|FILE",
         help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, itg for others]",
     )
@@ -70,6 +82,7 @@ def character_option(command: _Command) -> _Command:
     """Add --character; the function gets keyword argument `character`, to be given to `character.load_character`."""
     option = click.option(
         "--character",
+        shell_complete=named(characters),
         default="dancer",
         show_default=True,
         metavar="NAME|FILE",
@@ -82,6 +95,7 @@ def gait_option(command: _Command) -> _Command:
     """Add --gait; the function gets keyword argument `gait`."""
     option = click.option(
         "--gait",
+        shell_complete=named(folder("gaits")),
         default="flat",
         show_default=True,
         metavar="NAME|FILE",
@@ -94,6 +108,7 @@ def style_option(command: _Command) -> _Command:
     """Add --style; the function gets keyword argument `style`, to be given to `physics.style.load_style`."""
     option = click.option(
         "--style",
+        shell_complete=named(folder("styles")),
         metavar="NAME|FILE",
         help="A ragdoll follows her in this style: neutral, lazy, fierce, heavy, feminine, or a file as those in "
         "configs/styles.",

@@ -18,6 +18,7 @@ from dancetutor_cli.commands.chart_options import (
     section_option,
     style_option,
 )
+from dancetutor_cli.commands.names import folder, named
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
@@ -52,6 +53,7 @@ _OPTIONS = (
     section_option,
     click.option(
         "--layout",
+        shell_complete=named(folder("layouts")),
         metavar="NAME|FILE",
         help="A file of configs/layouts [default: side-by-side; with --background background].",
     ),
