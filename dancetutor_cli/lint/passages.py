@@ -44,7 +44,7 @@ class PassageSettings:
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """One passage: measures `first` to `last`, from `start` to `end` seconds.
+    """One passage: from measure `first` to where `last` begins, from `start` to `end` seconds.
 
     score : weight of its rows a second; rate : rows a second; steps : rows
     crossovers : how often the left and the right foot cross over; turn : the farthest she faces away, degrees

@@ -22,6 +22,14 @@ FLAGS = (
     "--remote-debugging-pipe", "--proxy-server=127.0.0.1:9",
 )  # fmt: skip
 
+# A clock that only the test turns, in place of the page's and the audio output's: what is seen does not depend on how
+# quickly the machine draws or the test asks.
+STILL = """
+window.turned = 0;
+performance.now = () => window.turned;
+delete window.AudioContext;
+"""
+
 NOW = "Number(document.querySelector('.strip').getAttribute('aria-valuenow'))"  # the second of the music that is shown
 
 
@@ -56,6 +64,8 @@ class Browser:
         os.close(from_browser)
         self._buffer = b""
         self._number = 0
+        self._openings = 0
+        self._before = ""  # what runs in a page before its own script
         self.problems: list[str] = []
         self.requests: list[str] = []
         target = next(t for t in self._call("Target.getTargets")["targetInfos"] if t["type"] == "page")
@@ -77,7 +87,7 @@ class Browser:
         if session:
             message["sessionId"] = session
         os.write(self._out, json.dumps(message).encode() + b"\0")
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 240
         while True:
             answer = self._read(deadline)
             if answer.get("id") == number:
@@ -119,7 +129,7 @@ class Browser:
             raise AssertionError(found["exceptionDetails"].get("exception", found["exceptionDetails"]))
         return found["result"].get("value")
 
-    def wait(self, expression: str, seconds: float = 20.0) -> Any:
+    def wait(self, expression: str, seconds: float = 120.0) -> Any:
         """The expression's value as soon as it is true."""
         deadline = time.monotonic() + seconds
         while not (value := self.run(expression)):
@@ -130,13 +140,27 @@ class Browser:
     def size(self, width: int, height: int, *, touch: bool = False) -> None:
         """The window's size in pixels of CSS."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
+        self.call("Emulation.setTouchEmulationEnabled", enabled=touch)
 
-    def open(self, path: Path, hash_: str = "") -> None:
-        """Open a page from the disk and wait until it is ready."""
+    def open(self, path: Path, hash_: str = "", *, live: bool = False) -> None:
+        """Open a page from the disk and wait until it is ready. Its clock stands until `turn`, unless it is `live`."""
+        self._openings += 1
+        if self._before:
+            self.call("Page.removeScriptToEvaluateOnNewDocument", identifier=self._before)
+        source = f"window.opening = {self._openings};" + ("" if live else STILL)
+        self._before = self.call("Page.addScriptToEvaluateOnNewDocument", source=source)["identifier"]
         self.call("Page.navigate", url="about:blank")
         self.requests.clear()
         self.call("Page.navigate", url=path.resolve().as_uri() + hash_)
-        self.wait("location.protocol === 'file:' && document.documentElement?.dataset.ready")
+        self.wait(
+            f"location.protocol === 'file:' && window.opening === {self._openings}"
+            " && document.documentElement?.dataset.ready"
+        )
+
+    def turn(self, seconds: float) -> None:
+        """The clock goes on, and the page has drawn what it shows then."""
+        self.run(f"window.turned += {1000 * seconds}")
+        self.drawn()
 
     def key(self, key: str, code: str = "", modifiers: int = 0) -> None:
         """Press and let go a key."""

@@ -53,10 +53,10 @@ class Firefox:
 
     @staticmethod
     def _connect(port: int) -> socket.socket:
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 240
         while True:
             try:
-                return socket.create_connection(("127.0.0.1", port), timeout=60)
+                return socket.create_connection(("127.0.0.1", port), timeout=240)
             except OSError:
                 if time.monotonic() > deadline:
                     raise
@@ -85,7 +85,7 @@ class Firefox:
         found = self.call("WebDriver:ExecuteScript", script=f"return {expression}", args=[])
         return found["value"]
 
-    def wait(self, expression: str, seconds: float = 30.0) -> Any:
+    def wait(self, expression: str, seconds: float = 120.0) -> Any:
         """The expression's value as soon as it is true."""
         deadline = time.monotonic() + seconds
         while not (value := self.run(expression)):

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.jobs.page import Page
+from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.document import languages
 
@@ -80,6 +81,14 @@ def test_every_language_has_every_label_with_the_same_places() -> None:
         assert set(labels) == set(first), name
         for key, text in labels.items():
             assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", first[key])), (name, key)
+
+
+def test_every_rule_is_told_in_every_language() -> None:
+    """Name and meaning; a new rule needs a line in each file of dancetutor_cli/page/words."""
+    for language, labels in languages().items():
+        for code in all_rules():
+            name, _, meaning = labels.get(f"finding-{code}", "").partition(": ")
+            assert name and meaning.endswith("."), f"{language}: finding-{code}"
 
 
 def test_every_label_that_the_modules_use_exists() -> None:

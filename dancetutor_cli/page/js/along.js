@@ -3,6 +3,8 @@
 import { el, toggle } from "./dom.js";
 import { keyName } from "./input.js";
 import { latencyOf } from "./judge.js";
+import { HELPS } from "./practice.js";
+import { scoreText } from "./said.js";
 
 const TAPS = 12; // clicks of a calibration
 const BETWEEN = 0.6; // seconds between them
@@ -10,9 +12,9 @@ const BETWEEN = 0.6; // seconds between them
 /** @param {import("./app.js").App} app */
 export function alongPanel(app) {
   const { t, settings } = app;
-  const along = toggle(t("along"), app.along, (on) => app.setAlong(on), "p");
-  const wait = toggle(t("wait"), app.wait, (on) => app.setWait(on), "w");
-  const help = el("select", { id: "feet-help" }, ...["all", "tricky", "none", "auto"].map((name) => el("option", { value: name }, t(`help-${name}`))));
+  const along = toggle(t("along"), app.practice.along, (on) => app.practice.setAlong(on), "p");
+  const wait = toggle(t("wait"), app.practice.wait, (on) => app.practice.setWait(on), "w");
+  const help = el("select", { id: "feet-help" }, ...HELPS.map((name) => el("option", { value: name }, t(`help-${name}`))));
   help.addEventListener("change", () => app.set("help", help.value));
   const score = el("p", { class: "score", role: "status" });
   const keys = el("p", { class: "keys" });
@@ -24,20 +26,17 @@ export function alongPanel(app) {
       el("span", {}, `${panelName(app, name)} `, el("kbd", {}, keyName(app.input.keys[k])))));
   };
   const refresh = () => {
-    along.setAttribute("aria-pressed", String(app.along));
-    wait.setAttribute("aria-pressed", String(app.wait));
+    along.setAttribute("aria-pressed", String(app.practice.along));
+    wait.setAttribute("aria-pressed", String(app.practice.wait));
     help.value = settings.help;
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
     pads.textContent = plugged.length ? t("padIs", { name: plugged.join(", ") }) : t("noPad");
-    const { loop } = app.transport;
-    const tally = app.judge.tally(loop ? loop.a : -Infinity, loop ? loop.b : Infinity);
-    const { hit, early, late, miss, sum, count } = tally;
+    const tally = app.practice.tally();
+    const { sum, count } = tally;
     const mean = count ? Math.round((1000 * sum) / count) : 0;
-    score.textContent = app.along ? `${t("counts", { hit, early, late, miss })} ${count ? t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : ""}` : "";
+    score.textContent = app.practice.along ? `${scoreText(app, tally)} ${count ? t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : ""}` : "";
   };
   app.listeners.add((what) => { if (what !== "frame") refresh(); });
-  window.addEventListener("gamepadconnected", refresh);
-  window.addEventListener("gamepaddisconnected", refresh);
   show();
   refresh();
   return el("div", {},

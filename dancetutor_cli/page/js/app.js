@@ -2,19 +2,16 @@
 
 import { Chart } from "./chart.js";
 import { Transport } from "./clock.js";
-import { Highway, scrollSpeed } from "./highway.js";
+import { scrollSpeed } from "./highway.js";
 import { Input, keyName } from "./input.js";
-import { Judge, ramp } from "./judge.js";
-import { makeLink, parseLink } from "./link.js";
+import { writeLink } from "./link.js";
 import { Motion } from "./motion.js";
-import { CAMERAS, Picture } from "./picture.js";
+import { CAMERAS } from "./picture.js";
+import { HELPS, Practice } from "./practice.js";
 import { Redance } from "./redance.js";
 import { loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";
-
-const HELPS = ["all", "tricky", "none", "auto"];
-const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
 
 export class App {
   /** @param {any} doc @param {import("./blob.js").Arrays} arrays */
@@ -24,7 +21,7 @@ export class App {
     this.settings = loadSettings();
     const { language, t } = speak(doc.languages, this.settings.language);
     this.language = language;
-    this.t = t;
+    this.t = t; // another one after `setLanguage`: who keeps it is made anew then
     this.chart = new Chart(doc, arrays);
     this.id = `${doc.words.file}#${doc.words.index}:${doc.play.total}`;
     this.notes = loadNotes(this.id);
@@ -37,30 +34,32 @@ export class App {
     this.transport.countIn = this.settings.countIn;
     this.transport.lead = (a) => this.chart.secondAt(this.chart.beatAt(a) - this.leadBeats);
     this.transport.onChange = () => this.changed();
-    this.transport.onPass = () => this.pass();
+    this.practice = new Practice(this);
+    this.transport.onPass = () => this.practice.pass();
     this.sound.clicks = clicksOf(this.chart, () => ({
       claps: this.claps, metronome: this.settings.metronome,
     }));
-    this.judge = new Judge(this.chart);
     this.input = new Input(doc.pad.names, this.settings);
-    this.input.onPress = (press) => this.press(press.column, press.ago);
+    this.input.onPress = (press) => {
+      this.fresh = true;
+      this.practice.press(press.column, press.ago);
+    };
     this.redance = new Redance(doc, this.chart, this.notes.feet);
-    this.along = false; // somebody plays along
-    this.wait = false; // the clock stops at each row until it is pressed
     this.both = false; // the second dancer is shown
-    this.helpNow = 0; // place in HELPS that "auto" has come to
-    this.passes = 0;
     this.chosen = -1; // note that the author looks at
     this.passage = -1; // of the list, that is looped
     this.fresh = true; // something is to be drawn
+    this.drawn = NaN; // the second that was drawn last
     this.played = false; // whether anybody has pressed play yet
     this.message = ""; // what went wrong with the music
-    /** @type {Picture | null} */
+    /** @type {import("./picture.js").Picture | null} */
     this.picture = null;
-    /** @type {Highway | null} */
+    /** @type {import("./highway.js").Highway | null} */
     this.highway = null;
     /** @type {Set<(what: string) => void>} */
     this.listeners = new Set();
+    /** @type {() => void} makes everything that holds words anew */
+    this.onLanguage = () => {};
   }
 
   /** Beats of getting ready before a loop; at a higher speed as many. */
@@ -100,7 +99,16 @@ export class App {
     this.settings[name] = value;
     if (name === "countIn") this.transport.countIn = Boolean(value);
     if (name === "volume") this.sound.volume = Number(value);
+    if (name === "ramp" && !value) this.practice.endRamp();
     this.save();
+    this.tell("settings");
+  }
+
+  /** Speak another language, from now on. @param {string} name "": the browser's */
+  setLanguage(name) {
+    this.set("language", name);
+    Object.assign(this, speak(this.doc.languages, name));
+    this.onLanguage();
     this.tell("settings");
   }
 
@@ -115,16 +123,16 @@ export class App {
     if (this.transport.playing) return this.transport.pause();
     this.played = true;
     await this.sound.start();
-    if (this.along) this.restartJudge(this.transport.at);
+    if (this.practice.along) this.practice.restart(this.transport.at);
     this.transport.play();
-    this.updateHold();
+    this.practice.updateHold();
   }
 
   /** @param {number} second */
   seek(second) {
-    if (this.along) this.restartJudge(second);
+    if (this.practice.along) this.practice.restart(second);
     this.transport.seek(second);
-    this.updateHold();
+    this.practice.updateHold();
   }
 
   /** Hold the pose of the next row or the one before. @param {number} by */
@@ -147,19 +155,25 @@ export class App {
 
   /** @param {number} rate */
   setRate(rate) {
-    this.transport.setRate(rate);
+    this.takeRate(rate);
     this.tell("rate");
-    this.writeLink();
+    writeLink(this);
+  }
+
+  /** The speed is this one, and no other is come back to. @param {number} rate */
+  takeRate(rate) {
+    this.transport.setRate(rate);
+    this.practice.chosenRate = this.transport.rate;
   }
 
   /** @param {number | null} a @param {number | null} b seconds; null: no loop */
   setLoop(a, b, passage = -1) {
     this.passage = passage;
-    this.passes = 0;
+    this.practice.endRamp();
     if (a === null || b === null) this.transport.setLoop(null);
     else this.transport.setLoop({ a: Math.min(a, b), b: Math.max(a, b) });
     this.tell("loop");
-    this.writeLink();
+    writeLink(this);
   }
 
   /** The loop begins or ends now, at the nearest beat. @param {"a" | "b"} end */
@@ -178,85 +192,9 @@ export class App {
     this.setLoop(passage.start, passage.end, number);
     const playing = this.transport.playing;
     this.transport.restartLoop();
-    if (this.along) this.restartJudge(passage.start);
+    if (this.practice.along) this.practice.restart(passage.start);
     if (!playing) await this.play();
-    this.updateHold();
-  }
-
-  /** A pass of the loop is over. */
-  pass() {
-    const { loop } = this.transport;
-    if (!loop) return;
-    if (!this.wait) this.judge.advance(loop.b + 1, this.transport.rate);
-    const { miss } = this.judge.tally(loop.a, loop.b);
-    ++this.passes;
-    if (this.settings.ramp) this.transport.rate = ramp(this.transport.rate, miss, this.along);
-    if (this.settings.help === "auto" && this.along) {
-      this.helpNow = Math.min(Math.max(this.helpNow + (miss ? -1 : 1), 0), 2);
-    }
-    this.tell("pass");
-    if (this.along) this.restartJudge(loop.a);
-    this.updateHold();
-    if (this.settings.ramp) this.writeLink();
-  }
-
-  /** Play along, or only watch. @param {boolean} on */
-  setAlong(on) {
-    this.along = on;
-    if (!on) this.wait = false;
-    this.judge.restart(on ? this.transport.second() : -Infinity);
-    if (!on) this.judge.verdicts.clear();
-    this.updateHold();
-    this.tell("along");
-  }
-
-  /** @param {boolean} on */
-  setWait(on) {
-    if (on && !this.along) this.setAlong(true);
-    this.wait = on;
-    if (on) this.restartJudge(this.transport.second());
-    this.updateHold();
-    this.tell("along");
-  }
-
-  /** @param {number} second */
-  restartJudge(second) {
-    const { loop } = this.transport;
-    this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
-    this.tell("hits");
-  }
-
-  /** While the clock waits for rows it does not pass the first one that is not pressed. */
-  updateHold() {
-    const row = this.wait ? this.judge.open(-Infinity) : null;
-    const { loop } = this.transport; // beyond its end nothing is waited for: it begins anew
-    this.transport.holdAt(row && !(loop && row.second >= loop.b) ? row.second : Infinity);
-  }
-
-  /** A panel is pressed, some seconds ago. @param {number} column @param {number} ago */
-  press(column, ago) {
-    this.fresh = true;
-    if (!this.along) return;
-    const { rate } = this.transport;
-    if (this.wait) {
-      const row = this.judge.open(-Infinity);
-      if (!row || row.second - this.transport.second() > EARLY * rate) return;
-      this.judge.press(column, row.second, rate, true);
-      this.updateHold();
-    } else if (this.transport.playing) {
-      this.judge.press(column, this.transport.second() - (ago + this.sound.latency + this.settings.latency) * rate, rate);
-    }
-    this.tell("hits");
-  }
-
-  /** The level of help that holds now: "all", "tricky" or "none". */
-  get help() {
-    return this.settings.help === "auto" ? HELPS[this.helpNow] : this.settings.help;
-  }
-
-  /** Whether the foot of a note is told. @param {import("./chart.js").Row | undefined} row */
-  tells(row) {
-    return this.help === "all" || (this.help === "tricky" && Boolean(row?.tricky));
+    this.practice.updateHold();
   }
 
   nextHelp() {
@@ -279,7 +217,7 @@ export class App {
     if (transport.playing && !transport.waiting) return null;
     const now = chart.rowAt(transport.second() + 1e-3);
     const row = transport.waiting ? chart.rows[now] : chart.rows[now + 1];
-    return row && this.tells(row) ? row : null;
+    return row && this.practice.tells(row) ? row : null;
   }
 
   /** Give a note to another foot, and back. @param {number} note */
@@ -298,28 +236,6 @@ export class App {
     this.tell("findings");
   }
 
-  /** What is said over the picture: what she waits for, what is looped, who dances. */
-  said() {
-    const { t, transport } = this;
-    if (this.message) return this.message;
-    if (transport.waiting) return t("waiting");
-    const measure = (/** @type {number} */ s) => String(Math.round((100 * this.chart.beatAt(s)) / 4) / 100);
-    const { loop } = transport;
-    const looped = loop ? t("loopFrom", { from: measure(loop.a), to: measure(loop.b), passes: this.passes }) : "";
-    const told = [this.both ? this.besideText() : "", looped].filter(Boolean).join(" · ");
-    const silent = !this.played && !this.sound.music;
-    return told || (silent ? t("musicMissing", { name: this.doc.words.music || "…" }) : "");
-  }
-
-  /** Who dances beside her, and where her feet differ. */
-  besideText() {
-    const { name, rows } = this.doc.beside;
-    const beats = rows.slice(0, 3).map((/** @type {number} */ row) => this.redance.rows.get(row)?.beat).filter((/** @type {number | undefined} */ beat) => beat !== undefined);
-    const where = beats.map((/** @type {number} */ beat) => `m${Math.floor(beat / 4)}:${Math.round(100 * ((beat % 4) + 1)) / 100}`).join(", ");
-    const what = name === "next" ? this.t("nextBest") : name;
-    return this.t("bothLong", { name: what, rows: rows.length, where: rows.length > 3 ? `${where} …` : where });
-  }
-
   /** Everything that is drawn for one picture. @param {import("./timeline.js").Timeline} timeline */
   frame(timeline) {
     const { transport, sound } = this;
@@ -327,10 +243,10 @@ export class App {
     transport.tick();
     sound.pump(transport.hold);
     const second = this.second();
-    if (transport.playing && this.along && !this.wait) {
-      if (this.judge.advance(second - this.settings.latency * transport.rate, transport.rate)) this.tell("hits");
-    }
-    if (!this.fresh && !transport.playing && !timeline.grip && !this.input.changed) return;
+    this.practice.advance(second);
+    // While she waits, or nothing plays, the picture stays: nothing is drawn again.
+    if (!this.fresh && second === this.drawn && !timeline.grip && !this.input.changed) return;
+    this.drawn = second;
     this.input.changed = false;
     this.fresh = false;
     const next = this.nextRow();
@@ -342,37 +258,12 @@ export class App {
 
   /** @param {number} second @returns {import("./highway.js").Scene} */
   highwayScene(second) {
+    const { practice } = this;
     return {
       second, speed: scrollSpeed(this.settings.speed), mirror: this.mirrored,
-      marked: (_, row) => this.tells(row), verdicts: this.along ? this.judge.verdicts : new Map(),
+      marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
-      keys: this.along ? this.input.keys.map(keyName) : [], held: this.along ? this.input.held : [],
+      keys: practice.along ? this.input.keys.map(keyName) : [], held: practice.along ? this.input.held : [],
     };
-  }
-
-  /** The address says what is looped, and how fast. */
-  writeLink() {
-    const { loop, rate } = this.transport;
-    const measure = (/** @type {number} */ s) => this.chart.beatAt(s) / 4;
-    const link = loop ? makeLink(measure(loop.a), measure(loop.b), rate) : makeLink(null, null, rate);
-    try {
-      history.replaceState(null, "", link || location.pathname + location.search);
-    } catch {
-      // A browser that forbids it for pages from the disk: the link is only not in the address.
-    }
-  }
-
-  /** Do what the address says. @param {string} hash */
-  readLink(hash) {
-    const link = parseLink(hash);
-    if (!link) return;
-    if (link.rate !== null) this.transport.setRate(link.rate);
-    if (link.from !== null && link.to !== null) {
-      this.setLoop(this.chart.secondAt(4 * link.from), this.chart.secondAt(4 * link.to));
-      this.seek(this.chart.secondAt(4 * link.from));
-    } else if (link.from !== null) {
-      this.seek(this.chart.secondAt(4 * link.from));
-    }
-    this.tell("rate");
   }
 }

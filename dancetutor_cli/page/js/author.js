@@ -1,6 +1,8 @@
 // The author's panel: another foot for a note, what it costs, and files to take home.
 
 import { download, el } from "./dom.js";
+import { moveName } from "./labels.js";
+import { placeOf } from "./places.js";
 
 const LETTERS = ["L", "R", "<", ">"];
 
@@ -15,47 +17,64 @@ export function authorPanel(app) {
   const about = el("div", { class: "about", role: "status" });
   const give = el("button", { type: "button", onclick: () => { if (app.chosen >= 0) app.giveOther(app.chosen); } }, t("otherFoot"));
   const list = el("ul", { class: "changes" });
+  const saved = el("p", { class: "saved", role: "status" });
   const files = /** @type {[string, string, () => string][]} */ ([
     ["takeYaml", "dancetutor.yaml", () => yamlOf(app)],
     ["takeComments", "measure-comments.txt", () => commentsOf(app)],
     ["takePlay", "play.json", () => playOf(app)],
-  ]).map(([label, name, make]) => el("button", { type: "button", onclick: () => download(name, make()) }, t(label)));
+  ]).map(([label, name, make]) => el("button", {
+    type: "button",
+    onclick: () => {
+      download(name, make());
+      saved.textContent = t(`${label}Done`, { name, file: app.doc.words.file });
+    },
+  }, t(label)));
   const show = () => {
     const row = app.chosen >= 0 ? redance.rowOf.get(app.chosen) : undefined;
     give.disabled = !row || !redance.can(app.chosen);
+    give.textContent = t(row && redance.given.has(app.chosen) ? "giveBack" : "otherFoot");
     about.replaceChildren(...(row ? describe(app, row) : [el("p", {}, t("chooseNote"))]));
     const changed = redance.changedRows();
     list.replaceChildren(...changed.map((one) => {
-      const text = `${t("measureAt", { measure: Math.floor(one.beat / 4), beat: round((one.beat % 4) + 1) })}: ${letters(app, one)}`;
+      const text = `${placeOf(t, one.beat)}: ${letters(app, one)}`;
       return el("li", {}, el("button", { type: "button", class: "link", onclick: () => { app.chosen = one.steps[0].note; app.transport.pause(); app.seek(one.second); app.tell("feet"); } }, text),
-        ` ${costText(app, one)}`);
+        ` ${costText(app, one, true)}`);
     }));
     for (const button of files) button.disabled = !changed.length && button !== files[2];
   };
-  app.listeners.add((what) => { if (what === "feet") show(); });
+  app.listeners.add((what) => {
+    if (what !== "feet") return;
+    saved.textContent = redance.changedRows().length ? t("keptHere") : "";
+    show();
+  });
   show();
   return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list,
-    el("p", { class: "hint" }, t("approximate")), el("p", { class: "group column" }, ...files));
+    el("p", { class: "hint" }, t("approximate")), el("p", { class: "group column" }, ...files), saved);
 }
 
 /** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
 function describe(app, row) {
-  const { t } = app;
-  const who = row.steps.map((step) => `${app.doc.pad.names[step.column]} ${LETTERS[app.redance.limbOf(step)] ?? "?"}`).join(", ");
-  const words = row.moves.length ? t("moves", { moves: row.moves.map((one) => one.replaceAll("-", " ")).join(", ") }) : "";
+  const { t, redance } = app;
+  const who = row.steps.map((step) => `${app.doc.pad.names[step.column]} ${LETTERS[redance.limbOf(step)] ?? "?"}`).join(", ");
+  const given = row.steps.some((step) => redance.given.has(step.note));
+  const moves = row.moves.map((name) => moveName(t, name)).join(", ");
   return [
-    el("p", {}, el("strong", {}, t("measureAt", { measure: Math.floor(row.beat / 4), beat: round((row.beat % 4) + 1) })), ` ${who}`),
-    el("p", {}, words),
-    el("p", {}, t("rowCost", { cost: row.cost }), " ", costText(app, row)),
+    el("p", {}, el("strong", {}, placeOf(t, row.beat)), ` ${who}`),
+    el("p", {}, moves ? t(given ? "movesBefore" : "moves", { moves }) : ""),
+    el("p", {}, given ? "" : `${t("rowCost", { cost: row.cost })} `, costText(app, row, given)),
   ];
 }
 
-/** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
-function costText(app, row) {
+/**
+ * What the other foot costs, or costs now that it has been given the row.
+ * @param {import("./app.js").App} app @param {import("./chart.js").Row} row @param {boolean} given
+ */
+function costText(app, row, given) {
   const flip = app.redance.flips.get(row.row);
-  if (!flip || flip.extra < 0) return app.t("noOther");
+  if (!flip || flip.extra < 0) return app.t(given ? "givenUnknown" : "noOther");
   const rows = new Set(flip.changes.map(([number]) => number)).size;
-  return app.t(flip.extra === 0 ? "costNothing" : rows > 1 ? "costRows" : "costOne", { extra: flip.extra, rows: rows - 1 });
+  const name = flip.extra === 0 ? "Nothing" : rows > 1 ? "Rows" : "One";
+  return app.t(`${given ? "given" : "cost"}${name}`, { extra: flip.extra, rows: rows - 1 });
 }
 
 /** Lines of `feet` in dancetutor.yaml. @param {import("./app.js").App} app */

@@ -13,6 +13,8 @@ const KINDS = {
  * @returns {Uint8Array}
  */
 export function fromBase64(text) {
+  const own = /** @type {any} */ (Uint8Array).fromBase64; // of new browsers, many times quicker
+  if (own) return own.call(Uint8Array, text);
   const raw = atob(text);
   const out = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; ++i) out[i] = raw.charCodeAt(i);
@@ -58,12 +60,13 @@ export class Arrays {
     const width = out.BYTES_PER_ELEMENT;
     const to = new Uint8Array(out.buffer);
     for (let plane = 0; plane < width; ++plane) {
-      const from = offset + plane * count;
-      for (let i = 0; i < count; ++i) to[i * width + plane] = this.bytes[from + i];
+      const from = this.bytes.subarray(offset + plane * count, offset + (plane + 1) * count);
+      if (width === 1) to.set(from);
+      else for (let i = 0, at = plane; i < count; ++i, at += width) to[at] = from[i];
     }
     for (let round = 0; round < differences; ++round) {
       for (let start = 0; start < count; start += row) {
-        for (let i = start + 1; i < start + row; ++i) out[i] += out[i - 1];
+        for (let i = start + 1, sum = out[start]; i < start + row; ++i) sum = out[i] += sum;
       }
     }
     return out;

@@ -4,6 +4,7 @@ import { clamp, cross, dot, minus, plus } from "./maths.js";
 
 const NEAR = 0.05;
 const FAR = 100;
+const ARM = 0.42; // metres beside her middle that are to be seen of her
 
 /**
  * @typedef {object} Camera
@@ -97,6 +98,21 @@ export function orbit(doc, free, width, height) {
   const pitch = (clamp(free.pitch, 1, 89) * Math.PI) / 180;
   const away = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
   return { ...base, target, position: plus(target, away, distance), centre: [0.5, 0.5], feetOnly: false };
+}
+
+/**
+ * The camera moved sideways as far as she would leave the picture otherwise: when she walks on, in a narrow one.
+ * @param {Camera} camera @param {[number, number, number]} root @param {number} aspect @returns {Camera}
+ */
+export function beside(camera, root, aspect) {
+  const { right, forward } = axes(camera);
+  const way = minus(root, camera.position);
+  const depth = dot(way, forward);
+  if (depth < NEAR) return camera;
+  const across = (/** @type {number} */ edge) => ((edge - camera.centre[0]) * aspect * depth) / camera.focal;
+  const at = dot(way, right);
+  const by = Math.max(0, at + ARM - across(1)) + Math.min(0, at - ARM - across(0));
+  return by === 0 ? camera : { ...camera, position: plus(camera.position, right, by), target: plus(camera.target, right, by) };
 }
 
 /** @param {any} doc @param {any} about @returns {number[][]} */

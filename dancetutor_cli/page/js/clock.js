@@ -61,7 +61,8 @@ export class Transport {
   play() {
     if (this.run) return;
     let from = this.at;
-    if (this.loop && (from < this.lead(this.loop.a) - 1e-6 || from >= this.loop.b - 0.05)) from = this.lead(this.loop.a);
+    // At the loop's beginning or before it, as a deep link leaves it, a pass begins with its lead-in.
+    if (this.loop && (from <= this.loop.a + 1e-3 || from >= this.loop.b - 0.05)) from = this.lead(this.loop.a);
     if (!this.loop && from >= this.end - 0.05) from = this.start;
     this.begin(from, this.now() + START);
   }
@@ -96,7 +97,10 @@ export class Transport {
 
   /** Play the loop from its lead-in. */
   restartLoop() {
-    if (this.loop) this.seek(this.lead(this.loop.a));
+    if (!this.loop) return;
+    this.at = this.lead(this.loop.a); // even before the song's start
+    if (this.run) this.begin(this.at, this.now() + START);
+    else this.onChange();
   }
 
   /** The clock may go on to another second: to the next row that is waited for. @param {number} hold */
@@ -121,6 +125,11 @@ export class Transport {
       this.run = null;
       this.onChange();
     }
+  }
+
+  /** Whether a count-in goes on: nothing is played yet, only counted. */
+  get counting() {
+    return this.run !== null && this.second() < this.run.quietUntil;
   }
 
   /** @param {number} from @param {number} at */

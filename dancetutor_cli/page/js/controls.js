@@ -34,8 +34,8 @@ export function actionsOf(app, ui) {
     { name: "countIn", keys: ["i"], run: () => app.set("countIn", !settings.countIn) },
     { name: "metronome", keys: ["m"], run: () => app.set("metronome", !settings.metronome) },
     { name: "claps", keys: ["h"], run: () => app.setClaps(!app.claps) },
-    { name: "along", keys: ["p"], run: () => app.setAlong(!app.along) },
-    { name: "wait", keys: ["w"], run: () => app.setWait(!app.wait) },
+    { name: "along", keys: ["p"], run: () => app.practice.setAlong(!app.practice.along) },
+    { name: "wait", keys: ["w"], run: () => app.practice.setWait(!app.practice.wait) },
     { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
     { name: "camera", keys: ["v"], run: () => app.setCamera(CAMERAS[(CAMERAS.indexOf(settings.camera) + 1) % CAMERAS.length]) },
     { name: "turnLeft", keys: ["Shift+A"], run: () => turn(app, -10, 0) },
@@ -46,7 +46,7 @@ export function actionsOf(app, ui) {
     { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
     { name: "notesFaster", keys: ["."], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
     { name: "notesSlower", keys: [","], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
-    { name: "helpSheet", keys: ["?"], run: ui.help },
+    { name: "helpSheet", keys: ["?"], run: () => ui.help() },
   ];
 }
 
@@ -75,7 +75,7 @@ export function listenToKeys(app, actions) {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]:not(.assign)")) return;
     const target = /** @type {HTMLElement} */ (event.target);
     if (target.matches("input[type=text], input[type=number], select, textarea")) return;
-    if ((app.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
+    if ((app.practice.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
     if (target.matches("button, summary, a, input, [role=tab]") && [" ", "Enter"].includes(event.key)) return;
     if (target.matches("input[type=range], [role=tab]") && /^(Arrow|Home|End|Page)/.test(event.key)) return;
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
@@ -113,17 +113,22 @@ export function makeBar(app, ui) {
     ["claps", "h", () => app.claps, (on) => app.setClaps(on)],
   ]).map(([name, key, is, change]) => ({ is, button: toggle(t(name), is(), change, key) }));
   const clear = button("noLoop", "✕", () => app.setLoop(null, null), "x");
+  const more = el("button", { type: "button", class: "sign more", "aria-label": t("moreControls"), title: t("moreControls"), "aria-expanded": false }, "⋯");
+  more.addEventListener("click", () => {
+    more.setAttribute("aria-expanded", String(bar.classList.toggle("open")));
+    app.fresh = true;
+  });
   const bar = el("div", { class: "bar", role: "toolbar", "aria-label": t("controls") },
     el("div", { class: "group" },
       button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), "←"), play,
       button("rowOn", "▸", () => app.step(1), "→"), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
-    el("div", { class: "group" }, where),
-    el("div", { class: "group rate-group" }, button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
+    el("div", { class: "group place" }, where),
+    el("div", { class: "group extra" }, button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
       button("faster", "+", () => app.setRate(transport.rate + 0.05), "↑"), rateText),
-    el("div", { class: "group" }, button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
+    el("div", { class: "group extra" }, button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
       clear),
-    el("div", { class: "group" }, ...toggles.map((one) => one.button)),
-    el("div", { class: "group" }, button("helpSheet", "?", ui.help, "?")));
+    el("div", { class: "group extra" }, ...toggles.map((one) => one.button)),
+    el("div", { class: "group last" }, more, button("helpSheet", "?", () => ui.help(), "?")));
   app.listeners.add((what) => {
     if (what === "frame") {
       const second = app.second();

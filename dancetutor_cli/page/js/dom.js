@@ -12,6 +12,7 @@ export function el(tag, about = {}, ...children) {
   const out = document.createElement(tag);
   for (const [name, value] of Object.entries(about)) {
     if (name.startsWith("on")) out.addEventListener(name.slice(2), value);
+    else if (name.startsWith("aria-")) out.setAttribute(name, String(value)); // a state: "true" or "false"
     else if (value === true) out.setAttribute(name, "");
     else if (value !== false && value !== null && value !== undefined) out.setAttribute(name, String(value));
   }

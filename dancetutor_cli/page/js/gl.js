@@ -14,56 +14,84 @@ export function bind(gl, unit, texture, at) {
   gl.uniform1i(at, unit);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
-export function build(gl, vertex, fragment) {
-  const program = gl.createProgram();
-  for (const [kind, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
-    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`shader: ${gl.getShaderInfoLog(shader)}`);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`shaders: ${gl.getProgramInfoLog(program)}`);
-  /** @type {Record<string, WebGLUniformLocation | null>} */
-  const at = {};
-  const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
-  for (let i = 0; i < count; ++i) {
-    const name = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(program, i)).name.replace("[0]", "");
-    at[name] = gl.getUniformLocation(program, name);
-  }
-  return { program, at };
+/**
+ * Programs out of vertex and fragment shaders; all are given to the driver before the first is asked for.
+ * @param {WebGL2RenderingContext} gl @param {[string, string][]} sources @returns {Program[]}
+ */
+export function build(gl, sources) {
+  const made = sources.map((texts) => {
+    const program = gl.createProgram();
+    const shaders = texts.map((text, k) => {
+      const shader = /** @type {WebGLShader} */ (gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER));
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+      return shader;
+    });
+    gl.linkProgram(program);
+    return { program, shaders };
+  });
+  return made.map(({ program, shaders }) => {
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+      const logs = shaders.map((shader) => gl.getShaderInfoLog(shader));
+      throw new Error(`shaders: ${[gl.getProgramInfoLog(program), ...logs].filter(Boolean).join("; ")}`);
+    }
+    /** @type {Record<string, WebGLUniformLocation | null>} */
+    const at = {};
+    const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+    for (let i = 0; i < count; ++i) {
+      const name = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(program, i)).name.replace("[0]", "");
+      at[name] = gl.getUniformLocation(program, name);
+    }
+    return { program, at };
+  });
 }
 
-/** @param {WebGL2RenderingContext} gl @param {any} body @param {import("./blob.js").Arrays} arrays */
-export function makeMesh(gl, body, arrays) {
+/** @typedef {ReturnType<typeof meshData>} MeshData */
+
+/** The dancer's mesh as the graphics card reads it. @param {any} body @param {import("./blob.js").Arrays} arrays */
+export function meshData(body, arrays) {
   const n = body.vertices;
-  const array = gl.createVertexArray();
-  gl.bindVertexArray(array);
   const place = arrays.get("mesh.position");
   const uv = arrays.get("mesh.uv");
   const floats = new Float32Array(5 * n);
-  for (let v = 0; v < n; ++v) {
-    for (let k = 0; k < 3; ++k) floats[5 * v + k] = body.low[k] + (place[k * n + v] / 65535) * body.size[k];
-    for (let k = 0; k < 2; ++k) floats[5 * v + 3 + k] = body.uv[0][k] + (uv[k * n + v] / 65535) * body.uv[1][k];
+  for (const [k, from, size, values, at] of /** @type {[number, number[], number[], import("./blob.js").Numbers, number][]} */ ([
+    [0, body.low, body.size, place, 0], [1, body.low, body.size, place, 1], [2, body.low, body.size, place, 2],
+    [0, body.uv[0], body.uv[1], uv, 3], [1, body.uv[0], body.uv[1], uv, 4],
+  ])) {
+    const low = from[k];
+    const scale = size[k] / 65535;
+    for (let v = 0, i = k * n, to = at; v < n; ++v, ++i, to += 5) floats[to] = low + values[i] * scale;
   }
-  buffer(gl, gl.ARRAY_BUFFER, floats);
-  attribute(gl, 0, 3, gl.FLOAT, 20, 0, false);
-  attribute(gl, 3, 2, gl.FLOAT, 20, 12, false);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.normal"), n, 3, Int8Array));
-  attribute(gl, 1, 3, gl.BYTE, 4, 0, true);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.hull"), n, 3, Int8Array));
-  attribute(gl, 2, 3, gl.BYTE, 4, 0, true);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.joints"), n, 4, Uint8Array));
-  attribute(gl, 4, 4, gl.UNSIGNED_BYTE, 4, 0, false);
-  buffer(gl, gl.ARRAY_BUFFER, interleaved(arrays.get("mesh.weights"), n, 4, Uint8Array));
-  attribute(gl, 5, 4, gl.UNSIGNED_BYTE, 4, 0, true);
   const columns = arrays.get("mesh.triangles");
   const count = columns.length / 3;
   const triangles = new Uint32Array(columns.length);
-  for (let t = 0; t < count; ++t) for (let k = 0; k < 3; ++k) triangles[3 * t + k] = columns[k * count + t];
-  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, triangles);
+  for (let k = 0, i = 0; k < 3; ++k) for (let t = 0, to = k; t < count; ++t, ++i, to += 3) triangles[to] = columns[i];
+  return {
+    floats, triangles,
+    normals: interleaved(arrays.get("mesh.normal"), n, 3, Int8Array),
+    hull: interleaved(arrays.get("mesh.hull"), n, 3, Int8Array),
+    joints: interleaved(arrays.get("mesh.joints"), n, 4, Uint8Array),
+    weights: interleaved(arrays.get("mesh.weights"), n, 4, Uint8Array),
+  };
+}
+
+/** @param {WebGL2RenderingContext} gl @param {MeshData} data */
+export function makeMesh(gl, data) {
+  const array = gl.createVertexArray();
+  gl.bindVertexArray(array);
+  buffer(gl, gl.ARRAY_BUFFER, data.floats);
+  attribute(gl, 0, 3, gl.FLOAT, 20, 0, false);
+  attribute(gl, 3, 2, gl.FLOAT, 20, 12, false);
+  buffer(gl, gl.ARRAY_BUFFER, data.normals);
+  attribute(gl, 1, 3, gl.BYTE, 4, 0, true);
+  buffer(gl, gl.ARRAY_BUFFER, data.hull);
+  attribute(gl, 2, 3, gl.BYTE, 4, 0, true);
+  buffer(gl, gl.ARRAY_BUFFER, data.joints);
+  attribute(gl, 4, 4, gl.UNSIGNED_BYTE, 4, 0, false);
+  buffer(gl, gl.ARRAY_BUFFER, data.weights);
+  attribute(gl, 5, 4, gl.UNSIGNED_BYTE, 4, 0, true);
+  buffer(gl, gl.ELEMENT_ARRAY_BUFFER, data.triangles);
   gl.bindVertexArray(null);
   return array;
 }
@@ -75,7 +103,7 @@ export function makeMesh(gl, body, arrays) {
  */
 function interleaved(columns, n, width, kind) {
   const out = new kind(4 * n);
-  for (let k = 0; k < width; ++k) for (let v = 0; v < n; ++v) out[4 * v + k] = columns[k * n + v];
+  for (let k = 0, i = 0; k < width; ++k) for (let v = 0, to = k; v < n; ++v, ++i, to += 4) out[to] = columns[i];
   return out;
 }
 

@@ -2,13 +2,9 @@
 
 import { KIND } from "./chart.js";
 import { lightOf } from "./feet.js";
+import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-
-// Corners of an arrow that points up, in halves of its size (video/sprites.py).
-const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
-  [-0.62, 0.32], [-0.94, 0]];
-const SQUARE = [[-0.7, -0.7], [0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
-const INK = "#0a0b14";
+import { INK, drawBody, drawMarker, drawMine, drawVerdict, notePath } from "./noteart.js";
 
 /**
  * @typedef {object} Scene
@@ -27,8 +23,9 @@ const INK = "#0a0b14";
 export class Highway {
   /**
    * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {import("./words.js").Translate} t
    */
-  constructor(canvas, doc, chart) {
+  constructor(canvas, doc, chart, t) {
     this.canvas = canvas;
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.doc = doc;
@@ -38,7 +35,18 @@ export class Highway {
     /** @type {Map<number, import("./chart.js").Row>} */
     this.rowOf = new Map();
     for (const row of chart.rows) for (const step of row.steps) this.rowOf.set(step.note, row);
-    this.labels = moveLabels(doc, chart);
+    this.labels = labelsOf(doc, chart, t);
+  }
+
+  /** Words of another language. @param {import("./words.js").Translate} t */
+  speak(t) {
+    this.labels = labelsOf(this.doc, this.chart, t);
+  }
+
+  /** Where a column's arrow points, as her panels are seen; null for a square. @param {number} column @param {boolean} mirror */
+  way(column, mirror) {
+    const way = this.directions[column];
+    return way === null ? null : way + (mirror ? 180 : 0);
   }
 
   /** Sizes for the canvas as it is now. */
@@ -133,7 +141,7 @@ export class Highway {
       c.fillRect(x - m.size, m.receptor - m.size, 2 * m.size, 2 * m.size);
       c.globalAlpha = 1;
     }
-    this.shape(column, x, m.receptor, 0.98 * m.size, scene.mirror);
+    notePath(c, this.way(column, scene.mirror), x, m.receptor, 0.98 * m.size);
     c.fillStyle = INK;
     c.fill();
     c.lineWidth = Math.max(1.5, (scene.held[column] ? 0.14 : 0.05) * m.size);
@@ -161,13 +169,16 @@ export class Highway {
     const x = this.laneX(column, m, scene.mirror);
     const top = y(head);
     c.globalAlpha = verdict === "hit" ? 0.35 : 1;
-    if (held) this.drawBody(n, m, x, top, y(chart.end[n]));
+    if (held) {
+      const roll = kind === KIND.ROLL;
+      drawBody(c, { x, top, bottom: y(chart.end[n]), width: 0.56 * m.size }, roll ? style.roll : style.hold, roll, m.ratio);
+    }
     if (kind === KIND.MINE) {
-      this.drawMine(x, top, m.size);
+      drawMine(c, style.mine, x, top, m.size);
     } else {
       const fake = kind === KIND.FAKE || !chart.judged[n];
       const colour = fake ? style.fake : style.quantisation[chart.quant[n]];
-      this.shape(column, x, top, m.size, scene.mirror);
+      notePath(c, this.way(column, scene.mirror), x, top, m.size);
       c.fillStyle = kind === KIND.LIFT ? INK : colour;
       c.fill();
       c.lineJoin = "round";
@@ -177,7 +188,9 @@ export class Highway {
       const changed = scene.feet.has(n);
       const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
       const row = this.rowOf.get(n);
-      if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) this.marker(limb, x, top, 0.5 * m.size, changed);
+      if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
+        drawMarker(c, { limb, colour: style.limbs[limb], changed }, x, top, 0.5 * m.size);
+      }
       if (n === scene.chosen) {
         c.lineWidth = 3 * m.ratio;
         c.strokeStyle = "#fff";
@@ -185,102 +198,7 @@ export class Highway {
       }
     }
     c.globalAlpha = 1;
-    if (verdict && verdict !== "hit") this.cross(verdict, x, top, m);
-  }
-
-  /** @param {number} n @param {ReturnType<Highway["measure"]>} m @param {number} x @param {number} top @param {number} bottom */
-  drawBody(n, m, x, top, bottom) {
-    const c = this.context;
-    const roll = this.chart.kind[n] === KIND.ROLL;
-    const width = 0.56 * m.size;
-    c.fillStyle = roll ? this.style.roll : this.style.hold;
-    c.beginPath();
-    c.roundRect(x - width / 2, top, width, Math.max(bottom - top, 1), [0, 0, width / 2, width / 2]);
-    c.fill();
-    c.lineWidth = 1.5 * m.ratio;
-    c.strokeStyle = "rgba(255,255,255,0.85)";
-    c.stroke();
-    if (!roll) return;
-    c.save();
-    c.clip();
-    c.strokeStyle = "rgba(255,255,255,0.5)";
-    c.lineWidth = 3 * m.ratio;
-    for (let at = top; at < bottom + width; at += 0.4 * width) {
-      c.beginPath();
-      c.moveTo(x - width / 2, at);
-      c.lineTo(x, at - 0.25 * width);
-      c.lineTo(x + width / 2, at);
-      c.stroke();
-    }
-    c.restore();
-  }
-
-  /** @param {number} x @param {number} y @param {number} size */
-  drawMine(x, y, size) {
-    const c = this.context;
-    c.beginPath();
-    for (let k = 0; k < 16; ++k) {
-      const radius = (k % 2 ? 0.3 : 0.37) * size;
-      const angle = (k * Math.PI) / 8;
-      c.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
-    }
-    c.closePath();
-    c.fillStyle = "#1a1a22";
-    c.fill();
-    c.lineWidth = 0.03 * size;
-    c.strokeStyle = "#fff";
-    c.stroke();
-    c.strokeStyle = this.style.mine;
-    c.lineWidth = 0.075 * size;
-    c.beginPath();
-    c.arc(x, y, 0.22 * size, 0, 2 * Math.PI);
-    for (const [dx, dy] of [[1, 1], [1, -1]]) {
-      c.moveTo(x - 0.11 * size * dx, y - 0.11 * size * dy);
-      c.lineTo(x + 0.11 * size * dx, y + 0.11 * size * dy);
-    }
-    c.stroke();
-  }
-
-  /**
-   * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring.
-   * @param {number} limb @param {number} x @param {number} y @param {number} size @param {boolean} changed by the author
-   */
-  marker(limb, x, y, size, changed) {
-    const c = this.context;
-    const right = limb % 2 === 1;
-    c.beginPath();
-    if (right) c.roundRect(x - 0.46 * size, y - 0.46 * size, 0.92 * size, 0.92 * size, 0.15 * size);
-    else c.arc(x, y, 0.48 * size, 0, 2 * Math.PI);
-    c.fillStyle = this.style.limbs[limb];
-    c.fill();
-    c.lineWidth = 0.08 * size;
-    c.strokeStyle = changed ? "#fff" : INK;
-    c.stroke();
-    if (limb >= 2) {
-      c.beginPath();
-      c.arc(x, y, 0.33 * size, 0, 2 * Math.PI);
-      c.strokeStyle = INK;
-      c.stroke();
-    }
-    c.fillStyle = INK;
-    c.font = `800 ${Math.round(0.66 * size)}px system-ui, sans-serif`;
-    c.textAlign = "center";
-    c.textBaseline = "middle";
-    c.fillText(right ? "R" : "L", x, y + 0.04 * size);
-  }
-
-  /** @param {string} verdict @param {number} x @param {number} y @param {ReturnType<Highway["measure"]>} m */
-  cross(verdict, x, y, m) {
-    const c = this.context;
-    c.font = `700 ${Math.round(0.5 * m.size)}px system-ui, sans-serif`;
-    c.textAlign = "center";
-    c.textBaseline = "middle";
-    c.lineWidth = 3 * m.ratio;
-    c.strokeStyle = INK;
-    c.fillStyle = verdict === "miss" ? "#ff6b6b" : "#ffc857";
-    const sign = verdict === "miss" ? "✕" : verdict === "early" ? "−" : "+";
-    c.strokeText(sign, x + 0.42 * m.size, y - 0.3 * m.size);
-    c.fillText(sign, x + 0.42 * m.size, y - 0.3 * m.size);
+    if (verdict && verdict !== "hit") drawVerdict(c, verdict, x, top, m.size, m.ratio);
   }
 
   /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
@@ -302,22 +220,6 @@ export class Highway {
       while (shown.length > 3 && c.measureText(shown).width > room) shown = `${shown.slice(0, -2)}…`;
       c.fillText(shown, x, y(second));
     }
-  }
-
-  /**
-   * Path of a note's shape.
-   * @param {number} column @param {number} x @param {number} y @param {number} size @param {boolean} mirror
-   */
-  shape(column, x, y, size, mirror) {
-    const c = this.context;
-    const way = this.directions[column];
-    const angle = (((way ?? 0) + (mirror ? 180 : 0)) * Math.PI) / 180; // as her panels are seen then
-    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-    c.beginPath();
-    for (const [px, py] of way === null ? SQUARE : ARROW) {
-      c.lineTo(x + ((px * cos - py * sin) * size) / 2, y + ((px * sin + py * cos) * size) / 2);
-    }
-    c.closePath();
   }
 
   /** The lane at a place of the canvas, -1 for none. @param {number} px pixels of CSS @param {boolean} mirror */
@@ -344,30 +246,6 @@ export class Highway {
     }
     return best;
   }
-}
-
-/**
- * Words beside the notes: moves where they begin, and findings.
- * @param {any} doc @param {import("./chart.js").Chart} chart
- */
-function moveLabels(doc, chart) {
-  /** @type {{second: number, text: string, severity: string}[]} */
-  const out = [];
-  /** @type {string[]} */
-  let before = [];
-  for (const row of chart.rows) {
-    const now = [...new Set(row.moves.map((name) => doc.style.callouts[name]).filter(Boolean))];
-    const fresh = now.filter((word) => !before.includes(word));
-    if (fresh.length) out.push({ second: row.second, text: fresh.join(", "), severity: "move" });
-    before = now;
-  }
-  for (const one of doc.findings) {
-    if (one.second === null || one.column === null) continue;
-    const same = out.find((label) => Math.abs(label.second - one.second) < 1e-3);
-    if (same) same.severity = one.severity;
-    else out.push({ second: one.second, text: one.name.replaceAll("-", " "), severity: one.severity });
-  }
-  return out;
 }
 
 /** Speed of the notes in canvas heights a second: quicker for quick charts. @param {number} setting 0.5..3 */

@@ -5,7 +5,7 @@ export const WINDOW = 0.135;
 const GOOD = 0.045; // within: a hit; beyond: early or late
 
 /** @typedef {"hit" | "early" | "late" | "miss"} Verdict */
-/** @typedef {{hit: number, early: number, late: number, miss: number, sum: number, count: number}} Tally */
+/** @typedef {{hit: number, early: number, late: number, miss: number, wrong: number, sum: number, count: number}} Tally */
 
 export class Judge {
   /** @param {import("./chart.js").Chart} chart */
@@ -15,6 +15,8 @@ export class Judge {
     this.verdicts = new Map();
     /** @type {Map<number, number>} seconds that a note was pressed late, by note */
     this.errors = new Map();
+    /** @type {number[]} seconds at which a panel was pressed that nothing asks for */
+    this.wrong = [];
     this.next = 0; // first row that may still be missed
     this.from = -Infinity; // rows before it are not asked for
   }
@@ -23,6 +25,7 @@ export class Judge {
   restart(second) {
     this.from = second - 1e-3;
     this.next = 0;
+    this.wrong = this.wrong.filter((at) => at < this.from);
     while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < this.from) ++this.next;
     for (const row of this.chart.rows.slice(this.next)) {
       for (const step of row.steps) {
@@ -33,9 +36,9 @@ export class Judge {
   }
 
   /**
-   * A panel is pressed at a second of the music; what it counts as, null if no note is near.
+   * A panel is pressed at a second of the music; what it counts as, null if it is neither here nor there.
    * @param {number} column @param {number} second @param {number} rate @param {boolean} [patient] the clock waits
-   * @returns {Verdict | null}
+   * @returns {Verdict | "wrong" | null}
    */
   press(column, second, rate, patient = false) {
     let best = -1;
@@ -45,12 +48,25 @@ export class Judge {
       if (this.chart.second[n] > second + least) break;
       if (away <= least && !this.verdicts.has(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
     }
-    if (best < 0) return null;
+    if (best < 0) return this.stray(column, second, rate);
     const error = (second - this.chart.second[best]) / rate;
     const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
     this.verdicts.set(best, verdict);
     if (!patient) this.errors.set(best, error);
     return verdict;
+  }
+
+  /**
+   * A press that takes no note: wrong, but for a panel pressed again, or that is held down just now.
+   * @param {number} column @param {number} second @param {number} rate
+   */
+  stray(column, second, rate) {
+    const wide = WINDOW * rate;
+    const { second: starts, end: ends } = this.chart;
+    const asked = (this.chart.presses[column] ?? []).some((n) => starts[n] - wide <= second && second <= ends[n] + wide);
+    if (asked || second < this.from - wide) return null;
+    this.wrong.push(second);
+    return /** @type {const} */ ("wrong");
   }
 
   /**
@@ -87,7 +103,8 @@ export class Judge {
    * @param {number} from @param {number} to @returns {Tally}
    */
   tally(from, to) {
-    const out = { hit: 0, early: 0, late: 0, miss: 0, sum: 0, count: 0 };
+    const wrong = this.wrong.filter((at) => from - 1e-3 <= at && at < to).length;
+    const out = { hit: 0, early: 0, late: 0, miss: 0, wrong, sum: 0, count: 0 };
     for (const [n, verdict] of this.verdicts) {
       if (this.chart.second[n] < from - 1e-3 || this.chart.second[n] >= to) continue;
       ++out[verdict];
@@ -116,7 +133,7 @@ export function latencyOf(taps, beats) {
 }
 
 /**
- * The speed of the next pass of a loop: quicker after a clean one, a step back after misses.
+ * The speed of the next pass of a loop: quicker after a clean one, a step back after misses and wrong presses.
  * @param {number} rate @param {number} misses @param {boolean} played whether anybody played along
  */
 export function ramp(rate, misses, played) {

@@ -1,6 +1,9 @@
 // The panels beside the picture: passages, findings, and what is set.
 
 import { el } from "./dom.js";
+import { findingWords } from "./labels.js";
+import { placeOf, stretch } from "./places.js";
+import { scoreText } from "./said.js";
 
 /** The hardest passages; a click loops one. @param {import("./app.js").App} app */
 export function passagesPanel(app) {
@@ -8,7 +11,7 @@ export function passagesPanel(app) {
   const list = el("ol", { class: "cards" });
   const buttons = doc.passages.map((/** @type {any} */ passage, /** @type {number} */ k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
-      el("strong", {}, `${k + 1}. ${t("measures", { from: passage.from, to: passage.to })}`),
+      el("strong", {}, `${k + 1}. ${stretch(t, passage.from, passage.to)}`),
       el("span", { class: "figure" }, t("rate", { rate: passage.rate.toFixed(1) })),
       el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
       el("span", { class: "hits" }));
@@ -20,8 +23,9 @@ export function passagesPanel(app) {
     buttons.forEach((/** @type {HTMLButtonElement} */ button, /** @type {number} */ k) => {
       button.setAttribute("aria-pressed", String(k === app.passage));
       const { start, end } = doc.passages[k];
-      const { hit, early, late, miss } = app.judge.tally(start, end);
-      const text = hit + early + late + miss && app.along ? t("counts", { hit, early, late, miss }) : "";
+      const tally = app.practice.judge.tally(start, end);
+      const any = tally.hit + tally.early + tally.late + tally.miss + tally.wrong > 0;
+      const text = any && app.practice.along ? scoreText(app, tally) : "";
       /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = text;
     });
   });
@@ -29,22 +33,27 @@ export function passagesPanel(app) {
   return el("div", {}, el("p", { class: "hint" }, t("passagesHint")), empty, list);
 }
 
-/** What the linter found; can be ticked off. @param {import("./app.js").App} app */
+/**
+ * What the linter found; can be ticked off. It speaks English: in another language the rule's meaning stands before it.
+ * @param {import("./app.js").App} app
+ */
 export function findingsPanel(app) {
-  const { t, doc } = app;
+  const { t, doc, language } = app;
   if (!doc.findings.length) return el("p", {}, t("noFindings"));
   const list = el("ul", { class: "cards" });
   for (const one of doc.findings) {
+    const [name, about] = findingWords(t, one);
     const key = `${one.rule}@${one.beat ?? ""}`;
-    const box = el("input", { type: "checkbox", "aria-label": t("tickOff", { rule: one.rule, place: one.beat ?? "" }) });
+    const box = el("input", { type: "checkbox", "aria-label": t("tickOff", { rule: one.rule, place: one.beat === null ? "" : placeOf(t, one.beat) }) });
     box.checked = app.notes.ticked.includes(key);
     const go = el("button", {
-      type: "button", class: "card", disabled: one.second === null,
+      type: "button", class: "card", title: about, disabled: one.second === null,
       onclick: () => { app.transport.pause(); app.seek(one.second); },
     },
-      el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${one.name.replaceAll("-", " ")}`),
-      el("span", { class: "figure" }, one.beat === null ? "" : t("measureAt", { measure: Math.floor(one.beat / 4), beat: (one.beat % 4) + 1 })),
-      el("span", { class: "text" }, one.message));
+      el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${name}`),
+      el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
+      language === "en" || !about ? null : el("span", { class: "text" }, about),
+      el("span", { class: "text", lang: "en" }, one.message));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);
     box.addEventListener("change", () => { app.tick(key, box.checked); show(); });
@@ -64,7 +73,7 @@ export function settingsPanel(app, load) {
   const language = el("select", { id: "language" }, el("option", { value: "" }, t("languageOfBrowser")),
     ...Object.keys(doc.languages).map((name) => el("option", { value: name }, doc.languages[name].language ?? name)));
   language.value = settings.language;
-  language.addEventListener("change", () => { app.set("language", language.value); location.reload(); });
+  language.addEventListener("change", () => app.setLanguage(language.value));
   const slider = (/** @type {"volume" | "speed" | "leadBeats" | "latency"} */ name, /** @type {number} */ min, /** @type {number} */ max, /** @type {number} */ step) => {
     const input = el("input", { type: "range", id: name, min, max, step, value: settings[name] });
     const shown = el("output", { for: name });

@@ -1,6 +1,6 @@
 // The dancer's part of the page: canvas, cameras, one dancer or two, the ghost foot; and feet from above without WebGL.
 
-import { orbit, preset } from "./camera.js";
+import { beside, orbit, preset } from "./camera.js";
 import { lightsAt, marksOf } from "./feet.js";
 import { drawFromAbove } from "./topview.js";
 import { Viewer } from "./viewer.js";
@@ -46,6 +46,8 @@ export class Picture {
     this.simple = false; // without cast shadows while it plays
     this.slow = 0;
     this.last = 0;
+    /** @type {Map<string, import("./camera.js").Camera>} fitted cameras, by name and size */
+    this.cameras = new Map();
     this.poses = motions.map((motion) => motion.pose());
     this.ghostPose = motions[0].pose();
     this.skins = motions.map(() => new Float32Array(12 * doc.body.parents.length));
@@ -55,19 +57,20 @@ export class Picture {
     this.amend = () => {};
     /** @type {() => void} */
     this.onTurn = () => {};
-    this.listen();
   }
 
   /**
    * Start WebGL; without it the canvas shows feet from above.
-   * @param {import("./blob.js").Arrays} arrays @param {ImageBitmap[]} skins
+   * @param {import("./gl.js").MeshData} mesh @param {ImageBitmap[]} skins
    */
-  start(arrays, skins) {
+  start(mesh, skins) {
     try {
-      this.viewer = new Viewer(this.canvas, this.doc, arrays, skins);
+      this.viewer = new Viewer(this.canvas, this.doc, mesh, skins);
+      this.canvas = this.viewer.canvas;
     } catch {
-      this.flat();
+      return this.flat();
     }
+    this.listen();
     this.canvas.addEventListener("webglcontextlost", () => this.flat());
   }
 
@@ -121,11 +124,16 @@ export class Picture {
     this.settings.pitch = Math.min(Math.max(this.settings.pitch + pitch, 2), 88);
   }
 
-  /** @param {string} name @param {number} width @param {number} height */
-  camera(name, width, height) {
+  /** @param {string} name @param {number} width @param {number} height @param {[number, number, number]} root where she is */
+  camera(name, width, height, root) {
     if (name === "free") return orbit(this.doc, this.settings, width, height);
-    const camera = preset(this.doc, name === "mirror" ? "front" : name, width, height);
-    return { ...camera, mirror: name === "mirror" };
+    const key = `${name} ${width} ${height}`;
+    let camera = this.cameras.get(key);
+    if (!camera) {
+      camera = { ...preset(this.doc, name === "mirror" ? "front" : name, width, height), mirror: name === "mirror" };
+      this.cameras.set(key, camera);
+    }
+    return beside(camera, root, width / height);
   }
 
   /** @param {Wanted} wanted */
@@ -147,11 +155,12 @@ export class Picture {
       motion.forward(pose);
       if (k === 0) this.amend(wanted.second, pose);
       motion.skin(pose, this.skins[k]);
+      const root = pose.at(0);
       const left = Math.round((k * width) / count);
       const wide = Math.round(((k + 1) * width) / count) - left;
       views.push({
-        camera: this.camera(wanted.camera, wide, height), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
-        skin: this.skins[k], root: pose.at(0), marks: marksOf(this.doc, pose), lights: this.lights,
+        camera: this.camera(wanted.camera, wide, height, root), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
+        skin: this.skins[k], root, marks: marksOf(this.doc, pose), lights: this.lights,
         ghost: k === 0 ? this.ghost(wanted.next) : null,
       });
     }

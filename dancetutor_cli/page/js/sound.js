@@ -178,9 +178,13 @@ export function clicksOf(chart, wanted) {
         if (chart.rowSeconds[k] >= quietUntil) out.push({ second: chart.rowSeconds[k], pitch: CLAP, loudness: 0.55 });
       }
     }
-    for (let k = lastUpTo(chart.beats, from) + 1; k < chart.beats.length && chart.beats[k] <= to; ++k) {
-      if (metronome || chart.beats[k] < quietUntil - 1e-6) {
-        out.push({ second: chart.beats[k], pitch: k % 4 === 0 ? ACCENT : TICK, loudness: 0.4 });
+    // A count-in may begin before the first beat.
+    let k = from < chart.beats[0] ? Math.floor(chart.beatAt(from) + 1e-9) + 1 : lastUpTo(chart.beats, from) + 1;
+    for (; k < chart.beats.length; ++k) {
+      const second = k < 0 ? chart.secondAt(k) : chart.beats[k];
+      if (second > to) break;
+      if (metronome || second < quietUntil - 1e-6) {
+        out.push({ second, pitch: k % 4 === 0 ? ACCENT : TICK, loudness: 0.4 });
       }
     }
     return out;

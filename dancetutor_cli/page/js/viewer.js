@@ -25,20 +25,22 @@ const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip"
 
 export class Viewer {
   /**
-   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./blob.js").Arrays} arrays
+   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./gl.js").MeshData} mesh
    * @param {ImageBitmap[]} skins
    */
-  constructor(canvas, doc, arrays, skins) {
-    const soft = isSoftware();
-    const gl = canvas.getContext("webgl2", { antialias: !soft, alpha: false, powerPreference: "high-performance" });
-    if (!gl) throw new Error("no WebGL 2");
+  constructor(canvas, doc, mesh, skins) {
+    const { gl, soft } = contextOf(canvas);
+    this.canvas = /** @type {HTMLCanvasElement} */ (gl.canvas);
     this.simple = false;
     this.gl = gl;
     this.doc = doc;
     const shaders = doc.shaders;
-    this.stage = build(gl, shaders["stage.vert"], shaders["stage.frag"]);
-    this.dancer = build(gl, shaders["skinned.vert"], shaders["dancer.frag"]);
-    this.depth = build(gl, shaders["skinned.vert"], shaders["depth.frag"]);
+    const skinned = shaders["skinned.vert"];
+    const [stage, dancer, depth] = build(gl, [[shaders["stage.vert"], shaders["stage.frag"]],
+      [skinned, shaders["dancer.frag"]], [skinned, shaders["depth.frag"]]]);
+    this.stage = stage;
+    this.dancer = dancer;
+    this.depth = depth;
     this.joints = gl.createBuffer();
     gl.bindBuffer(gl.UNIFORM_BUFFER, this.joints);
     gl.bufferData(gl.UNIFORM_BUFFER, MOST_JOINTS * 48, gl.DYNAMIC_DRAW);
@@ -46,7 +48,7 @@ export class Viewer {
     for (const one of [this.dancer, this.depth]) {
       gl.uniformBlockBinding(one.program, gl.getUniformBlockIndex(one.program, "Joints"), 0);
     }
-    this.mesh = makeMesh(gl, doc.body, arrays);
+    this.mesh = makeMesh(gl, mesh);
     this.room = makeRoom(gl, doc.stage);
     this.skins = skins.map((image) => skinTexture(gl, image));
     this.tiles = tileTexture(gl, doc.stage);
@@ -218,11 +220,22 @@ export class Viewer {
   }
 }
 
-/** Whether WebGL is drawn by the processor: then smooth edges cost more than they give. */
-function isSoftware() {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const about = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = gl && about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+/**
+ * WebGL 2 for a canvas; with smooth edges, on another canvas in its place, unless the processor draws: they cost more
+ * than they give there, and who draws is only known of a context.
+ * @param {HTMLCanvasElement} canvas
+ */
+function contextOf(canvas) {
+  const wanted = /** @type {WebGLContextAttributes} */ ({ antialias: false, alpha: false, powerPreference: "high-performance" });
+  const gl = canvas.getContext("webgl2", wanted);
+  if (!gl) throw new Error("no WebGL 2");
+  const about = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+  if (/swiftshader|llvmpipe|softpipe|software/i.test(name)) return { gl, soft: true };
+  const other = /** @type {HTMLCanvasElement} */ (canvas.cloneNode());
+  const smooth = other.getContext("webgl2", { ...wanted, antialias: true });
+  if (!smooth) return { gl, soft: false };
+  canvas.replaceWith(other);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return { gl: smooth, soft: false };
 }

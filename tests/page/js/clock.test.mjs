@@ -98,3 +98,21 @@ test("a seek while it plays goes on there", () => {
   at.now = transport.run.at + 1;
   near(transport.second(), 31);
 });
+
+test("from the loop's beginning it plays with the lead-in, from within it does not; before the song's start too", () => {
+  const { transport } = make();
+  transport.lead = (a) => a - 2;
+  transport.countIn = true;
+  transport.setLoop({ a: 1, b: 4 });
+  transport.seek(1); // as a deep link leaves it
+  transport.play();
+  near(transport.run.from, -1);
+  assert.ok(transport.counting);
+  transport.pause();
+  transport.seek(2);
+  transport.play();
+  near(transport.run.from, 2);
+  assert.ok(!transport.counting);
+  transport.restartLoop();
+  near(transport.run.from, -1);
+});

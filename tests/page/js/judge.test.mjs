@@ -1,8 +1,9 @@
-// Presses, misses, rows that wait, delays, the ramp; and links.
+// Presses, misses, wrong panels, rows that wait, delays, the ramp; and links.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
+import { stretch } from "../../../dancetutor_cli/page/js/places.js";
 
 /** Rows at seconds 1, 2 (a jump), 3. */
 function chart() {
@@ -12,7 +13,7 @@ function chart() {
     second: second[notes[0]], steps: notes.map((note) => ({ note, column: column[note], limb: note % 2, part: 0 })),
   }));
   return {
-    second, rows, rowSeconds: rows.map((row) => row.second),
+    second, end: second, rows, rowSeconds: rows.map((row) => row.second),
     presses: [0, 1, 2, 3].map((c) => second.map((_, n) => n).filter((n) => column[n] === c)),
   };
 }
@@ -24,18 +25,33 @@ test("presses near a note count once, early, in time or late", () => {
   assert.equal(judge.press(0, 1.0, 1), null);
   assert.equal(judge.press(0, 2.02, 1), "hit");
   assert.equal(judge.press(3, 2.1, 1), "late");
-  assert.equal(judge.press(1, 2.5, 1), null);
+  assert.equal(judge.press(1, 2.5, 1), "wrong");
   assert.equal(judge.advance(4, 1), 1);
   const tally = judge.tally(0, 10);
-  assert.deepEqual([tally.hit, tally.early, tally.late, tally.miss], [1, 1, 1, 1]);
+  assert.deepEqual([tally.hit, tally.early, tally.late, tally.miss, tally.wrong], [1, 1, 1, 1, 1]);
   assert.ok(Math.abs(tally.sum - (-0.09 + 0.02 + 0.1)) < 1e-9);
 });
 
 test("the window is of real time: half as wide in the music at half speed", () => {
   const judge = new Judge(chart());
   judge.restart(0);
-  assert.equal(judge.press(0, 1.1, 0.5), null);
+  assert.equal(judge.press(0, 1.1, 0.5), "wrong");
   assert.equal(judge.press(0, 1.05, 0.5), "late");
+});
+
+test("a panel that nothing asks for is wrong; one pressed again, held, or before the beginning is not", () => {
+  const judge = new Judge({ ...chart(), end: [1, 2, 2, 4] });
+  judge.restart(1);
+  assert.equal(judge.press(1, 0.5, 1), null);
+  assert.equal(judge.press(0, 1, 1), "hit");
+  assert.equal(judge.press(0, 1.1, 1), null);
+  assert.equal(judge.press(2, 1, 1, true), "wrong");
+  assert.equal(judge.press(1, 3.6, 1), null);
+  assert.equal(judge.press(1, 4.3, 1), "wrong");
+  assert.equal(judge.tally(0, 4).wrong, 1);
+  assert.equal(judge.tally(0, 9).wrong, 2);
+  judge.restart(2);
+  assert.equal(judge.tally(0, 9).wrong, 1);
 });
 
 test("a row that waits is open until all its panels are pressed", () => {
@@ -75,12 +91,25 @@ test("the ramp goes up after clean passes, back after misses, and ends at full s
 });
 
 test("links say measures and speed", () => {
-  assert.deepEqual(parseLink("#m8-16@0.75"), { from: 8, to: 16, rate: 0.75 });
+  assert.deepEqual(parseLink("#m8-16@0.75"), { from: 8, to: 17, rate: 0.75 }); // 16 is part of it
+  assert.deepEqual(parseLink("#m8-8"), { from: 8, to: 9, rate: null });
+  assert.deepEqual(parseLink("#m8-16.5"), { from: 8, to: 16.5, rate: null });
   assert.deepEqual(parseLink("#m8"), { from: 8, to: null, rate: null });
   assert.deepEqual(parseLink("#@1.5"), { from: null, to: null, rate: 1.5 });
   assert.deepEqual(parseLink("#m9-3"), { from: 9, to: null, rate: null });
   for (const bad of ["", "#", "#m", "#x8", "#m8-16@fast", "#m8<script>"]) assert.equal(parseLink(bad), null);
-  assert.equal(makeLink(8, 16, 0.75), "#m8-16@0.75");
+  assert.equal(makeLink(8, 17, 0.75), "#m8-16@0.75");
   assert.equal(makeLink(8, 16.333, 1), "#m8-16.33");
   assert.equal(makeLink(null, null, 1), "");
+});
+
+test("a stretch has one name everywhere: whole measures are part of it, a fraction is a point", () => {
+  const t = (name, values) => `${name} ${Object.values(values).join(" ")}`;
+  assert.equal(stretch(t, 7, 11), "measures 7 10");
+  assert.equal(stretch(t, 7, 8), "oneMeasure 7");
+  assert.equal(stretch(t, 7.5, 8.25), "measures 7.5 8.25");
+  for (const [from, to] of [[7, 11], [7, 8], [7.5, 8], [0, 0.25]]) {
+    const link = parseLink(makeLink(from, to, 1));
+    assert.deepEqual([link.from, link.to], [from, to]);
+  }
 });

@@ -1,0 +1,48 @@
+// Words for moves and findings: in the page's language where its file has them, else as the solver and the linter say.
+
+/** @typedef {{second: number, text: string, severity: string}} Label */
+
+/** A move's name. @param {import("./words.js").Translate} t @param {string} name */
+export function moveName(t, name) {
+  const label = t(`move-${name}`);
+  return label === `move-${name}` ? name.replaceAll("-", " ") : label;
+}
+
+/**
+ * A finding's name and what it means.
+ * @param {import("./words.js").Translate} t @param {{rule: string, name: string}} finding @returns {[string, string]}
+ */
+export function findingWords(t, { rule, name }) {
+  const label = t(`finding-${rule}`);
+  const at = label.indexOf(": ");
+  return at < 0 ? [name.replaceAll("-", " "), ""] : [label.slice(0, at), label.slice(at + 2)];
+}
+
+/**
+ * Words beside the notes: moves where they begin, and findings.
+ * @param {any} doc @param {import("./chart.js").Chart} chart @param {import("./words.js").Translate} t @returns {Label[]}
+ */
+export function labelsOf(doc, chart, t) {
+  /** @type {Label[]} */
+  const out = [];
+  /** @type {Map<number, Label>} by millisecond */
+  const at = new Map();
+  /** @type {string[]} */
+  let before = [];
+  for (const row of chart.rows) {
+    const now = [...new Set(row.moves.filter((name) => doc.style.callouts[name]).map((name) => moveName(t, name)))];
+    const fresh = now.filter((word) => !before.includes(word));
+    before = now;
+    if (!fresh.length) continue;
+    const label = { second: row.second, text: fresh.join(", "), severity: "move" };
+    out.push(label);
+    at.set(Math.round(1000 * row.second), label);
+  }
+  for (const one of doc.findings) {
+    if (one.second === null || one.column === null) continue;
+    const same = at.get(Math.round(1000 * one.second));
+    if (same) same.severity = one.severity;
+    else out.push({ second: one.second, text: findingWords(t, one)[0], severity: one.severity });
+  }
+  return out;
+}

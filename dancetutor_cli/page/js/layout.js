@@ -1,0 +1,139 @@
+// The page's elements: header, tabs of the panels, camera buttons, help sheet. All that holds words is made here.
+
+import { alongPanel } from "./along.js";
+import { authorPanel } from "./author.js";
+import { makeBar } from "./controls.js";
+import { el } from "./dom.js";
+import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
+import { CAMERAS } from "./picture.js";
+import { besideText, countOf, saidOf } from "./said.js";
+
+/**
+ * @typedef {object} Canvases what is drawn on; it stays when the words change
+ * @property {HTMLElement} stage
+ * @property {HTMLCanvasElement} lanes
+ * @property {HTMLCanvasElement} strip
+ */
+
+/** @typedef {{help: () => void, tab: (name: string) => void}} Ui */
+
+/**
+ * Make the page, or make it anew in another language.
+ * @param {import("./app.js").App} app @param {Canvases} canvases @param {Ui} ui what keys do here; is filled in
+ * @param {{actions: import("./controls.js").Action[], load: (file: File) => Promise<void>}} about
+ */
+export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
+  const { t, doc: { words, style } } = app;
+  const open = document.querySelector("[role=tab][aria-selected=true]")?.id.slice(4);
+  app.listeners.clear();
+  document.documentElement.lang = app.language;
+  for (const old of document.querySelectorAll("dialog")) old.remove();
+  for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notes"], [strip, "timeline"]])) {
+    element.setAttribute("aria-label", t(name));
+  }
+  const tabs = makeTabs(app, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["findings", findingsPanel(app)],
+    ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
+  const sheet = helpSheet(app, actions);
+  ui.help = () => sheet.showModal();
+  ui.tab = tabs.choose;
+  const badge = el("span", { class: "badge" }, words.badge);
+  badge.style.borderColor = style.difficulty[words.difficulty] ?? "#b9bdc9";
+  const about = [words.artist, words.steps, `${words.bpm} BPM`, words.credit && t("stepsBy", { name: words.credit })];
+  const said = el("p", { class: "said", role: "status" });
+  const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
+  for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
+  stage.append(cameraButtons(app), said, count);
+  const root = /** @type {HTMLElement} */ (document.getElementById("app"));
+  root.replaceChildren(
+    el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · "))),
+    el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes), tabs.side),
+    el("footer", {}, strip, makeBar(app, ui)));
+  if (open) tabs.choose(open);
+  app.highway?.speak(t);
+  app.listeners.add((what) => {
+    if (what !== "frame") return;
+    said.textContent = saidOf(app);
+    count.textContent = countOf(app);
+  });
+}
+
+/** @param {import("./app.js").App} app @param {import("./controls.js").Action[]} actions */
+function helpSheet(app, actions) {
+  const { t } = app;
+  const rows = actions.map((action) => el("tr", {}, el("th", { scope: "row" }, ...action.keys.flatMap((key) => [el("kbd", {}, keyText(app, key)), " "])),
+    el("td", {}, t(action.name))));
+  const keys = [el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows))];
+  const hands = [el("h3", {}, t("helpTouchTitle")), ...t("helpTouch").split("\n").map((line) => el("p", {}, line)), el("p", {}, t("helpMouse"))];
+  const touched = matchMedia("(pointer: coarse)").matches; // a phone has no keys: what fingers do comes first there
+  const dialog = el("dialog", { class: "sheet", "aria-label": t("helpSheet") },
+    el("button", { type: "button", onclick: () => dialog.close() }, t("close")), el("h2", {}, t("helpSheet")),
+    ...(touched ? [...hands, ...keys] : [...keys, ...hands]));
+  dialog.addEventListener("keydown", (event) => { if (event.key === "?") dialog.close(); });
+  document.body.append(dialog);
+  return dialog;
+}
+
+/** @param {import("./app.js").App} app @param {string} key */
+function keyText(app, key) {
+  const names = { " ": app.t("space"), ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
+  return key.split(/(?<=Shift)\+/).map((part) => names[/** @type {keyof typeof names} */ (part)] ?? part).join(" ").replace("Shift", "⇧");
+}
+
+/** Tabs of the panels. @param {import("./app.js").App} app @param {[string, HTMLElement][]} panels */
+function makeTabs(app, panels) {
+  const tabs = panels.map(([name], k) => el("button", {
+    type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, "aria-selected": k === 0, tabindex: k === 0 ? 0 : -1,
+    onclick: () => press(name),
+  }, app.t(`tab-${name}`)));
+  const bodies = panels.map(([name, body], k) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 }, body));
+  /** @param {string} name */
+  function choose(name) {
+    side.classList.remove("folded");
+    panels.forEach(([other], k) => {
+      tabs[k].setAttribute("aria-selected", String(other === name));
+      tabs[k].tabIndex = other === name ? 0 : -1;
+      bodies[k].hidden = other !== name;
+    });
+  }
+  /** On a phone the tab that is open folds its panel away, for a larger picture. @param {string} name */
+  function press(name) {
+    const again = tabs[panels.findIndex(([other]) => other === name)].getAttribute("aria-selected") === "true";
+    const fold = again && !side.classList.contains("folded");
+    choose(name);
+    side.classList.toggle("folded", fold);
+    app.fresh = true;
+  }
+  const row = el("div", { role: "tablist", class: "tabs", "aria-label": app.t("panels") }, ...tabs);
+  row.addEventListener("keydown", (event) => {
+    const by = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    if (!by) return;
+    const k = (tabs.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement)) + by + tabs.length) % tabs.length;
+    choose(panels[k][0]);
+    tabs[k].focus();
+  });
+  const side = el("aside", { class: "side" }, row, ...bodies);
+  return { side, choose };
+}
+
+/** Buttons of the cameras over the picture. @param {import("./app.js").App} app */
+function cameraButtons(app) {
+  const { t, settings } = app;
+  const buttons = CAMERAS.map((name, k) => el("button", {
+    type: "button", class: "toggle camera", title: t(`camera-${name}-long`),
+    onclick: () => { // on a phone only the chosen one is there: a tap goes on to the next
+      const alone = buttons.filter((button) => button.offsetParent !== null).length === 1;
+      app.setCamera(CAMERAS[alone ? (k + 1) % CAMERAS.length : k]);
+    },
+  }, t(`camera-${name}`)));
+  const both = app.motions.length > 1
+    ? el("button", { type: "button", class: "toggle", title: besideText(app), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
+  const row = el("div", { class: "cameras", role: "group", "aria-label": t("camera") }, ...buttons, both);
+  const show = () => {
+    buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(CAMERAS[k] === settings.camera)));
+    row.parentElement?.classList.toggle("free", settings.camera === "free");
+    both?.setAttribute("aria-pressed", String(app.both));
+  };
+  app.listeners.add((what) => { if (what === "settings") show(); });
+  show();
+  return row;
+}

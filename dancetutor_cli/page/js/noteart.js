@@ -1,0 +1,120 @@
+// How notes look: their shapes, bodies of holds and rolls, mines, markers of who steps, signs of how they were hit.
+
+// Corners of an arrow that points up, in halves of its size (video/sprites.py).
+const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
+  [-0.62, 0.32], [-0.94, 0]];
+const SQUARE = [[-0.7, -0.7], [0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
+export const INK = "#0a0b14";
+
+/** @typedef {CanvasRenderingContext2D} Context */
+
+/**
+ * Path of a note's shape: an arrow turned by some degrees, a square where there is none to be turned.
+ * @param {Context} c @param {number | null} way @param {number} x @param {number} y @param {number} size
+ */
+export function notePath(c, way, x, y, size) {
+  const angle = ((way ?? 0) * Math.PI) / 180;
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  c.beginPath();
+  for (const [px, py] of way === null ? SQUARE : ARROW) {
+    c.lineTo(x + ((px * cos - py * sin) * size) / 2, y + ((px * sin + py * cos) * size) / 2);
+  }
+  c.closePath();
+}
+
+/**
+ * The body of a hold, or of a roll with its stripes.
+ * @param {Context} c @param {{x: number, top: number, bottom: number, width: number}} box
+ * @param {string} colour @param {boolean} roll @param {number} ratio pixels of the canvas for one of CSS
+ */
+export function drawBody(c, { x, top, bottom, width }, colour, roll, ratio) {
+  c.fillStyle = colour;
+  c.beginPath();
+  c.roundRect(x - width / 2, top, width, Math.max(bottom - top, 1), [0, 0, width / 2, width / 2]);
+  c.fill();
+  c.lineWidth = 1.5 * ratio;
+  c.strokeStyle = "rgba(255,255,255,0.85)";
+  c.stroke();
+  if (!roll) return;
+  c.save();
+  c.clip();
+  c.strokeStyle = "rgba(255,255,255,0.5)";
+  c.lineWidth = 3 * ratio;
+  for (let at = top; at < bottom + width; at += 0.4 * width) {
+    c.beginPath();
+    c.moveTo(x - width / 2, at);
+    c.lineTo(x, at - 0.25 * width);
+    c.lineTo(x + width / 2, at);
+    c.stroke();
+  }
+  c.restore();
+}
+
+/** @param {Context} c @param {string} colour @param {number} x @param {number} y @param {number} size */
+export function drawMine(c, colour, x, y, size) {
+  c.beginPath();
+  for (let k = 0; k < 16; ++k) {
+    const radius = (k % 2 ? 0.3 : 0.37) * size;
+    const angle = (k * Math.PI) / 8;
+    c.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+  }
+  c.closePath();
+  c.fillStyle = "#1a1a22";
+  c.fill();
+  c.lineWidth = 0.03 * size;
+  c.strokeStyle = "#fff";
+  c.stroke();
+  c.strokeStyle = colour;
+  c.lineWidth = 0.075 * size;
+  c.beginPath();
+  c.arc(x, y, 0.22 * size, 0, 2 * Math.PI);
+  for (const [dx, dy] of [[1, 1], [1, -1]]) {
+    c.moveTo(x - 0.11 * size * dx, y - 0.11 * size * dy);
+    c.lineTo(x + 0.11 * size * dx, y + 0.11 * size * dy);
+  }
+  c.stroke();
+}
+
+/**
+ * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring.
+ * @param {Context} c @param {{limb: number, colour: string, changed: boolean}} who changed: by the author
+ * @param {number} x @param {number} y @param {number} size
+ */
+export function drawMarker(c, { limb, colour, changed }, x, y, size) {
+  const right = limb % 2 === 1;
+  c.beginPath();
+  if (right) c.roundRect(x - 0.46 * size, y - 0.46 * size, 0.92 * size, 0.92 * size, 0.15 * size);
+  else c.arc(x, y, 0.48 * size, 0, 2 * Math.PI);
+  c.fillStyle = colour;
+  c.fill();
+  c.lineWidth = 0.08 * size;
+  c.strokeStyle = changed ? "#fff" : INK;
+  c.stroke();
+  if (limb >= 2) {
+    c.beginPath();
+    c.arc(x, y, 0.33 * size, 0, 2 * Math.PI);
+    c.strokeStyle = INK;
+    c.stroke();
+  }
+  c.fillStyle = INK;
+  c.font = `800 ${Math.round(0.66 * size)}px system-ui, sans-serif`;
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.fillText(right ? "R" : "L", x, y + 0.04 * size);
+}
+
+/**
+ * A sign at a note that was missed, or pressed early or late.
+ * @param {Context} c @param {string} verdict @param {number} x @param {number} y @param {number} size @param {number} ratio
+ */
+export function drawVerdict(c, verdict, x, y, size, ratio) {
+  c.font = `700 ${Math.round(0.5 * size)}px system-ui, sans-serif`;
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.lineWidth = 3 * ratio;
+  c.strokeStyle = INK;
+  c.fillStyle = verdict === "miss" ? "#ff6b6b" : "#ffc857";
+  const sign = verdict === "miss" ? "✕" : verdict === "early" ? "−" : "+";
+  c.strokeText(sign, x + 0.42 * size, y - 0.3 * size);
+  c.fillText(sign, x + 0.42 * size, y - 0.3 * size);
+}

@@ -1,0 +1,30 @@
+// Names of places and stretches of a song. A whole number names a measure, and what is named is part of it: measures 8
+// to 16 end where 17 begins. With a fraction it is a point: 8.5 is the middle of measure 8.
+
+/** @param {number} x measures */
+export const short = (x) => String(Math.round(x * 100) / 100);
+
+/**
+ * The names of a stretch's first and last measure. @param {number} from @param {number} to measures, where it ends
+ * @returns {[string, string]}
+ */
+export function named(from, to) {
+  const end = short(to);
+  return [short(from), end.includes(".") ? end : String(Number(end) - 1)];
+}
+
+/** Where a stretch ends whose last measure, or the point it goes to, has this name. @param {string} name */
+export function endOf(name) {
+  return Number(name) + (name.includes(".") ? 0 : 1);
+}
+
+/** A stretch in words. @param {import("./words.js").Translate} t @param {number} from @param {number} to measures */
+export function stretch(t, from, to) {
+  const [first, last] = named(from, to);
+  return first === last ? t("oneMeasure", { from: first }) : t("measures", { from: first, to: last });
+}
+
+/** The place of a row. @param {import("./words.js").Translate} t @param {number} beat */
+export function placeOf(t, beat) {
+  return t("measureAt", { measure: Math.floor(beat / 4), beat: Math.round(1000 * ((beat % 4) + 1)) / 1000 });
+}

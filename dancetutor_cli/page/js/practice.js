@@ -1,0 +1,123 @@
+// Practising: who plays along, what was hit, rows that are waited for, passes of a loop, the ramp, help that fades.
+
+import { Judge, ramp } from "./judge.js";
+
+export const HELPS = ["all", "tricky", "none", "auto"];
+const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
+
+export class Practice {
+  /** @param {import("./app.js").App} app */
+  constructor(app) {
+    this.app = app;
+    this.judge = new Judge(app.chart);
+    this.along = false; // somebody plays along
+    this.wait = false; // the clock stops at each row until it is pressed
+    this.passes = 0;
+    this.helpNow = 0; // place in HELPS that "auto" has come to
+    this.chosenRate = 1; // the speed that was asked for; the ramp only goes on from it
+    /** @type {import("./judge.js").Tally | null} of the pass before */
+    this.before = null;
+  }
+
+  /** What was hit in the loop, or in all. */
+  tally() {
+    const { loop } = this.app.transport;
+    return this.judge.tally(loop ? loop.a : -Infinity, loop ? loop.b : Infinity);
+  }
+
+  /** The speed is the one that was asked for again: the ramp, or its loop, is over. */
+  endRamp() {
+    const { transport } = this.app;
+    this.passes = 0;
+    this.before = null;
+    if (transport.rate === this.chosenRate) return;
+    transport.setRate(this.chosenRate);
+    this.app.tell("rate");
+  }
+
+  /** A pass of the loop is over. */
+  pass() {
+    const { transport, settings } = this.app;
+    const { loop } = transport;
+    if (!loop) return;
+    if (!this.wait) this.judge.advance(loop.b + 1, transport.rate);
+    this.before = this.along ? this.tally() : null;
+    const slips = this.before ? this.before.miss + this.before.wrong : 0;
+    ++this.passes;
+    if (settings.ramp) transport.rate = ramp(transport.rate, slips, this.along);
+    if (settings.help === "auto" && this.along) {
+      this.helpNow = Math.min(Math.max(this.helpNow + (slips ? -1 : 1), 0), 2);
+    }
+    this.app.tell("pass");
+    if (this.along) this.restart(loop.a);
+    this.updateHold();
+  }
+
+  /** Play along, or only watch. @param {boolean} on */
+  setAlong(on) {
+    this.along = on;
+    this.before = null;
+    if (!on) this.wait = false;
+    this.judge.restart(on ? this.app.transport.second() : -Infinity);
+    if (!on) this.judge.verdicts.clear();
+    this.updateHold();
+    this.app.tell("along");
+  }
+
+  /** @param {boolean} on */
+  setWait(on) {
+    if (on && !this.along) this.setAlong(true);
+    this.wait = on;
+    if (on) this.restart(this.app.transport.second());
+    this.updateHold();
+    this.app.tell("along");
+  }
+
+  /** Rows from a second on are asked for anew, in a loop not those before it. @param {number} second */
+  restart(second) {
+    const { loop } = this.app.transport;
+    this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
+    this.app.tell("hits");
+  }
+
+  /** While the clock waits for rows it does not pass the first one that is not pressed. */
+  updateHold() {
+    const { transport } = this.app;
+    const row = this.wait ? this.judge.open(-Infinity) : null;
+    const { loop } = transport; // beyond its end nothing is waited for: it begins anew
+    transport.holdAt(row && !(loop && row.second >= loop.b) ? row.second : Infinity);
+  }
+
+  /** A panel is pressed, some seconds ago. @param {number} column @param {number} ago */
+  press(column, ago) {
+    if (!this.along) return;
+    const { transport, sound, settings } = this.app;
+    const { rate } = transport;
+    if (this.wait) {
+      const row = this.judge.open(-Infinity);
+      if (!row || row.second - transport.second() > EARLY * rate) return;
+      this.judge.press(column, row.second, rate, true);
+      this.updateHold();
+    } else if (transport.playing) {
+      this.judge.press(column, transport.second() - (ago + sound.latency + settings.latency) * rate, rate);
+    }
+    this.app.tell("hits");
+  }
+
+  /** Rows that are over by the second that is seen are missed. @param {number} second */
+  advance(second) {
+    const { transport, settings } = this.app;
+    if (!transport.playing || !this.along || this.wait) return;
+    if (this.judge.advance(second - settings.latency * transport.rate, transport.rate)) this.app.tell("hits");
+  }
+
+  /** The level of help that holds now: "all", "tricky" or "none". */
+  get help() {
+    return this.app.settings.help === "auto" ? HELPS[this.helpNow] : this.app.settings.help;
+  }
+
+  /** Whether the foot of a note is told. @param {import("./chart.js").Row | undefined} row */
+  tells(row) {
+    return this.help === "all" || (this.help === "tricky" && Boolean(row?.tricky));
+  }
+}

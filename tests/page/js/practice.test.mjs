@@ -1,0 +1,78 @@
+// The ramp and its end, the score of the pass before; what is said of it; the count-in's number.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Transport } from "../../../dancetutor_cli/page/js/clock.js";
+import { Practice } from "../../../dancetutor_cli/page/js/practice.js";
+import { countOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
+
+/** An app with a beat a second, a row at every second, and a clock that the test turns. */
+function make() {
+  const at = { now: 0 };
+  const seconds = Array.from({ length: 40 }, (_, k) => k);
+  const chart = {
+    second: seconds, end: seconds, rowSeconds: seconds, presses: [seconds],
+    rows: seconds.map((second) => ({ second, steps: [{ note: second, column: 0, limb: 0, part: 0 }] })),
+    beatAt: (second) => second, secondAt: (beat) => beat,
+  };
+  const transport = new Transport(() => at.now, 0, 40);
+  transport.lead = (a) => a - 4;
+  transport.countIn = true;
+  const app = {
+    chart, transport, settings: { ramp: true, help: "all", latency: 0 }, sound: { latency: 0 }, both: false, message: "",
+    played: true, tell: () => {}, t: (name, values = {}) => [name, ...Object.values(values)].join(" "),
+  };
+  app.practice = new Practice(app);
+  transport.onPass = () => app.practice.pass();
+  return { at, app, transport };
+}
+
+/** Let the clock come to a second of the music. */
+function go(at, transport, second) {
+  at.now = transport.run.at + (second - transport.run.from) / transport.run.rate;
+  transport.tick();
+}
+
+test("the ramp goes on from the chosen speed, says so, and its end brings the chosen speed back", () => {
+  const { at, app, transport } = make();
+  transport.setRate(0.7);
+  app.practice.chosenRate = transport.rate;
+  transport.setLoop({ a: 8, b: 12 });
+  transport.play();
+  for (const rate of [0.75, 0.8]) {
+    go(at, transport, 12);
+    assert.equal(transport.rate, rate);
+  }
+  assert.equal(saidOf(app), "loopFrom oneMeasure 2 2 · ramped 70 80");
+  app.practice.endRamp();
+  assert.equal(transport.rate, 0.7);
+  assert.equal(app.practice.passes, 0);
+  assert.ok(transport.playing);
+});
+
+test("a wrong panel makes a pass unclean, and what was pressed is said in the next one", () => {
+  const { at, app, transport } = make();
+  app.practice.setAlong(true);
+  app.settings.ramp = true;
+  transport.setLoop({ a: 8, b: 10 });
+  transport.play();
+  app.practice.restart(8);
+  for (const second of [8, 8.5, 9]) {
+    go(at, transport, second);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 10);
+  assert.equal(transport.rate, 0.95);
+  assert.match(saidOf(app), /passBefore counts 2 0 0 0 1/);
+});
+
+test("the count-in shows the beats that are left, and nothing once the loop has begun", () => {
+  const { at, app, transport } = make();
+  transport.setLoop({ a: 8, b: 12 });
+  transport.play();
+  const seen = [4, 4.5, 5, 6, 7, 7.9, 8, 9].map((second) => { go(at, transport, second); return countOf(app); });
+  assert.deepEqual(seen, ["4", "4", "3", "2", "1", "1", "", ""]);
+  go(at, transport, 12); // and in every pass
+  assert.equal(countOf(app), "4");
+  transport.pause();
+  assert.equal(countOf(app), "");
+});
