@@ -1,17 +1,22 @@
 """Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
 
 Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
-Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit and others. The result is checked against the tree: a
-bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification,
+Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim and others. The result is checked against the
+tree: a bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification,
 humanoid.md.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container
 from dancetutor_cli.character.nodes import Nodes
@@ -20,18 +25,18 @@ from dancetutor_cli.errors import FileError
 # VRM bone: the joint of our rig, words its name may be made of
 _MIDDLE = {
     "hips": ("HumanoidRoot", "hips hip pelvis"),
-    "neck": ("vc4", "neck neck01 neck1 necklower"),
-    "head": ("skullbase", "head"),
+    "neck": ("vc4", "neck neck01 neck1 necklower lowerneck vc7 vc4"),
+    "head": ("skullbase", "head skullbase"),
 }
 _SIDED = {
-    "UpperLeg": ("hip", "upleg upperleg thigh legupper"),
-    "LowerLeg": ("knee", "leg lowerleg calf shin leglower knee"),
-    "Foot": ("talocrural", "foot ankle"),
-    "Toes": ("metatarsal", "toes toe toebase ball"),
-    "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone scapula"),
-    "UpperArm": ("shoulder", "arm upperarm uparm armupper shldr"),
-    "LowerArm": ("elbow", "forearm lowerarm armlower elbow"),
-    "Hand": ("radiocarpal", "hand wrist"),
+    "UpperLeg": ("hip", "upleg upperleg thigh legupper femur"),
+    "LowerLeg": ("knee", "leg lowerleg calf shin leglower knee tibia"),
+    "Foot": ("talocrural", "foot ankle talocrural"),
+    "Toes": ("metatarsal", "toes toe toebase ball metatarsal midtarsal"),
+    "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone scapula sternoclavicular"),
+    "UpperArm": ("shoulder", "arm upperarm uparm armupper shldr humerus"),
+    "LowerArm": ("elbow", "forearm lowerarm armlower elbow radius"),
+    "Hand": ("radiocarpal", "hand wrist radiocarpal"),
     "Eye": ("eyeball_joint", "eye"),
 }
 _SPINE = re.compile(r"(spine|chest|upperchest|torso|abdomen|waist|upperbody)\w*")
@@ -41,7 +46,10 @@ _HELPERS = frozenset(
 )
 _FILLERS = frozenset({"x", "m", "c", "stretch", "bend"})  # middle, and what bends of a bone with a twist
 _PREFIX = re.compile(r"(mixamorig\d*|character\d+|(valvebiped)?bip\d+|ccbase|def|jbip|bone)(?=.)")
+# of CMU's ASF files, where the side is one letter in front: lfemur
+_ASF = frozenset({"femur", "tibia", "foot", "toes", "clavicle", "humerus", "radius", "wrist", "hand"})
 _LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
+_OLD = {"talocrural": "ankle", "radiocarpal": "wrist", "metatarsal": "midtarsal"}  # H-Anim's names before version 2
 _PAIRED = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
 REQUIRED = ("hips", "spine", "head", *(side + bone for side in ("left", "right") for bone in _PAIRED))
 
@@ -90,7 +98,24 @@ def find_humanoid(container: Container, nodes: Nodes) -> Humanoid:
 
     Raises FileError, one line, that lists every required bone which is missing or hangs in the wrong place.
     """
-    bones = _from_vrm(container) or _from_hanim(nodes) or _from_names(container, nodes)
+    items = container.items("nodes")
+    order = [i for i in nodes.order if "mesh" not in items[i]]  # a mesh may be called "Arm.L" too
+    bones = _from_vrm(container) or _from_hanim(nodes) or _from_names(nodes, order)
+    return _checked(container.path, nodes, bones, "rename or re-parent these bones, or export it as VRM")
+
+
+def humanoid_of(path: Path, names: Sequence[str], parents: NDArray[np.int32]) -> Humanoid:
+    """The bones of a skeleton without a mesh, as motion capture has it: names, and parents before children.
+
+    Raises FileError, one line, that lists every required bone which is missing or hangs in the wrong place.
+    """
+    nodes = Nodes(tuple(names), parents, tuple(range(len(names))), np.zeros((0, 4, 4)))
+    bones = _from_hanim(nodes) or _from_names(nodes, list(nodes.order))
+    return _checked(path, nodes, bones, "rename or re-parent these joints")
+
+
+def _checked(path: Path, nodes: Nodes, bones: dict[str, int], advice: str) -> Humanoid:
+    """The humanoid of these bones; FileError, with advice, for what is missing or misplaced."""
     trunk = _trunk(nodes, bones)
     if trunk:
         bones.setdefault("spine", trunk[0])
@@ -100,9 +125,8 @@ def find_humanoid(container: Container, nodes: Nodes) -> Humanoid:
         found = len(REQUIRED) - len(missing)
         parts = [f"no {', '.join(missing)}"] if missing else []
         raise FileError(
-            container.path,
-            f"is no usable humanoid ({found} of {len(REQUIRED)} bones found): {'; '.join([*parts, *wrong])}; "
-            "rename or re-parent these bones, or export it as VRM",
+            path,
+            f"is no usable humanoid ({found} of {len(REQUIRED)} bones found): {'; '.join([*parts, *wrong])}; {advice}",
         )
     return Humanoid(bones, trunk)
 
@@ -138,6 +162,10 @@ def _from_hanim(nodes: Nodes) -> dict[str, int]:
         return {}
     names = {joint_of_bone(f"{side}{bone}"): f"{side}{bone}" for side in ("left", "right") for bone in _SIDED}
     names |= {joint: bone for bone, (joint, _) in _MIDDLE.items()}
+    for joint, old in _OLD.items():
+        for side in "lr":
+            if f"{side}_{joint}" not in place and f"{side}_{old}" in place:
+                place[f"{side}_{joint}"] = place[f"{side}_{old}"]
     return {bone: place[joint] for joint, bone in names.items() if joint in place}
 
 
@@ -158,12 +186,13 @@ def words_of(name: str) -> tuple[str, str]:
     for word, found in (("left", "left"), ("right", "right")):
         if not side and plain.startswith(word) and len(plain) > len(word):
             side, plain = found, plain[len(word) :]
+    if not side and plain[1:] in _ASF and plain[0] in "lr":
+        side, plain = "left" if plain[0] == "l" else "right", plain[1:]
     return side, plain
 
 
-def _from_names(container: Container, nodes: Nodes) -> dict[str, int]:
-    items = container.items("nodes")
-    order = [i for i in nodes.order if "mesh" not in items[i]]  # a mesh may be called "Arm.L" too
+def _from_names(nodes: Nodes, order: list[int]) -> dict[str, int]:
+    """Bones among the nodes `order`, by the words of their names."""
     words = {i: words_of(name) for i, name in _unnumbered({i: nodes.names[i] for i in order}).items()}
     rigify = _rigify_spine(words)
     bones: dict[str, int] = dict(rigify)

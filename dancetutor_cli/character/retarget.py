@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.numerics.smoothing import upper_envelope
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import local_rotations, world_transforms
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -33,7 +34,11 @@ def retarget(motion: Motion, character: Character) -> Motion:
 
     Joints without a counterpart keep their rest rotation. Times and contacts stay.
     """
-    own = character.skeleton
+    return onto(motion, character.skeleton)
+
+
+def onto(motion: Motion, own: Skeleton) -> Motion:
+    """The motion for a skeleton that rests as the dancer's does; as `retarget`."""
     if own.names == motion.skeleton.names and np.allclose(own.offsets, motion.skeleton.offsets, atol=1e-9):
         return motion
     positions, world = world_transforms(motion.skeleton, motion.rotations, motion.root)
@@ -96,7 +101,7 @@ def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Ar
             way = root + start - target
             aside = np.minimum(np.hypot(way[:, 0], way[:, 2]), 0.85 * length)
             sink = np.maximum(sink, way[:, 1] - np.sqrt(length**2 - aside**2))
-    root[:, 1] -= _early(motion.times, sink)
+    root[:, 1] -= upper_envelope(motion.times, sink, SINK)
     for _ in range(16):
         for start, length, (_, _, target, weight) in zip(starts, reach, limbs, strict=True):
             way = root + start - target
@@ -104,20 +109,6 @@ def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Ar
             over = weight * np.maximum(distance - length, 0.0)
             root = root - way * (over / np.maximum(distance, 1e-9))[:, None]
     return root
-
-
-def _early(times: Array, values: Array) -> Array:
-    """A smooth curve (f,) that is nowhere below `values`: their maximum over `SINK` seconds around, then averaged."""
-    rate = 120.0
-    half = max(1, round(SINK * rate / 2))
-    grid = np.arange(times[0], times[-1] + 1 / rate, 1 / rate)
-    dense = np.maximum(np.interp(grid, times, values), 0.0)
-    at = np.minimum(np.searchsorted(grid, times), len(grid) - 1)
-    np.maximum.at(dense, at, values)
-    window = 2 * half + 1
-    highest = np.lib.stride_tricks.sliding_window_view(np.pad(dense, 2 * half, mode="edge"), window).max(axis=1)
-    bell = np.hanning(window + 2)[1:-1]
-    return np.asarray(np.interp(times, grid, np.convolve(highest, bell / bell.sum(), mode="valid")))
 
 
 def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tuple[float, float]:

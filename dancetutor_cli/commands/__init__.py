@@ -14,6 +14,7 @@ COMMANDS = {
     "analyze": ("analyze", "Find the feet of charts and lint them."),
     "annotate": ("annotate", "Write L/R foot markers into chart files, or take them out."),
     "animate": ("animate", "Bake a 3D dancer who plays a chart."),
+    "retarget": ("retarget", "Put captured motion on a character, through a ragdoll."),
     "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
     "page": ("page", "Make a page to practise a chart with: loops, speeds, a pad."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),

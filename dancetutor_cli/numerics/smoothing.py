@@ -54,6 +54,20 @@ def cubic(times: Array, values: Array, at: Array) -> Array:
     return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
+def upper_envelope(times: Array, values: Array, span: float) -> Array:
+    """A smooth curve (f,) nowhere below `values` (f,) nor 0: their maximum over `span` seconds, then averaged."""
+    rate = 120.0
+    half = max(1, round(span * rate / 2))
+    grid = np.arange(times[0], times[-1] + 1 / rate, 1 / rate)
+    dense = np.maximum(np.interp(grid, times, values), 0.0)
+    at = np.minimum(np.searchsorted(grid, times), len(grid) - 1)
+    np.maximum.at(dense, at, values)
+    window = 2 * half + 1
+    highest = np.lib.stride_tricks.sliding_window_view(np.pad(dense, 2 * half, mode="edge"), window).max(axis=1)
+    bell = np.hanning(window + 2)[1:-1]
+    return np.asarray(np.interp(times, grid, np.convolve(highest, bell / bell.sum(), mode="valid")))
+
+
 def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
     """Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are held."""
     pad = min(int(rate), max(len(values) - 1, 0))

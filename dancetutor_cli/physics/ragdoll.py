@@ -52,6 +52,7 @@ _TIPS = {
 }  # leaves, metres
 _HINGED = {"knee": (-8.0, 155.0, 12.0), "elbow": (-5.0, 155.0, 12.0)}  # degrees: bend, and twist both ways
 FOOT_BOX = (0.045, 0.022, 0.120)  # half sizes of a foot, metres
+HEEL = -0.060  # metres from the ankle to the heel, ahead
 _FLOOR = 'type="plane" size="0 0 1" quat="0.70710678 -0.70710678 0 0" contype="1" conaffinity="2"'
 
 
@@ -110,15 +111,15 @@ def _tip(skeleton: Skeleton, name: str, bare: str) -> Array:
 
 
 def _hinge(bare: str, end: Array) -> Array | None:
-    """Knees bend the shank backward, elbows the forearm forward: a positive turn about this axis."""
-    if bare == "knee":
-        return knee_axis(end)
-    return _square(end, FRONT) if bare == "elbow" else None
+    return hinge_axis(bare, end) if bare in _HINGED else None
 
 
-def knee_axis(shank: Array) -> Array:
-    """Unit vector about which a positive turn bends a shank (3,) backward, in the rest pose."""
-    return _square(shank, -FRONT)
+def hinge_axis(bare: str, end: Array) -> Array:
+    """Unit vector about which a positive turn bends a shank `end` (3,) backward, a forearm forward, in the rest pose.
+
+    bare : "knee" or "elbow"
+    """
+    return _square(end, -FRONT if bare == "knee" else FRONT)
 
 
 def _square(bone: Array, towards: Array) -> Array:
@@ -132,10 +133,11 @@ def _mass(bare: str, radius: float, end: Array) -> float:
     return NOMINAL * np.pi * radius**2 * (float(np.linalg.norm(end)) + 4 / 3 * radius)
 
 
-def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], style: Style) -> Any:
+def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], style: Style, more: str = "") -> Any:
     """The engine's model: bodies, joints, sites, floor, and per point three actuators (x, y, z) of a spring-damper.
 
     An actuator's control is kp times the place plus kd times the speed that its point shall have.
+    more : XML of its equality section
     """
     numbers = style.numbers
     actuators = "".join(_actuators(k, p, style) for k, p in enumerate(points))
@@ -144,7 +146,8 @@ def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...]
         f'gravity="0 {-numbers.gravity:.6f} 0" integrator="implicitfast" cone="elliptic" iterations="30"/>'
         f'<default><geom contype="0" conaffinity="0"/></default>'
         f'<worldbody><site name="w"/><geom {_FLOOR} friction="{numbers.friction:.4f} 0.005 0.0001"/>'
-        f"{_body(skeleton, bones, 0, points, style)}</worldbody><actuator>{actuators}</actuator></mujoco>"
+        f"{_body(skeleton, bones, 0, points, style)}</worldbody><equality>{more}</equality>"
+        f"<actuator>{actuators}</actuator></mujoco>"
     )
     return engine().MjModel.from_xml_string(text)
 
@@ -184,11 +187,13 @@ def _geom(bone: Bone, rest: Array, style: Style) -> str:
     density = f'density="{style.density[bone.part]:.6g}"'
     bare = bone.name[2:] if bone.name[1] == "_" else bone.name
     if bare == "talocrural":
-        centre = np.array([0.0, FOOT_BOX[1] - rest[bone.joint][1], 0.06])
-        friction = f'friction="{style.numbers.friction:.4f} 0.005 0.0001"'
-        return (
-            f'<geom type="box" size="{_vector(np.array(FOOT_BOX))}" pos="{_vector(centre)}" {density} {friction} '
-            'contype="2" conaffinity="1"/>'
+        rubs = f'friction="{style.numbers.friction:.4f} 0.005 0.0001" contype="2" conaffinity="1"'
+        low, ball = FOOT_BOX[1] - rest[bone.joint][1], bone.end[2]
+        parts = ((HEEL, ball, rubs), (ball, HEEL + 2 * FOOT_BOX[2], ""))  # toes bend where the ground is
+        return "".join(
+            f'<geom type="box" size="{FOOT_BOX[0]} {FOOT_BOX[1]} {abs(b - a) / 2:.9g}" '
+            f'pos="0 {low:.9g} {(a + b) / 2:.9g}" {density} {more}/>'
+            for a, b, more in parts
         )
     return f'<geom type="capsule" size="{_SHAPES[bare][1]}" fromto="0 0 0 {_vector(bone.end)}" {density}/>'
 

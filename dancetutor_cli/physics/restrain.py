@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.physics.ragdoll import Bone, bend_and_twist, bones_of
+from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import LIMITS, beyond, within
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limits
-_LEGS = ("l_hip", "l_knee", "l_talocrural", "l_metatarsal")  # these are closed by IK afterwards
+ELBOW = np.radians(-5.0)  # bend of an elbow at its stretch
+_LEGS = ("l_hip", "l_knee", "l_talocrural")  # these are closed by IK afterwards
 
 
 def restrained(skeleton: Skeleton, rotations: Array) -> Array:
@@ -24,4 +27,18 @@ def restrained(skeleton: Skeleton, rotations: Array) -> Array:
             past = np.flatnonzero(beyond(skeleton, mirrored, out[:, joint]) > -MARGIN)
             if len(past):
                 out[past, joint] = within(skeleton, mirrored, out[past, joint], MARGIN)
+    for bone in bones_of(skeleton):
+        if bone.name.endswith("elbow"):
+            out[:, bone.joint] = _forward(bone, out[:, bone.joint])
+    return out
+
+
+def _forward(bone: Bone, turns: Array) -> Array:
+    """Turns (f, 4) of an elbow, where they bend it backward no further than elbows do."""
+    bend, twist = bend_and_twist(bone, turns).T
+    past = np.flatnonzero(bend < ELBOW)
+    out = turns.copy()
+    assert bone.hinge is not None
+    straight = quat.from_axis_angle(bone.hinge, np.full(len(past), ELBOW))
+    out[past] = quat.multiply(straight, quat.from_axis_angle(bone.along, twist[past]))
     return out

@@ -6,8 +6,9 @@ from outside before a plain step are one step old, and that explodes at 240 Hz.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,9 @@ from dancetutor_cli.physics.ragdoll import Bone, build, pose_of, turns_of
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from dancetutor_cli.physics.actors import Actor
 
 Array = NDArray[np.float64]
 PIECE = 2400  # steps whose targets are held at once
@@ -34,12 +38,15 @@ class Ragdoll:
     style: Style
 
 
-def simulate(ragdoll: Ragdoll, rotations: Array, root: Array, start: float) -> tuple[Array, Array]:
+def simulate(
+    ragdoll: Ragdoll, rotations: Array, root: Array, start: float, actors: Sequence[Actor] = ()
+) -> tuple[Array, Array]:
     """Let the ragdoll follow.
 
     Parameters
     ----------
     rotations : (f, j, 4) local, and root : (f, 3), of the input at the style's update rate; start : second of the first
+    actors : what else acts on it
 
     Returns
     -------
@@ -50,7 +57,7 @@ def simulate(ragdoll: Ragdoll, rotations: Array, root: Array, start: float) -> t
     DancetutorError with time and joint where the simulation fails.
     """
     mujoco, bones, points = engine(), ragdoll.bones, ragdoll.points
-    model = build(ragdoll.skeleton, bones, points, ragdoll.style)
+    model = build(ragdoll.skeleton, bones, points, ragdoll.style, "".join(a.constraints for a in actors))
     data = mujoco.MjData(model)
     joints = [bone.joint for bone in bones]
     poses = pose_of(bones, rotations[:2, joints], root[:2])
@@ -73,6 +80,8 @@ def simulate(ragdoll: Ragdoll, rotations: Array, root: Array, start: float) -> t
             out[step] = data.qpos
             data.ctrl[:] = control[step - first]
             pelvis[:, :3] = pushed[step - first]
+            for actor in actors:
+                actor.before(model, data, step)
             mujoco.mj_step(model, data)
             if any(warning.number for warning in data.warning):
                 raise _failed(ragdoll, model, data, start + step / rate)

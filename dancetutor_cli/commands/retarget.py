@@ -1,0 +1,146 @@
+"""`dancetutor retarget`: captured motion through the ragdoll onto a character."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from dancetutor_cli.commands.chart_options import style_option
+from dancetutor_cli.commands.records import into
+from dancetutor_cli.errors import UsageError, did_you_mean
+from dancetutor_cli.outputs import check_file, one_of
+
+if TYPE_CHECKING:
+    from dancetutor_cli.jobs.retarget import Retargeting
+
+SUFFIXES = (".glb", ".bvh", ".npz", ".mp4")
+_FILE = click.Path(path_type=Path)
+_TABLE = "-"  # the value of --report without a file
+_CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What the options ask for."""
+
+    output: Path
+    character: str
+    animation: str | None
+    style: str | None
+    correct: str
+    report_to: str | None
+    plot: Path | None
+
+
+@click.command()
+@click.argument("file", type=_FILE)
+@click.option("-o", "--output", type=_FILE, required=True, help=f"A {one_of(SUFFIXES)} file.")
+@click.option(
+    "--character",
+    default="dancer",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="Who shall move: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
+)
+@click.option("--animation", metavar="NAME", help="The animation of a .glb that is meant; default: its first.")
+@style_option
+@click.option(
+    "--correct",
+    default=",".join(_CORRECTIONS),
+    show_default=True,
+    metavar="LIST",
+    help="Faults to correct: knees that pop, feet that skate, joints past their limits; or none.",
+)
+@click.option(
+    "--report",
+    "report_to",
+    is_flag=False,
+    flag_value=_TABLE,
+    metavar="[FILE.json]",
+    help="Measure the motion, its faults before and after, and how far the ragdoll was from it.",
+)
+@click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
+@into("wanted", Wanted)
+def command(file: Path, wanted: Wanted) -> None:
+    """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character, through a ragdoll.
+
+    Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
+    are kept, and legs end where the captured feet stood, all in proportion to the character's legs.
+    """
+    from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
+
+    check_file(wanted.output, SUFFIXES)
+    if wanted.plot is not None:
+        check_file(wanted.plot, (".svg", ".png"))
+    if wanted.report_to is not None and wanted.report_to != _TABLE:
+        check_file(Path(wanted.report_to))
+    task = RetargetTask(
+        file, wanted.character, wanted.animation, wanted.style or "neutral", corrections_of(wanted.correct)
+    )
+    work = Retargeting(task)
+    words = _written(work, wanted.output)
+    click.echo(f"{wanted.output}: {words}")
+    if wanted.report_to is not None or wanted.plot is not None:
+        _report(work, wanted)
+
+
+def corrections_of(text: str) -> tuple[str, ...]:
+    """The corrections in a list as on the command line. Raises UsageError for a word that is none."""
+    words = [] if text.strip() in ("", "none") else [word.strip() for word in text.split(",")]
+    for word in words:
+        if word not in _CORRECTIONS:
+            near = did_you_mean(word, _CORRECTIONS)
+            raise UsageError(
+                f"--correct: there is no correction '{word}'{near}; there are: {', '.join(_CORRECTIONS)}, none"
+            )
+    return tuple(word for word in _CORRECTIONS if word in words)
+
+
+def _written(work: Retargeting, output: Path) -> str:
+    from dancetutor_cli.physics.engine import engine
+
+    engine()
+    motion = work.motion
+    seconds = float(motion.times[-1] - motion.times[0])
+    suffix = output.suffix.lower()
+    if suffix == ".mp4":
+        from dancetutor_cli.jobs.motion_film import film
+
+        return f"{film(output, work.character, motion)} frames, {seconds:.1f} s"
+    if suffix == ".glb":
+        from dancetutor_cli.formats.glb import write_glb
+
+        write_glb(output, work.character, motion)
+    elif suffix == ".npz":
+        from dancetutor_cli.formats.npz import write_npz
+
+        write_npz(output, motion)
+    else:
+        from dancetutor_cli.formats.bvh import write_bvh
+
+        write_bvh(output, motion)
+    return f"{len(motion.times)} keys, {seconds:.1f} s"
+
+
+def _report(work: Retargeting, wanted: Wanted) -> None:
+    report = work.report()
+    if wanted.report_to is not None:
+        from dancetutor_cli.reports.motion_report import as_json, print_report
+
+        print_report(report)
+        for note in report.notes:
+            click.echo(f"note: {note}")
+        if wanted.report_to != _TABLE:
+            from dancetutor_cli.files import write_atomic
+
+            write_atomic(Path(wanted.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
+            click.echo(f"{wanted.report_to}: the report")
+    if wanted.plot is not None:
+        from dancetutor_cli.reports.motion_plot import write_plot
+
+        write_plot(wanted.plot, report)
+        click.echo(f"{wanted.plot}: the plot")

@@ -1,0 +1,177 @@
+"""Motion of other people's skeletons in: .bvh, an animation of a .glb or .vrm, .npz; places as the file has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.container import Container, as_dict, read_container
+from dancetutor_cli.character.nodes import Nodes, read_nodes
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.formats.bvh import read_bvh
+from dancetutor_cli.formats.npz import read_npz
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.outputs import one_of
+from dancetutor_cli.physics.captured import Captured
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+
+Array = NDArray[np.float64]
+SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
+LEAST, MOST = 10.0, 240.0  # frames per second that a file without a rate of its own is sampled at
+LONGEST = 3600.0  # seconds of an animation
+_IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def read_captured(path: Path, animation: str | None = None) -> Captured:
+    """The motion in a file, by its suffix.
+
+    Parameters
+    ----------
+    animation : name of the one wanted of a .glb; None: the first
+
+    Raises
+    ------
+    UsageError for another suffix, FileError, one line, for a file that cannot be used.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise UsageError(f"{path}: the name of a motion must end in {one_of(SUFFIXES)}")
+    if suffix in (".glb", ".vrm"):
+        return _of_container(read_container(path), animation)
+    return of_motion(path, read_bvh(path) if suffix == ".bvh" else read_npz(path))
+
+
+def of_motion(path: Path, motion: Motion) -> Captured:
+    """A motion as captured: its skeleton's rest pose has no turns."""
+    skeleton = motion.skeleton
+    for name, values in (("times", motion.times), ("rotations", motion.rotations), ("root", motion.root)):
+        if not np.isfinite(values).all():
+            raise FileError(path, f"its {name} hold values that are not numbers")
+    if len(motion.times) < 2:
+        raise FileError(path, "has one frame; a motion needs at least two")
+    places, turns = world_transforms(skeleton, motion.rotations, motion.root)
+    rest_turns = np.tile(_IDENTITY, (len(skeleton.names), 1))
+    return Captured(
+        path, skeleton.names, skeleton.parents, skeleton.rest, rest_turns, motion.fps, motion.times, places, turns
+    )
+
+
+def _of_container(container: Container, wanted: str | None) -> Captured:
+    nodes = read_nodes(container)
+    channels = _channels(container, _chosen(container, wanted))
+    times = _times(container, channels)
+    local = _local(container, nodes, channels, times)
+    places, turns = _world(nodes, *local)
+    rest_places, rest_turns = _world(nodes, *_local(container, nodes, [], times[:1]))
+    order = list(nodes.order)
+    place = np.argsort(order)
+    parents = np.array([-1 if nodes.parents[n] < 0 else place[nodes.parents[n]] for n in order], dtype=np.int32)
+    rate = (len(times) - 1) / float(times[-1] - times[0])
+    names = tuple(nodes.names[n] for n in order)
+    rest = (rest_places[0, order], rest_turns[0, order])
+    return Captured(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
+
+
+def _chosen(container: Container, wanted: str | None) -> dict[str, Any]:
+    animations = container.items("animations")
+    if not animations:
+        raise container.fail("holds no animation; export the character with one")
+    if wanted is None:
+        return animations[0]
+    for animation in animations:
+        if animation.get("name") == wanted:
+            return animation
+    names = ", ".join(str(a.get("name", ""))[:40] for a in animations[:40])
+    raise UsageError(f"{container.path}: there is no animation {wanted!r}; there are: {names}")
+
+
+def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:
+    """(node, path, times (n,), values (n, w)) of each channel that moves a node; tangents of splines are left out."""
+    channels, samplers = animation.get("channels"), animation.get("samplers")
+    if not isinstance(channels, list) or not isinstance(samplers, list):
+        raise container.fail("an animation has no channels; the file is broken")
+    out = []
+    for channel in channels:
+        target = as_dict(as_dict(channel).get("target"))
+        path = target.get("path")
+        width = {"rotation": 4, "translation": 3, "scale": 3}.get(str(path))
+        if width is None or "node" not in target:
+            continue
+        node = container.integer(target["node"], 0, len(container.items("nodes")) - 1, "node of a channel")
+        index = container.integer(as_dict(channel).get("sampler"), 0, len(samplers) - 1, "sampler of a channel")
+        sampler = as_dict(samplers[index])
+        times = np.asarray(container.accessor(sampler.get("input")), dtype=np.float64)
+        values = np.asarray(container.accessor(sampler.get("output")), dtype=np.float64)
+        if sampler.get("interpolation") == "CUBICSPLINE":
+            values = values[1::3]
+        if times.ndim != 1 or values.shape != (len(times), width) or (np.diff(times) < 0).any():
+            raise container.fail("an animation's keys do not fit together; the file is broken")
+        if times[-1] - times[0] > LONGEST or abs(times).max() > 1e6:
+            raise container.fail(f"an animation is longer than {LONGEST / 60:.0f} minutes")
+        out.append((node, str(path), times, values))
+    if not out:
+        raise container.fail("its animation moves no nodes")
+    return out
+
+
+def _times(container: Container, channels: list[tuple[int, str, Array, Array]]) -> Array:
+    """Even times from the first key to the last, at the rate that its densest channel has."""
+    start, end = min(t[0] for _, _, t, _ in channels), max(t[-1] for _, _, t, _ in channels)
+    if end - start < 1e-3:
+        raise container.fail("its animation lasts no time; a motion needs at least two moments")
+    steps = [float(np.median(np.diff(t))) for _, _, t, _ in channels if len(t) > 2]
+    rate = min(max(1.0 / max(min(steps, default=1.0 / LEAST), 1e-6), LEAST), MOST)
+    count = max(2, round((end - start) * rate) + 1)
+    return np.asarray(np.linspace(start, end, count))
+
+
+def _local(
+    container: Container, nodes: Nodes, channels: list[tuple[int, str, Array, Array]], times: Array
+) -> tuple[Array, Array, Array]:
+    """Translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
+    items = container.items("nodes")
+    moved, turned, scaled = np.zeros((len(items), 3)), np.tile(_IDENTITY, (len(items), 1)), np.ones((len(items), 3))
+    for k in range(len(items)):
+        parent = int(nodes.parents[k])
+        matrix = nodes.world[k] if parent < 0 else np.linalg.pinv(nodes.world[parent]) @ nodes.world[k]
+        moved[k], scaled[k] = matrix[:3, 3], np.maximum(np.linalg.norm(matrix[:3, :3], axis=0), 1e-9)
+        turned[k] = _quaternion(matrix[:3, :3] / scaled[k])
+    out = [np.tile(x, (len(times), 1, 1)) for x in (moved, turned, scaled)]
+    for node, path, keys, values in channels:
+        kind = ("translation", "rotation", "scale").index(path)
+        if kind == 1:
+            values = quat.continuous(quat.normalize(values[:, [3, 0, 1, 2]]))
+        if len(keys) == 1:
+            out[kind][:, node] = values[0]
+            continue
+        for axis in range(values.shape[1]):
+            out[kind][:, node, axis] = np.interp(times, keys, values[:, axis])
+        if kind == 1:
+            out[1][:, node] = quat.normalize(out[1][:, node])
+    return out[0], out[1], out[2]
+
+
+def _quaternion(matrix: Array) -> Array:
+    """The quaternion (4,) of a rotation matrix."""
+    from scipy.spatial.transform import Rotation
+
+    if np.linalg.det(matrix) < 0.5:  # mirrored or flat: there is no turn to find
+        return _IDENTITY
+    x, y, z, w = Rotation.from_matrix(matrix).as_quat()
+    return np.array([w, x, y, z])
+
+
+def _world(nodes: Nodes, moved: Array, turned: Array, scaled: Array) -> tuple[Array, Array]:
+    """World places (f, n, 3) and turns (f, n, 4); scales make bones longer, and turn nothing."""
+    places, turns, scales = moved.copy(), turned.copy(), scaled.copy()
+    for k in nodes.order:
+        parent = int(nodes.parents[k])
+        if parent >= 0:
+            places[:, k] = places[:, parent] + quat.rotate(turns[:, parent], scales[:, parent] * moved[:, k])
+            turns[:, k] = quat.multiply(turns[:, parent], turned[:, k])
+            scales[:, k] = scales[:, parent] * scaled[:, k]
+    return places, turns

@@ -1,0 +1,99 @@
+"""`retarget` from the command line: every format in and out, a report before and after, one line for errors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from physics_phrase import phrase
+
+from dancetutor_cli.commands.retarget import _CORRECTIONS, command
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.formats.bvh import read_bvh, write_bvh
+from dancetutor_cli.formats.npz import read_npz, write_npz
+from dancetutor_cli.physics.pipeline import CORRECTIONS
+
+
+@pytest.fixture
+def bvh(tmp_path: Path) -> Path:
+    path = tmp_path / "phrase.bvh"
+    write_bvh(path, phrase(1.0))
+    return path
+
+
+def run(*arguments: object) -> str:
+    result = CliRunner().invoke(command, [str(a) for a in arguments], catch_exceptions=True)
+    if result.exception is not None:
+        raise result.exception
+    return result.output
+
+
+def said(*arguments: object) -> str:
+    """The one line of an error that leaves with status 2."""
+    with pytest.raises(DancetutorError) as e:
+        run(*arguments)
+    assert "\n" not in str(e.value) and e.value.exit_status == 2
+    return str(e.value)
+
+
+def test_corrections_are_those_of_the_pipeline() -> None:
+    assert _CORRECTIONS == CORRECTIONS
+
+
+def test_motion_goes_from_format_to_format(bvh: Path, tmp_path: Path) -> None:
+    npz, glb, again = tmp_path / "a.npz", tmp_path / "b.glb", tmp_path / "c.bvh"
+    assert "61 keys, 1.0 s" in run(bvh, "-o", npz, "--correct", "none")
+    run(npz, "-o", glb, "--correct", "none")
+    run(glb, "-o", again, "--correct", "none")
+    first, last = read_npz(npz), read_bvh(again)
+    hand = first.skeleton.index("l_radiocarpal")
+    assert last.skeleton.names[last.skeleton.index("l_radiocarpal")] == "l_radiocarpal"
+    assert np.isfinite(last.rotations).all() and first.rotations[:, hand].shape == (61, 4)
+    assert abs(float(last.root[:, 1].mean() - first.root[:, 1].mean())) < 0.03
+
+
+def test_another_body_gets_springs_by_a_search_that_is_kept(
+    bvh: Path, tmp_path: Path, shared_data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DANCETUTOR_CACHE", str(tmp_path / "cache"))
+    character, out = shared_data / "characters" / "kaykit_rogue.glb", tmp_path / "k.npz"
+    run(bvh, "-o", out, "--character", character)
+    (kept,) = (tmp_path / "cache" / "bodies").glob("*.json")
+    tuning = json.loads(kept.read_text())
+    assert 0.7 < tuning["stretch"] < 1.3 and min(tuning["density"].values()) >= 400
+    first = out.read_bytes()
+    monkeypatch.setattr("dancetutor_cli.physics.tuning.tuned", None)  # it is not searched again
+    run(bvh, "-o", out, "--character", character)
+    assert out.read_bytes() == first
+    assert read_npz(out).skeleton.rest[0, 1] < 0.7, "short legs"
+
+
+def test_the_report_tells_faults_before_and_after(bvh: Path, tmp_path: Path) -> None:
+    data, plot = tmp_path / "r.json", tmp_path / "r.svg"
+    printed = run(bvh, "-o", tmp_path / "a.npz", "--report", data, "--plot", plot)
+    assert "Distance of the ragdoll, cm" in printed
+    names = {f["name"] for f in json.loads(data.read_text())["figures"]}
+    assert {"slide per plant, input", "slide per plant", "frames past limits, input", "elbows bent backward"} <= names
+    assert "farthest retargeting point, cm" in plot.read_text()
+
+
+def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a.npz"
+    assert "there is no correction 'knee' (did you mean knees?)" in said(bvh, "-o", out, "--correct", "knee")
+    assert "must end in .glb, .bvh, .npz or .mp4" in said(bvh, "-o", tmp_path / "a.fbx")
+    assert "must end in .bvh, .glb, .vrm or .npz" in said(tmp_path / "a.fbx", "-o", out)
+    lame = tmp_path / "lame.bvh"
+    lame.write_text(bvh.read_text().replace("l_talocrural", "l_thing").replace("r_radiocarpal", "r_thing"))
+    assert "no leftFoot, rightHand; " in said(lame, "-o", out)
+    broken = phrase(1.0)
+    broken.root[10] = np.nan
+    write_npz(tmp_path / "nan.npz", broken)
+    assert "its root hold values that are not numbers" in said(tmp_path / "nan.npz", "-o", out)
+    wild = tmp_path / "wild.yaml"
+    wild.write_text("body: {update_rate: 40}\n")
+    line = said(bvh, "-o", out, "--style", wild)
+    assert line.startswith(f"{bvh}: style wild: the simulation fails at ") and ", joint " in line
+    assert not out.exists()
