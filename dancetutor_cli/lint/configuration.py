@@ -117,8 +117,14 @@ def _codes(selectors: Iterable[str]) -> frozenset[str]:
 
 @cache
 def default_rules() -> Mapping[str, Options]:
-    """Every rule with its default severity and options: configs/lint/default.yaml."""
-    return dict(read(config_path("lint/default.yaml")).data["rules"])
+    """Every rule with its default severity and options: configs/lint/default.yaml; FileError for a rule without."""
+    path = config_path("lint/default.yaml")
+    rules = dict(read(path).data["rules"])
+    for code in sorted(all_rules().keys() - rules.keys()):
+        raise FileError(
+            path, f"rule {code} has no line under 'rules'; give it one, for example {code}: {{severity: info}}"
+        )
+    return rules
 
 
 @cache

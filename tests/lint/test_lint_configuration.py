@@ -34,6 +34,13 @@ def test_every_rule_has_defaults_and_every_default_a_rule() -> None:
     assert sorted(default_rules()) == sorted(all_rules())
 
 
+def test_a_rule_without_a_line_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    more = {**all_rules(), "DT299": all_rules()["DT202"]}
+    monkeypatch.setattr("dancetutor_cli.lint.configuration.all_rules", lambda: more)
+    with pytest.raises(FileError, match=r"default\.yaml: rule DT299 has no line under 'rules'"):
+        default_rules.__wrapped__()
+
+
 def test_codes_and_names_are_unique_and_well_formed() -> None:
     names = [rule.name for rule in all_rules().values()]
     assert len(set(names)) == len(names)
