@@ -13,8 +13,8 @@ import click
 from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.names import fixes, folder, named, rules
+from dancetutor_cli.commands.pack_options import pack_options
 from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.meter.bill import AUTO, SCALES
 from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
 
@@ -120,20 +120,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option("--diff", is_flag=True, help="With --fix: write nothing; print what would change.")
 @click.option("--backup", is_flag=True, help="With --fix: keep the old file as NAME.bak.")
-@click.option(
-    "--meter-scale",
-    type=click.Choice(SCALES),
-    default=AUTO,
-    show_default=True,
-    help="The scale that the estimated meters of dance charts are on; auto: that of the song's other charts.",
-)
-@click.option(
-    "--rate",
-    type=click.FloatRange(min=0.1, max=10),
-    default=1.0,
-    show_default=True,
-    help="Estimate meters for music that plays at this rate; the feet stay those of rate 1.",
-)
+@pack_options
 @click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
@@ -164,7 +151,7 @@ def command(**options: Any) -> int:  # fmt: skip
     request = Request(
         selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
         want_rows=options["format_name"] == "json",
-        want_figures=options["format_name"] == "csv",
+        want_figures=options["format_name"] == "csv" or options["report_html"] is not None,
         want_excerpts=options["format_name"] == "text",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
                                             "baseline", "update_baseline", "suggest", "alternatives", "meter_scale",
@@ -225,8 +212,11 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
 
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in sources], options)
+    from dancetutor_cli.commands.pack_report import PackReport
+
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
+    pack = PackReport(options, run.has_baseline, len(sources), brief=_is_brief(options))
     tasks = [run.task(path, data) for path, data in sources]
     if _is_brief(options):
         report = open_brief_report(len(tasks), known=run.has_baseline, statistics=options["statistics"])
@@ -238,11 +228,15 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     for raw in analyze_all(tasks, options["jobs"], cache, _before_work):
         result = run.without_known(raw)
         tally.add(result)
+        pack.add(raw)
         if options["quiet"]:
             result = result.without_infos()
         if not options["quiet"] or result.error or result.findings or result.charts:
             report.add(result)
+    tally.page += pack.lines()
     report.end(tally)
+    for line in pack.said():
+        click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
         from dancetutor_cli.commands.chart_sheet import write_sheet
 

@@ -188,10 +188,13 @@ def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[Al
 
 def _figures(subject: ChartSubject, task: Task) -> Figures:
     from dancetutor_cli.chart.density import density
-    from dancetutor_cli.lint.tech_counts import tech_counts
+    from dancetutor_cli.lint.tech_counts import facing_counts, tech_counts
 
     dense = density(subject.chart, task.settings.stream_rows)
-    return Figures(dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject))
+    return Figures(
+        dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject),
+        subject.seconds_played(), facing_counts(subject),
+    )  # fmt: skip
 
 
 def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:

@@ -56,6 +56,8 @@ class Figures:
 
     nps_mean, nps_peak, breakdown, stream_measures : see `chart.density.Density`
     tech : how often each of `TECH_COUNTS` happens
+    seconds : from the first to the last row with a step
+    facing : rows by how far she faces away from the screen: up to 22, 67, 112 and 157 degrees, and further
     """
 
     nps_mean: float
@@ -63,3 +65,5 @@ class Figures:
     breakdown: str
     stream_measures: int
     tech: Mapping[str, int]
+    seconds: float = 0.0
+    facing: tuple[int, ...] = ()

@@ -58,6 +58,15 @@ def tech_counts(subject: ChartSubject) -> dict[str, int]:
     return found
 
 
+def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
+    """Rows with a step by how far she faces away from the screen, see `Figures.facing`; () without a play."""
+    if subject.play is None:
+        return ()
+    away = np.abs(subject.play.facing[subject.step_rows]) % 360.0
+    bins = np.digitize(np.minimum(away, 360.0 - away), (22.5, 67.5, 112.5, 157.5))
+    return tuple(np.bincount(bins, minlength=5).tolist())
+
+
 def _steps_of(play: Play, pad: Pad) -> _Steps:
     steps, c = play.rows.steps.ravel(), len(pad)
     cell = np.flatnonzero(_WRITTEN[steps])

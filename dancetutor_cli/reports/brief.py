@@ -93,8 +93,8 @@ class BriefReport:
         self._errors.flush()
         lines: list[str] = []
         if not self._statistics and (self._entries or (self._is_song and not self._known)):
-            lines = self._song() if self._is_song else self._pack()
-        for line in (*lines, tally.summary()):
+            lines = self._song() if self._is_song else self._pack(_PAGE - len(tally.page))
+        for line in (*lines, *tally.page, tally.summary()):
             self._stream.write(line + "\n")
 
     def _song(self) -> list[str]:
@@ -112,11 +112,11 @@ class BriefReport:
         shown = lines[: room // 2]
         return [*shown, *_more(len(lines) - len(shown), "charts"), *self._listed(room - len(shown))]
 
-    def _pack(self) -> list[str]:
-        """The files with the most errors and warnings, then the surest finding of each rule."""
+    def _pack(self, page: int) -> list[str]:
+        """The files with the most errors and warnings, then the surest finding of each rule; at most `page` lines."""
         worst = sorted(self._found.items(), key=lambda item: (-item[1][0], -item[1][1], item[0]))
         worst = [item for item in worst if any(item[1])]
-        shown = worst[: _PAGE // 3]
+        shown = worst[: page // 3]
         self._below = os.path.commonpath([os.path.dirname(path) for path in self._found])  # noqa: PTH120
         lines = [self._paint(f"errors warnings  file below {safe_path(self._below or '.')}", "dim")] if shown else []
         lines += [self._cut(f"{errors:6} {warnings:8}  {self._name(path)}") for path, (errors, warnings) in shown]
@@ -126,8 +126,8 @@ class BriefReport:
         for entry in self._entries:
             rules[entry.first.rule].append(entry)
         ranked = sorted(rules.values(), key=lambda all_: (min(one.order[0] for one in all_), -_sum(all_)))
-        each = 2 if len(ranked) * 3 <= _PAGE - len(lines) else 1
-        for found in ranked[: max(1, (_PAGE - len(lines) - 2) // (each + 1))]:
+        each = 2 if len(ranked) * 3 <= page - len(lines) else 1
+        for found in ranked[: max(1, (page - len(lines) - 2) // (each + 1))]:
             first = min(found, key=lambda one: one.order)
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})

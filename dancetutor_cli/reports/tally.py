@@ -16,6 +16,7 @@ class Tally:
 
     fail_on : "error", "warning" or "never"; the least severity that fails the run
     exit_zero : findings do not fail the run whatever they are; unreadable files still do
+    page : lines about all files together, to stand above the summary
     """
 
     fail_on: str = "warning"
@@ -27,6 +28,7 @@ class Tally:
     rules: Counter[str] = field(default_factory=Counter)
     unselected: list[str] = field(default_factory=list)
     suggested: int = 0
+    page: list[str] = field(default_factory=list)
 
     def add(self, result: FileResult) -> None:
         """Count one file."""

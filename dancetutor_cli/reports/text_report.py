@@ -54,6 +54,8 @@ class TextReport:
 
     def end(self, tally: Tally) -> None:
         """Write the last line: what was found in all."""
+        for line in ("", *tally.page) if tally.page else ():
+            self._line(line)
         self._line(tally.summary())
 
     def _chart(self, result: FileResult, chart: ChartResult) -> None:

@@ -1,0 +1,196 @@
+"""What changed between two versions of a pack, by file, chart and row: the notes, their times, the meters."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from dancetutor_cli.chart import load
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.library import find_files
+
+_SIGNS = {
+    Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L", Kind.FAKE: "F", Kind.KEYSOUND: "K",
+}  # fmt: skip
+_SHIFT = 0.0005  # seconds that two times may be apart and still be the same
+Row = tuple[tuple[int, int, int], ...]  # (column, kind, tick of the end or -1) of each note, by column
+
+
+@dataclass(frozen=True, slots=True)
+class RowChange:
+    """A row that is other than it was. before, now : as in the file, "" where there was or is none; note : of holds"""
+
+    tick: int
+    before: str
+    now: str
+    note: str = ""
+
+    def __str__(self) -> str:
+        what = f"{self.before} → {self.now}" if self.before and self.now else ""
+        what = what or (f"new {self.now}" if self.now else f"gone {self.before}")
+        beat = f"measure {self.tick // TICKS_PER_MEASURE} beat {round(self.tick / TICKS_PER_BEAT, 3):g}"
+        return f"{beat}: {what}{f', {self.note}' if self.note else ''}"
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is other in a file or in one of its charts. chart : its label, "" for the file; said : a line each"""
+
+    file: str
+    chart: str
+    said: tuple[str, ...]
+    rows: tuple[RowChange, ...] = ()
+
+
+def compare(before: Path, now: Path) -> Iterator[Change]:
+    """Everything that changed from one version to another: two files, or two folders. UsageError without charts."""
+    old, new = _files(before), _files(now)
+    if before.is_file() and now.is_file():
+        old, new = {now.name: before}, {now.name: now}
+    for name in sorted(old.keys() | new.keys()):
+        if name not in old:
+            yield Change(name, "", ("is new",))
+        elif name not in new:
+            yield Change(name, "", ("is gone",))
+        else:
+            yield from _file(name, old[name], new[name])
+
+
+def _files(path: Path) -> dict[str, Path]:
+    """Name below the folder -> file."""
+    root = path if path.is_dir() else path.parent
+    return {Path(os.path.relpath(file, root)).as_posix(): file for file in find_files([path])}
+
+
+def _file(name: str, before: Path, now: Path) -> Iterator[Change]:
+    try:
+        old = load(before)
+    except FileError as error:
+        yield Change(name, "", (f"could not be read before: {error.message}",))
+        return
+    try:
+        new = load(now)
+    except FileError as error:
+        yield Change(name, "", (f"cannot be read any more: {error.message}",))
+        return
+    if old.data == new.data:
+        return
+    if said := tuple(_head(old, new)):
+        yield Change(name, "", said)
+    charts, others = _by_key(old), _by_key(new)
+    for key in dict.fromkeys((*charts, *others)):
+        if key not in charts:
+            yield Change(name, others[key].label, (f"is new: {len(_rows(others[key]))} rows",))
+        elif key not in others:
+            yield Change(name, charts[key].label, ("is gone",))
+        elif (change := _chart(name, charts[key], others[key])) is not None:
+            yield change
+
+
+def _head(old: Song, new: Song) -> Iterator[str]:
+    """What a player sees and hears of the song itself."""
+    for what, a, b in (
+        ("title", old.title, new.title),
+        ("artist", old.artist, new.artist),
+        ("music", old.music, new.music),
+    ):
+        if a != b:
+            yield f"{what} '{a}' → '{b}'"
+
+
+def _by_key(song: Song) -> dict[tuple[str, str, int], Chart]:
+    """Charts by type, difficulty and place among those that share both."""
+    found: dict[tuple[str, str, int], Chart] = {}
+    for chart in song.charts:
+        place = 0
+        while (key := (chart.steps_type, chart.difficulty, place)) in found:
+            place += 1
+        found[key] = chart
+    return found
+
+
+def _chart(name: str, old: Chart, new: Chart) -> Change | None:
+    said: list[str] = []
+    if old.meter != new.meter:
+        said.append(f"meter {old.meter} → {new.meter}")
+    if old.description != new.description:
+        said.append(f"description '{old.description}' → '{new.description}'")
+    a, b = _rows(old), _rows(new)
+    said += _times(old, new, sorted(a.keys() & b.keys()))
+    columns = max(old.columns, new.columns)
+    rows = tuple(_row(tick, a.get(tick, ()), b.get(tick, ()), columns) for tick in sorted(a.keys() | b.keys())
+                 if a.get(tick) != b.get(tick))  # fmt: skip
+    if rows:
+        added, lost = sum(not row.before for row in rows), sum(not row.now for row in rows)
+        kinds = ((added, "new"), (lost, "gone"), (len(rows) - added - lost, "other"))
+        said.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
+    return Change(name, new.label, tuple(said), rows) if said else None
+
+
+def _rows(chart: Chart) -> Mapping[int, Row]:
+    """Tick -> the notes of a row."""
+    notes, found = chart.notes, dict[int, list[tuple[int, int, int]]]()
+    columns = (notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist())
+    for tick, column, kind, end in zip(*columns, strict=True):
+        found.setdefault(tick, []).append((column, kind, end))
+    return {tick: tuple(row) for tick, row in found.items()}
+
+
+def _row(tick: int, before: Row, now: Row, columns: int) -> RowChange:
+    ends = {column: end for column, kind, end in before if kind in (Kind.HOLD, Kind.ROLL)}
+    moved = [
+        f"held to beat {ends[column] / TICKS_PER_BEAT:g} → {end / TICKS_PER_BEAT:g}"
+        for column, kind, end in now
+        if kind in (Kind.HOLD, Kind.ROLL) and ends.get(column, end) != end
+    ]
+    return RowChange(tick, _signs(before, columns), _signs(now, columns), "; ".join(moved))
+
+
+def _signs(row: Row, columns: int) -> str:
+    if not row:
+        return ""
+    signs = ["0"] * max(columns, row[-1][0] + 1)
+    for column, kind, _ in row:
+        signs[column] = _SIGNS.get(Kind(kind), "?")
+    return "".join(signs)
+
+
+def _times(old: Chart, new: Chart, ticks: Sequence[int]) -> Iterator[str]:
+    """How the times of the rows that both have differ: all alike (the sync), or from some beat on (the tempo)."""
+    if not ticks:
+        return
+    at = np.array(ticks, dtype=np.int64)
+    shift = np.asarray(new.timing.seconds(at)) - np.asarray(old.timing.seconds(at))
+    moved = np.abs(shift) > _SHIFT
+    if not moved.any():
+        return
+    if moved.all() and float(np.ptp(shift)) <= _SHIFT:
+        yield f"all rows {abs(shift[0]) * 1000:.0f} ms {'later' if shift[0] > 0 else 'earlier'}"
+        return
+    first = ticks[int(moved.argmax())] / TICKS_PER_BEAT
+    yield f"{int(moved.sum())} rows at other times from beat {first:g} on, by up to {np.abs(shift).max() * 1000:.0f} ms"
+
+
+def change_lines(changes: Sequence[Change], most_rows: int | None) -> Iterator[str]:
+    """The changes for people: a line for a file or chart, below it its rows. most_rows : of a chart, None: all"""
+    for change in _folded(changes):
+        yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.said)}"
+        shown = change.rows if most_rows is None else change.rows[:most_rows]
+        yield from (f"  {row}" for row in shown)
+        if len(shown) < len(change.rows):
+            yield f"  ... and {len(change.rows) - len(shown)} more rows"
+
+
+def _folded(changes: Sequence[Change]) -> Iterator[Change]:
+    """What is said alike of several charts of a file, without rows, said once."""
+    alike: dict[tuple[str, tuple[str, ...]], list[Change]] = {}
+    for n, change in enumerate(changes):
+        own = (str(n),) if change.rows or not change.chart else ()
+        alike.setdefault((change.file, (*change.said, *own)), []).append(change)
+    for found in alike.values():
+        yield found[0] if len(found) == 1 else replace(found[0], chart=f"{len(found)} charts")
