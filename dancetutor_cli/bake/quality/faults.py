@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.body import Body, body_of
 from dancetutor_cli.bake.quality.figures import Figure
+from dancetutor_cli.bake.quality.resampled import Body, body_of
 from dancetutor_cli.bake.quality.shape import PAST
 from dancetutor_cli.bake.quality.smoothness import smoothness_figures
 from dancetutor_cli.motion.model import Motion
