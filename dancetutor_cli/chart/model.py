@@ -61,7 +61,7 @@ class NoteTable:
 class RowTable:
     """Every row of the note data as written, also the empty ones, in file order; arrays of one length.
 
-    Of routine charts (`&`) these are the first player's.
+    Of routine charts (`&`) these are the first player's; `Chart.players` has both.
 
     start, end : int64, byte span of the trimmed row text in `Song.data` (comment not included)
     line : int32, 1-based
@@ -112,6 +112,9 @@ class Chart:
     columns : number of columns of the steps type; 0 if the type is unknown
     notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
     tags : the chart's own tags, upper-case name -> decoded value (the first value only)
+    players : of a chart for two what each of them steps, see `chart.players`; else empty
+    player : of such a part whose it is, 1 or 2, else 0; written : the chart that it is a part of, without `players`;
+        first_column : its first column there
     """
 
     index: int
@@ -128,11 +131,21 @@ class Chart:
     line: int
     tags: dict[str, str]
     warnings: tuple[ReadWarning, ...]
+    players: tuple[Chart, ...] = ()
+    player: int = 0
+    written: Chart | None = None
+    first_column: int = 0
+
+    @property
+    def written_type(self) -> str:
+        """The steps type in the file: for what a player of a couple steps "dance-couple", though on a single pad."""
+        return self.steps_type if self.written is None else self.written.steps_type
 
     @property
     def label(self) -> str:
-        """For people: "dance-single Hard 8"."""
-        return f"{self.steps_type} {self.difficulty} {self.meter}"
+        """For people: "dance-single Hard 8", of one of two players "dance-couple Hard 8 P2"."""
+        whose = f" P{self.player}" if self.player else ""
+        return f"{self.written_type} {self.difficulty} {self.meter}{whose}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,12 +37,16 @@ _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
 @dataclass(frozen=True, slots=True)
 class NoteData:
-    """What a note data value holds. Rows and measures are those of the first player."""
+    """What a note data value holds. Rows and measures are those of the first player.
+
+    players : of a routine what each player has, else empty
+    """
 
     notes: NoteTable
     rows: RowTable
     measures: MeasureTable
     warnings: tuple[ReadWarning, ...]
+    players: tuple[NoteData, ...] = ()
 
 
 class LineIndex:
@@ -91,10 +95,15 @@ def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timin
     warnings: list[ReadWarning] = []
     grids = [_Grid(view, part, start, lines, begin) for part in parts]
     if len(parts) > 1:
-        text = "the chart is for several players ('&'); their notes are read as one"
+        text = "the chart is for two players ('&' parts their notes); each has feet of their own"
         warnings.append(ReadWarning("several-players", text, lines(start)))
     players = [joined(grid.cells(value, escapes, columns, warnings), warnings) for grid in grids]
-    return NoteData(_table(players, timing), grids[0].row_table(), grids[0].measure_table(), tuple(warnings))
+    own = tuple(
+        NoteData(_table([cells], timing), grid.row_table(), grid.measure_table(), ())
+        for cells, grid in zip(players, grids, strict=True)
+        if routine
+    )
+    return NoteData(_table(players, timing), grids[0].row_table(), grids[0].measure_table(), tuple(warnings), own)
 
 
 def _table(players: list[Cells], timing: Timing) -> NoteTable:

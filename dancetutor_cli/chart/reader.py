@@ -15,6 +15,7 @@ from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
 from dancetutor_cli.chart.note_data import LineIndex, NoteForm, read_notes, width_of_first_row
+from dancetutor_cli.chart.players import with_players
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, FileError, NoChartsError
 
@@ -144,13 +145,12 @@ class _Reader:
             warnings.append(ReadWarning("odd-difficulty", message, line))
         form = NoteForm(columns, names.is_routine(kind), trimmed=self.format == "sm")
         read = read_notes(self.data, notes, form, timing, self.lines)
-        self.charts.append(
-            Chart(
-                index=len(self.charts), steps_type=text.one_line(kind), difficulty=difficulty, meter=meter,
-                description=description, columns=columns, notes=read.notes, rows=read.rows, measures=read.measures,
-                timing=timing, notes_span=notes, line=line, tags=tags, warnings=(*warnings, *read.warnings),
-            )
+        chart = Chart(
+            index=len(self.charts), steps_type=text.one_line(kind), difficulty=difficulty, meter=meter,
+            description=description, columns=columns, notes=read.notes, rows=read.rows, measures=read.measures,
+            timing=timing, notes_span=notes, line=line, tags=tags, warnings=(*warnings, *read.warnings),
         )  # fmt: skip
+        self.charts.append(with_players(chart, read, self.data))
 
     def finished(self, song_tags: list[Tag], timing: Timing) -> Song:
         values = self.values(song_tags)

@@ -149,7 +149,7 @@ def command(**options: Any) -> int:  # fmt: skip
     from dancetutor_cli.jobs.lint_run import LintRun, Request
 
     request = Request(
-        selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
+        selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
         want_rows=options["format_name"] == "json",
         want_figures=options["format_name"] == "csv" or options["report_html"] is not None,
         want_excerpts=options["format_name"] == "text",

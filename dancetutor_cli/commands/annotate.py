@@ -92,6 +92,8 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
 
     if not wish.strip and "background" in (wish.styles or ()):
         raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
+    if selection.player is not None:
+        raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
     wanted = wish.styles or (STRIPPED if wish.strip else STYLES[:1])
     if wish.into_file and "edit" not in wanted:
         raise UsageError("--into-file belongs to the style 'edit'; add --style edit")

@@ -164,7 +164,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
     )
     return Request(
         path=file,
-        selection=Selection(options["steps_type"], options["difficulty"], options["index"]),
+        selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
         look=look,
         fps=options["fps"] or form.fps,
         preset=options["preset"],

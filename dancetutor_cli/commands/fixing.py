@@ -92,16 +92,16 @@ def _fix(run: LintRun, task: Task, wanted: Sequence[Asked], options: dict[str, A
     return fix_file(FixOrder(task, findings, safe, write=not options["diff"], backup=options["backup"]))
 
 
-def _of_file(result: FileResult, asked_for: Asked) -> tuple[Finding, ...]:
+def _of_file(result: FileResult, asked_for: Asked) -> tuple[tuple[Finding, int], ...]:
     from dancetutor_cli.jobs.fix import pick
 
-    findings = [finding for chart in result.charts for finding in chart.findings]
+    findings = [(finding, chart.player) for chart in result.charts for finding in chart.findings]
     text = f"--fix {asked_for.rule}:{asked_for.number}"
     if asked_for.number is not None and len(result.charts) > 1:
         has = ", ".join(chart.label for chart in result.charts[:12])
         raise UsageError(
-            f"{text}: {result.path} has {len(result.charts)} charts, so choose one by --steps-type, --difficulty or "
-            f"--index: {has}"
+            f"{text}: {result.path} has {len(result.charts)} charts, so choose one by --steps-type, --difficulty, "
+            f"--index or --player: {has}"
         )
     found = pick(findings, asked_for.rule, asked_for.number)
     if asked_for.number is not None and not found:

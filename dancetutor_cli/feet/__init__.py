@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.feet.contradictions import Said
 
 __all__ = ["FeetProblem", "Ignores", "Overrides", "overrides_for"]
 
@@ -26,10 +29,29 @@ def overrides_for(song: Song, chart: Chart) -> tuple[Overrides, Ignores, tuple[F
     from dancetutor_cli.feet.pins import pinned
     from dancetutor_cli.feet.sme import read_sme
 
-    pins, problems = pinned(song, chart)
-    editor, settings = read_sme(song, chart), read_settings(song, chart)
-    said = {(s.tick, s.column): s for s in (*settings.said, *editor.said, *pins)}  # later ones win
+    whole = chart if chart.written is None else chart.written  # people speak of a chart as it stands in the file
+    pins, problems = pinned(song, whole if _shares_rows(chart) else chart)
+    editor, settings = read_sme(song, whole), read_settings(song, whole)
+    told = (*settings.said, *editor.said, *pins)
+    said = {(s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))}  # later win
     good, contradictory = contradictions(chart, said.values())
+    if chart.player > 1:  # what is wrong beside the notes is told with the first player's
+        editor, settings = replace(editor, problems=()), replace(settings, problems=())
+        problems = [] if _shares_rows(chart) else problems
     cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
     ignores = Ignores(editor.ignores, settings.ignores or {})
     return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)
+
+
+def _shares_rows(chart: Chart) -> bool:
+    """Whether another player's notes stand in the same rows."""
+    return chart.written is not None and chart.written.columns != chart.columns
+
+
+def _of_player(chart: Chart, said: Iterable[Said]) -> Iterator[Said]:
+    """What is about the notes of one of two players, in this player's columns."""
+    mine = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
+    for one in said:
+        column = one.column - chart.first_column
+        if (one.tick, column) in mine:
+            yield replace(one, column=column)

@@ -56,10 +56,9 @@ def cells_of(data: bytes, chart: Chart) -> Iterator[Cell]:
 
 
 def is_plain(data: bytes, chart: Chart) -> bool:
-    """Whether one player's notes are all there is, a letter for each, so that `cells_of` sees all of them."""
+    """Whether its rows are one player's notes and nothing else, a letter for each: `cells_of` sees all of them."""
     spans = zip(chart.rows.start.tolist(), chart.rows.end.tolist(), strict=True)
-    one_player = "several-players" not in {warning.code for warning in chart.warnings}
-    return one_player and not any(data[start:end].translate(None, _LETTERS) for start, end in spans)
+    return not chart.players and not any(data[start:end].translate(None, _LETTERS) for start, end in spans)
 
 
 def cells_at(data: bytes, chart: Chart, tick: int) -> dict[int, Cell]:

@@ -69,15 +69,19 @@ class Mending:
 
     def safe(self, chart: int) -> None:
         """All safe fixes of a chart: of a rule at once if that brings no finding, else each that brings none."""
-        for rule in safe.RULES:
-            fixes = [fix for fix in self._safe_fixes(chart) if fix.rule == rule]
-            if fixes and not self._try(self._state(chart), fixes):
-                for fix in fixes:
-                    self._try(self._state(chart), [fix])
+        for player in range(max(len(self.song.charts[chart].players), 1)):
+            for rule in safe.RULES:
+                fixes = [fix for fix in self._safe_fixes(self._part(chart, player + 1)) if fix.rule == rule]
+                if fixes and not self._try(self._state(chart, player + 1), fixes):
+                    for fix in fixes:
+                        self._try(self._state(chart, player + 1), [fix])
 
-    def finding(self, chart: int, finding: Finding) -> None:
-        """Mend one finding of a chart with the smallest edit that does it; `left` tells where there is none."""
-        state = self._state(chart)
+    def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
+        """Mend one finding of a chart with the smallest edit that does it; `left` tells where there is none.
+
+        player : in whose part of a chart for two it was found
+        """
+        state = self._state(chart, player)
         if not _count(state, finding):
             self.left.append(Left(state.chart.label, finding, GONE))
             return
@@ -94,22 +98,25 @@ class Mending:
                 if fix := moved(self.song.data, state.chart, finding, move):
                     yield fix
             return
-        for fix in self._safe_fixes(state.chart.index):
+        for fix in self._safe_fixes(state.chart):
             if fix.rule == finding.rule and finding.line in fix.lines:
                 yield fix
 
-    def _safe_fixes(self, index: int) -> list[Fix]:
+    def _safe_fixes(self, chart: Chart) -> list[Fix]:
         """Those of a chart as it is now; of the grid that rule DT401 has for it, none where that rule is off."""
-        chart = self.song.charts[index]
         if is_lights(chart.steps_type):
             return []
         path = self.song.path.absolute()
-        rules = self.settings.for_chart(path, chart.steps_type, chart.difficulty, chart.meter)
+        rules = self.settings.for_chart(path, chart.written_type, chart.difficulty, chart.meter)
         grid = rules[safe.OFF_GRID]["grid"] if safe.OFF_GRID in rules else [TICKS_PER_MEASURE]
         return safe.safe_fixes(self.song.data, chart, [int(name) for name in grid])
 
-    def _state(self, index: int) -> _State:
-        chart = self.song.charts[index]
+    def _part(self, index: int, player: int) -> Chart:
+        """A chart as it is now, or of one for two the part of a player."""
+        return _part(self.song, index, player)
+
+    def _state(self, index: int, player: int = 0) -> _State:
+        chart = self._part(index, player)
         if self._latest is None or self._latest.chart is not chart:
             self._latest = _State.of(self.song, chart, self.settings, self.preset_of(chart))
         return self._latest
@@ -120,8 +127,8 @@ class Mending:
         if len({splice.start for splice in splices}) < len(splices):
             return False
         after = unchanged(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
-        chart = after.charts[state.chart.index]
-        if not _as_meant(state.chart, chart, fixes):
+        chart = _part(after, state.chart.index, state.chart.player)
+        if not _as_meant(state.chart, chart, fixes) or not _apart(state.chart, after, fixes):
             return False
         if finding is not None or not all(fix.is_silent for fix in fixes):
             new = _State.of(after, chart, self.settings, self.preset_of(chart))
@@ -154,6 +161,11 @@ class _State:
         return not _told(self.findings) - _told(before.findings)
 
 
+def _part(song: Song, index: int, player: int) -> Chart:
+    chart = song.charts[index]
+    return chart.players[player - 1] if chart.players and player else chart
+
+
 def _told(findings: Iterable[Finding]) -> Counter[tuple[str, float | None]]:
     return Counter(
         (one.rule, None if issubclass(all_rules()[one.rule], ReaderRule) else one.beat)
@@ -166,6 +178,21 @@ def _count(state: _State, finding: Finding) -> int:
     """How many findings of its rule stand in a finding's place."""
     place = (finding.rule, finding.line, finding.beat)
     return sum((one.rule, one.line, one.beat) == place for one in state.findings)
+
+
+def _apart(before: Chart, after: Song, fixes: Sequence[Fix]) -> bool:
+    """Whether the other player of a chart for two has the same notes as before, and none where one came to."""
+    if before.written is None:
+        return True
+    places = {(tick, column + before.first_column) for fix in fixes for tick, column, _, _ in fix.come}
+    whole = before.written.notes
+    mine = {(tick, column + before.first_column) for tick, column, _, _ in notes_of(before.notes)}
+    others = set(zip(whole.tick.tolist(), whole.column.tolist(), strict=True)) - mine
+    return not places & others and all(
+        len(part.notes) + len(before.notes) == sum(len(one.notes) for one in after.charts[before.index].players)
+        for part in after.charts[before.index].players
+        if part.player != before.player
+    )
 
 
 def _as_meant(before: Chart, after: Chart, fixes: Sequence[Fix]) -> bool:

@@ -64,7 +64,8 @@ def _chart_data(path: Path, chart: Chart) -> list[Any]:
         if data["schema"] != SCHEMA:
             raise FileError(path, f"written in schema {data['schema']}; this program reads {SCHEMA}")
         charts = [c for file in data["files"] for c in file["charts"]]
-        fitting = [c for c in charts if c["index"] == chart.index and c["steps_type"] == chart.steps_type]
+        here = (chart.index, chart.written_type, chart.player)
+        fitting = [c for c in charts if (c["index"], c["steps_type"], c.get("player", 0)) == here]
     except (KeyError, TypeError):
         raise FileError(path, "not the JSON of `dancetutor analyze --format json`") from None
     if not fitting:

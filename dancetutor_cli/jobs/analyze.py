@@ -106,11 +106,12 @@ def load_song(task: Task) -> Song:
 
 
 def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartSubject]:
-    """Each of the charts with its play."""
+    """Each of the charts with its play; of those for two, each player's part."""
     from dancetutor_cli.lint.solved import solved_chart
 
     for chart in charts:
-        yield solved_chart(song, chart, preset_for(chart, task.path, task.presets))
+        for part in task.selection.parts(chart):
+            yield solved_chart(song, part, preset_for(part, task.path, task.presets))
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
@@ -120,7 +121,8 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
     for result in charts:
         if is_lights(result.steps_type):  # nobody dances them
             continue
-        yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
+        if result.player < 2:  # of charts for two told once
+            yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
         elif result.mismatch:
@@ -135,7 +137,8 @@ def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
     findings, causes = _findings(subject, task, preset)
     return ChartResult(
         index=chart.index,
-        steps_type=chart.steps_type,
+        steps_type=chart.written_type,
+        player=chart.player,
         difficulty=chart.difficulty,
         meter=chart.meter,
         description=chart.description,

@@ -146,9 +146,12 @@ class _Work:
             planning.add_charts(base, self.song, plan, feet)
         planning.checked(base, plan)
         self._take(plan)
+        alone = [one for one in feet if not (one.chart.players or one.chart.player)]
+        if self.beside and len(alone) < len(feet):
+            self.notes.append(f"{base.path}: charts for two get their feet only in the styles measure and rows")
         for style in self.beside:
             try:
-                for planned in beside.write(style, self.song, self.item.target.parent, feet):
+                for planned in beside.write(style, self.song, self.item.target.parent, alone):
                     self._add(planned)
             except FileError as error:
                 self.errors.append(str(error))

@@ -27,7 +27,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
     parts = {field.name: _plain(getattr(request, field.name)) for field in fields(request)}
     parts |= {
         "path": hashlib.sha256(subject.song.data).hexdigest(),
-        "selection": subject.chart.index,  # however it was chosen
+        "selection": (subject.chart.index, subject.chart.player),  # however it was chosen
         "preset": _plain(subject.preset),  # whoever chose it, with all that it extends
         "character": _character(request.character),
         "gait": _gait(request.gait),

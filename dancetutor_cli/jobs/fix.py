@@ -22,12 +22,13 @@ if TYPE_CHECKING:
 class FixOrder:
     """What shall be mended in one file.
 
-    task : the file, with its configuration; findings : those that were asked for; safe : the safe fixes too
+    task : the file, with its configuration; safe : the safe fixes are wanted
+    findings : those that were asked for, each with the player of a chart for two in whose part it is, else 0
     write : whether the file is written; backup : keep the old bytes beside it
     """
 
     task: Task
-    findings: tuple[Finding, ...]
+    findings: tuple[tuple[Finding, int], ...]
     safe: bool = False
     write: bool = True
     backup: bool = False
@@ -76,8 +77,8 @@ def _fix(order: FixOrder) -> FixOutcome:
     if order.safe:
         for chart in task.selection.charts(song):
             mending.safe(chart.index)
-    for finding in order.findings:
-        mending.finding(finding.chart or 0, finding)
+    for finding, player in order.findings:
+        mending.finding(finding.chart or 0, finding, player)
     new = mending.song.data
     if order.write and new != song.data:
         _write(order, song.data, new)
@@ -105,7 +106,7 @@ def _notes(order: FixOrder, mending: Mending) -> Iterator[str]:
         yield f"{path}: has feet in its measures that were found before; `dancetutor annotate` brings them up to date"
 
 
-def pick(findings: Sequence[Finding], rule: str, number: int | None) -> tuple[Finding, ...]:
+def pick(findings: Sequence[tuple[Finding, int]], rule: str, number: int | None) -> tuple[tuple[Finding, int], ...]:
     """The findings of a rule, or the one of that number, from 1; empty if there is none."""
-    found = tuple(one for one in findings if one.rule == rule)
+    found = tuple(one for one in findings if one[0].rule == rule)
     return found if number is None else found[number - 1 : number]

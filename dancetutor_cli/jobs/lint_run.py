@@ -172,4 +172,4 @@ class LintRun:
 
 
 def _name(chart: ChartResult | None) -> str:
-    return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip()
+    return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip() + chart.whose

@@ -17,11 +17,15 @@ _LARGE = 200_000  # bytes
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Which charts are meant: values as the user typed them, several with commas; None stands for all."""
+    """Which charts are meant: values as the user typed them, several with commas; None stands for all.
+
+    player : of charts for two, whose part is meant
+    """
 
     steps_type: str | None = None
     difficulty: str | None = None
     index: int | None = None
+    player: int | None = None
 
     @property
     def is_all(self) -> bool:
@@ -33,8 +37,21 @@ class Selection:
         return tuple(select(song, _parts(self.steps_type), _parts(self.difficulty), self.index))
 
     def one(self, song: Song) -> Chart:
-        """The one chart of `song` that matches; UsageError lists the charts there are if none or several do."""
-        return select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
+        """The one chart of `song` that matches; UsageError lists the charts there are if none or several do.
+
+        Of a chart for two the part of the player that is meant, else of the first.
+        """
+        chart = select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
+        found = self.parts(chart)
+        if not found:
+            raise UsageError(f"{song.path}: {chart.label} has no notes for player {self.player}")
+        return found[0]
+
+    def parts(self, chart: Chart) -> tuple[Chart, ...]:
+        """What feet are found for in a chart: itself, or of one for two each player's part that is meant."""
+        from dancetutor_cli.chart.players import parts
+
+        return parts(chart, self.player)
 
 
 def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:

@@ -38,10 +38,12 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     chart = subject.chart
     if is_lights(chart.steps_type):
         return ()
-    rules = settings.for_chart(subject.song.path.absolute(), chart.steps_type, chart.difficulty, chart.meter)
+    rules = settings.for_chart(subject.song.path.absolute(), chart.written_type, chart.difficulty, chart.meter)
     for code, options in rules.items():
         if code in _rules_of_charts():
             findings += _rules_of_charts()[code](options).check(subject)
+    if chart.player > 1:  # what is true of the chart as a whole is told with the first player's
+        findings = [finding for finding in findings if finding.beat is not None]
     findings = [finding for finding in findings if not _silenced(finding, subject)]
     told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
     return _in_order(finding for finding in told if not _silenced(finding, subject))

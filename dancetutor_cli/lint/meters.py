@@ -41,7 +41,7 @@ class Meters:
     def add(self, subject: ChartSubject, rate: float = 1.0) -> None:
         """Take note of a chart, if its pad has a model of meters and it has steps."""
         chart = subject.chart
-        if subject.play is None or not len(subject.step_rows):
+        if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players
             return
         found = size(subject.play, chart.steps_type, (chart.meter, chart.difficulty), rate)
         if found is not None:

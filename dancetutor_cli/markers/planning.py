@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.players import parts, written_parts
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.measures import step_rows
 from dancetutor_cli.markers import edit, lanes, measure
@@ -45,17 +46,35 @@ def solve_charts(
 
     padless = set()
     for chart in charts:
-        overrides, _, wrong = overrides_for(song, chart)
-        problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
-        play = solve_chart(chart, preset_of(chart), overrides)
-        if play is None:
-            padless.add(chart.steps_type)
-            continue
-        found = step_rows(song.data, chart)
-        yield ChartFeet(chart, found, tuple(row_letters(chart, found, play)), play)
+        feet = []
+        for part in parts(chart):
+            overrides, _, wrong = overrides_for(song, part)
+            problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
+            play = solve_chart(part, preset_of(part), overrides)
+            if play is None:
+                padless.add(part.steps_type)
+                continue
+            found = step_rows(song.data, part)
+            feet.append(ChartFeet(part, found, tuple(row_letters(part, found, play)), play))
+        yield from (
+            feet if written_parts(chart) != (chart,) or not chart.players else [_in_shared_rows(song, chart, feet)]
+        )
     padless = {name for name in padless if not name.startswith("lights")}
     if padless:
         notes.append(f"{song.path}: there is no pad for {', '.join(sorted(padless))}, so these charts get no feet")
+
+
+def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> ChartFeet:
+    """The feet of two players whose notes stand in the same rows: letters from left to right, the first player's first.
+
+    The play is the first player's.
+    """
+    found = step_rows(song.data, chart)
+    of_row: dict[int, str] = {}
+    for one in feet:
+        for row, text in zip(one.rows.row.tolist(), one.letters, strict=True):
+            of_row[row] = of_row.get(row, "") + text
+    return ChartFeet(chart, found, tuple(of_row[row] for row in found.row.tolist()), feet[0].play)
 
 
 def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bool) -> Plan:
@@ -102,12 +121,13 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
     splices: list[Splice] = []
     for chart in charts:
         found: list[Splice] = []
-        if MEASURE in styles:
-            found += measure.strip(song.data, chart, force)
+        for part in written_parts(chart):
+            if MEASURE in styles:
+                found += measure.strip(song.data, part, force)
+                plan.counts["pinned"] += 0 if force else measure.pinned(song.data, part)
             plan.counts["removed"] += len(found)
-            plan.counts["pinned"] += 0 if force else measure.pinned(song.data, chart)
-        if ROWS in styles:
-            found += rows.strip(song.data, chart)
+            if ROWS in styles:
+                found += rows.strip(song.data, part)
         if found:
             plan.lacks.append(Lack(f"{chart.label}: {len(found)} markers to take out", chart.line))
         splices += found

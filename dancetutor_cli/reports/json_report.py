@@ -63,6 +63,7 @@ def _chart_text(chart: ChartResult) -> str:
     head = {
         "index": chart.index,
         "steps_type": chart.steps_type,
+        **({"player": chart.player} if chart.player else {}),
         "difficulty": chart.difficulty,
         "meter": chart.meter,
         "description": chart.description,

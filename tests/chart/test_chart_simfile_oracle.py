@@ -28,6 +28,7 @@ NOTES_DIFFER = {
     "long-row": "simfile raises for rows longer than the first row; the games ignore the rest of the row",
     "unknown-note": "simfile raises for a letter that is no note; the games read an empty column",
     "compound-note": "simfile raises for {...}; the games read letter by letter",
+    "stepf2-note": "simfile raises for {...} of StepF2; here it is one note",
     "unmatched-head": "simfile keeps heads without a tail; the games delete them",
     "row-collision": "simfile keeps two notes on one 192nd; in the games the last counts",
 }
