@@ -10,8 +10,9 @@ from pathlib import Path
 
 import click
 import pytest
+from click.testing import CliRunner
 
-from dancetutor_cli.commands import COMMANDS
+from dancetutor_cli.commands import COMMANDS, cli
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -62,6 +63,21 @@ def test_the_examples_use_options_that_exist(example: str) -> None:
     known = {flag for p in command.params if isinstance(p, click.Option) for flag in (*p.opts, *p.secondary_opts)}
     used = {a.split("=")[0] for a in arguments if a.startswith("-") and a != "-"}
     assert used <= known | {"--help", "-h"}
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/guide.md"])
+def test_the_shown_output_of_analyze_is_what_it_prints(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    (block,) = (
+        found
+        for found in re.findall(r"```console\n\$ dancetutor (analyze charts/.*?)```", PAGES[name], re.S)
+        if "--steps-type" in found
+    )
+    call, *shown = block.splitlines()
+    monkeypatch.chdir(ROOT)
+    printed = CliRunner().invoke(cli, [*shlex.split(call), "--no-cache"]).stdout
+    lines = [line.rstrip() for line in printed.splitlines()]
+    assert len(shown) > 10
+    assert [line for line in shown if line not in ("", "...") and line not in lines] == []
 
 
 def test_short_help_in_the_list_matches_the_command() -> None:
