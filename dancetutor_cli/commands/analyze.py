@@ -214,6 +214,10 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
         return fix_all(run, [run.task(path, data) for path, data in sources], options)
     from dancetutor_cli.commands.pack_report import PackReport
 
+    if options["beside"] is not None:
+        from dancetutor_cli.commands.pack_report import tell_beside
+
+        return tell_beside([run.task(path, data) for path, data in sources], options)
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     pack = PackReport(options, run.has_baseline, len(sources), brief=_is_brief(options))

@@ -27,6 +27,13 @@ _OPTIONS = (
         help="Tell what changed since another version of PATH, by chart and row.  [format text]",
     ),
     click.option(
+        "--beside",
+        type=click.Path(path_type=Path, exists=True),
+        metavar="CACHE|FILE.csv",
+        help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs. With "
+        "--full every chart that differs.",
+    ),
+    click.option(
         "--meter-scale",
         type=click.Choice(SCALES),
         default=AUTO,
@@ -45,7 +52,7 @@ _OPTIONS = (
 
 
 def pack_options(command: Command) -> Command:
-    """Add --report-html, --compare, --meter-scale and --rate to a command."""
+    """Add --report-html, --compare, --beside, --meter-scale and --rate to a command."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command

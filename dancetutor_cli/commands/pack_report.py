@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import click
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.files import write_atomic
@@ -13,6 +15,7 @@ from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.outputs import check_file
 
 if TYPE_CHECKING:
+    from dancetutor_cli.jobs.analyze import Task
     from dancetutor_cli.reports.pack import Pack
 
 _SONG = 2  # files that are one song: its .sm and its .ssc
@@ -92,3 +95,20 @@ class PackReport:
 
 def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def tell_beside(tasks: Sequence[Task], options: Mapping[str, Any]) -> int:
+    """`--beside`: print the table, with --full every chart that differs below it; the exit status."""
+    from dancetutor_cli.jobs.beside import beside, read_theirs
+    from dancetutor_cli.reports.beside import chart_lines, table_lines
+
+    if options["format_name"] != "text":
+        raise UsageError("--beside prints a table of Markdown, in --format text")
+    found = beside(tasks, read_theirs(options["beside"]))
+    if not found.charts:
+        raise UsageError(
+            f"{options['beside']}: no chart in it is one of PATH's: they are matched by folder, file and chart"
+        )
+    lines = [*table_lines(found), *(("", *chart_lines(found)) if options["full"] else ())]
+    click.echo("\n".join(lines))
+    return 0

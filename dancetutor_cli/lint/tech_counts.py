@@ -48,13 +48,19 @@ class _Steps:
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
     """How often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
-    found = dict.fromkeys(TECH_COUNTS, 0)
+    return {name: len(rows) for name, rows in tech_rows(subject).items()}
+
+
+def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
+    """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
+    found = {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
     if subject.play is None or subject.pad is None:
         return found
     steps = _steps_of(subject.play, subject.pad)
     if len(steps.row):
         found |= _switches(steps, subject.pad) | _repeats(steps, subject.play) | _crossovers(steps)
-        found["Brackets"] = sum(int(((steps.heel[f] >= 0) & (steps.toe[f] >= 0)).sum()) for f in (0, 1))
+        both = [steps.row[(steps.heel[foot] >= 0) & (steps.toe[foot] >= 0)] for foot in (0, 1)]
+        found["Brackets"] = np.concatenate(both)
     return found
 
 
@@ -102,59 +108,60 @@ def _first(
     return found
 
 
-def _switches(steps: _Steps, pad: Pad) -> dict[str, int]:
+def _switches(steps: _Steps, pad: Pad) -> dict[str, NDArray[np.int64]]:
     """Panels taken over, by where their arrows point."""
     c = len(pad)
-    before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)  # who pressed a cell's panel in the row before
+    before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)
     before[steps.cell + c] = steps.foot
     before = before[steps.cell]
     other = np.flatnonzero((before >= 0) & (before != steps.foot))
-    row, column = np.divmod(steps.cell[other], c)
-    per_panel = np.bincount(column[steps.gap[row - 1] < _FOOTSWITCH], minlength=c)
+    number, column = np.divmod(steps.cell[other], c)
+    near = steps.gap[number - 1] < _FOOTSWITCH
+    row, column = steps.row[number[near]], column[near]
     across, along = pad.arrows.T
-    up, down = int(per_panel[along > 0].sum()), int(per_panel[along < 0].sum())
-    left, right = (int(per_panel[(along == 0) & side].sum()) for side in (across < 0, across > 0))
-    middle = int(per_panel[(along == 0) & (across == 0)].sum())
+    up, down = row[along[column] > 0], row[along[column] < 0]
+    left, right = (row[(along[column] == 0) & side[column]] for side in (across < 0, across > 0))
+    middle = row[(along[column] == 0) & (across[column] == 0)]
     return {
-        "Footswitches": up + down + middle, "UpFootswitches": up, "DownFootswitches": down,
-        "Sideswitches": left + right, "LeftSideswitches": left, "RightSideswitches": right,
+        "Footswitches": np.concatenate([up, down, middle]), "UpFootswitches": up, "DownFootswitches": down,
+        "Sideswitches": np.concatenate([left, right]), "LeftSideswitches": left, "RightSideswitches": right,
     }  # fmt: skip
 
 
-def _repeats(steps: _Steps, play: Play) -> dict[str, int]:
+def _repeats(steps: _Steps, play: Play) -> dict[str, NDArray[np.int64]]:
     """The same foot in two single rows one after the other: on its panel, or on another."""
     single = steps.count == 1
     near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
-    jacks, doublesteps = 0, []
+    jacks, doublesteps = [], []
     for heel in steps.heel:
         now, before = heel[1:], heel[:-1]
         again = near & (now >= 0) & (before >= 0)
         same = now == before
-        jacks += int((again & same & (steps.gap < _JACK)).sum())
-        doublesteps += steps.row[1:][again & ~same].tolist()
-    forced = sum("forced-doublestep" in play.moves[row] for row in doublesteps)
+        jacks.append(steps.row[1:][again & same & (steps.gap < _JACK)])
+        doublesteps.append(steps.row[1:][again & ~same])
+    stepped = np.concatenate(doublesteps)
+    forced = np.array(["forced-doublestep" in play.moves[row] for row in stepped.tolist()], dtype=bool)
     return {
-        "Jacks": jacks,
-        "Doublesteps": len(doublesteps),
-        "ForcedDoublesteps": forced,
-        "UnforcedDoublesteps": len(doublesteps) - forced,
+        "Jacks": np.concatenate(jacks),
+        "Doublesteps": stepped,
+        "ForcedDoublesteps": stepped[forced],
+        "UnforcedDoublesteps": stepped[~forced],
     }
 
 
-def _crossovers(steps: _Steps) -> dict[str, int]:
+def _crossovers(steps: _Steps) -> dict[str, NDArray[np.int64]]:
     """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
-    half = full = 0
+    half, full = [], []
     for foot, outward in ((0, -1.0), (1, 1.0)):
         x, other = steps.x[foot], steps.x[1 - foot]
         stepped, others = steps.heel[foot], steps.heel[1 - foot]
         beyond = x[1:] > other[:-1] if foot == 0 else x[1:] < other[:-1]
         at = np.flatnonzero((stepped[1:] >= 0) & (stepped[:-1] < 0) & (others[:-1] >= 0) & beyond) + 1
-        if not len(at):
-            continue
         earlier = np.where(at > 1, stepped[at - 2], -1)
         moved = (at == 1) | ((earlier >= 0) & (earlier != stepped[at]))
         came_from = steps.heel_x[foot][at - 2] * outward
         outside = (at > 1) & (earlier >= 0) & (came_from > other[at - 1] * outward)
-        full += int((moved & outside).sum())
-        half += int((moved & ~outside).sum())
-    return {"Crossovers": half + full, "HalfCrossovers": half, "FullCrossovers": full}
+        full.append(steps.row[at[moved & outside]])
+        half.append(steps.row[at[moved & ~outside]])
+    halves, fulls = np.concatenate(half), np.concatenate(full)
+    return {"Crossovers": np.concatenate([halves, fulls]), "HalfCrossovers": halves, "FullCrossovers": fulls}

@@ -1,0 +1,157 @@
+"""Our technique counts beside those that ITGmania wrote: its song cache, or a table in CSV with its names.
+
+A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix, whose charts say where they are
+from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`) and how often the game counts what (`#TECHCOUNTS`): so many numbers for
+each of two players, ten since ITGmania tells half and full crossovers apart, six before.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.chart.msd import Tag, plain, scan
+from dancetutor_cli.chart.names import difficulty as named
+from dancetutor_cli.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.jobs.analyze import Task, load_song, solved
+from dancetutor_cli.lint.tech_counts import tech_rows
+
+TEN = (
+    "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
+    "Sideswitches", "Jacks", "Brackets", "Doublesteps",
+)  # fmt: skip
+SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
+_PLAYERS = 2
+_MOST = 1_000_000  # times that anything happens in a chart
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """Which chart: its song's folder and file, both in lower case; steps type, difficulty and description."""
+
+    song: tuple[str, ...]
+    steps_type: str
+    difficulty: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One chart that both know. ours : technique -> measure of each time; theirs : technique -> how often"""
+
+    file: str
+    label: str
+    ours: Mapping[str, Sequence[int]]
+    theirs: Mapping[str, int]
+
+
+@dataclass
+class Beside:
+    """All charts that both know, and how many only one of them has."""
+
+    charts: list[Compared] = field(default_factory=list)
+    only_ours: int = 0
+    only_theirs: int = 0
+
+
+def read_theirs(path: Path) -> dict[Key, dict[str, int]]:
+    """What the game wrote: a CSV file, a file of its cache, or a folder of such. UsageError if nothing is in it."""
+    if path.is_file() and path.suffix.lower() == ".csv":
+        found = dict(_table(path))
+    else:
+        files = [path] if path.is_file() else sorted(one for one in path.rglob("*") if one.is_file())
+        found = {key: counts for file in files for key, counts in _cached(file)}
+    if not found:
+        raise UsageError(f"{path}: has no #TECHCOUNTS; give ITGmania's Cache/Songs, or a CSV with its technique names")
+    return found
+
+
+def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
+    try:
+        data = read_bytes(path, CHART_LIMIT)
+    except FileError:
+        return
+    said: dict[str, str] = {}
+    for tag in [*scan(data), Tag("NOTEDATA", len(data), ())]:
+        if tag.name != "NOTEDATA":
+            said[tag.name] = _text(data, tag)
+            continue
+        counts = _counts(said.get("TECHCOUNTS", ""))
+        if counts is not None:
+            # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
+            name = said.get("STEPFILENAME") or path.as_posix()
+            description = said.get("DESCRIPTION", "")
+            yield _key(name, said.get("STEPSTYPE", ""), said.get("DIFFICULTY", ""), description), counts
+        said = {}
+
+
+def _text(data: bytes, tag: Tag) -> str:
+    return plain(data[slice(*tag.spans[0])]).decode("utf-8", "replace").strip() if tag.spans else ""
+
+
+def _counts(text: str) -> dict[str, int] | None:
+    """The first player's numbers by name; None if it is no such list."""
+    try:
+        numbers = [round(float(part)) for part in text.split(",")]
+    except (ValueError, OverflowError):
+        return None
+    for names in (TEN, SIX):
+        if len(numbers) in (len(names), _PLAYERS * len(names)) and all(0 <= n <= _MOST for n in numbers):
+            return dict(zip(names, numbers, strict=False))
+    return None
+
+
+def _table(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
+    """Rows of a CSV with the columns file, steps_type, difficulty, description and names of techniques."""
+    text = io.StringIO(read_bytes(path, CHART_LIMIT).decode("utf-8-sig", "replace"), newline="")
+    for number, row in enumerate(csv.DictReader(text), 2):
+        try:
+            counts = {name: round(float(row[name])) for name in TEN if row.get(name)}
+        except (ValueError, OverflowError) as error:
+            raise FileError(path, "a count is no number", number) from error
+        if counts:
+            words = (row.get(name) or "" for name in ("file", "steps_type", "difficulty", "description"))
+            yield _key(*words), counts
+
+
+def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
+    parts = PurePosixPath(file.replace("\\", "/").lower()).parts
+    return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
+
+
+def beside(tasks: Iterable[Task], theirs: Mapping[Key, Mapping[str, int]]) -> Beside:
+    """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
+    found, seen = Beside(), set[Key]()
+    by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)
+    for key in theirs:
+        by_chart[key.song, key.steps_type, key.difficulty].append(key)
+    songs = {key.song for key in theirs}
+    for task in tasks:
+        if _key(task.path.absolute().as_posix(), "", "", "").song not in songs:
+            continue
+        try:
+            song = load_song(task)
+        except DancetutorError:
+            continue
+        for subject in solved(song, task.selection.charts(song), task):
+            chart, play = subject.chart, subject.play
+            if play is None:
+                continue
+            mine = _key(task.path.absolute().as_posix(), chart.steps_type, chart.difficulty, chart.description)
+            near = by_chart[mine.song, mine.steps_type, mine.difficulty]
+            same = mine if mine in theirs else near[0] if len(near) == 1 else None
+            if same is None or same in seen:
+                found.only_ours += 1
+                continue
+            seen.add(same)
+            measures = play.rows.tick // TICKS_PER_MEASURE
+            ours = {name: sorted(measures[rows].tolist()) for name, rows in tech_rows(subject).items()}
+            found.charts.append(Compared(task.path.as_posix(), chart.label, ours, theirs[same]))
+    found.only_theirs = len(theirs) - len(seen)
+    return found
