@@ -21,8 +21,8 @@ def table_lines(found: Beside) -> Iterator[str]:
             both, alike = sum(map(min, pairs)), sum(a == b for a, b in pairs)
             yield f"| {name} | {len(pairs)} | {ours} | {theirs} | {both} | {alike} ({100 * alike / len(pairs):.0f} %) |"
     yield ""
-    count = len(found.charts)
-    yield f"{count} chart{'' if count == 1 else 's'}; not known to the game: {found.only_ours}; only known to it: {found.only_theirs}"
+    count = f"{len(found.charts)} chart{'' if len(found.charts) == 1 else 's'}"
+    yield f"{count}; not known to the game: {found.only_ours}; only known to it: {found.only_theirs}"
 
 
 def chart_lines(found: Beside) -> Iterator[str]:
