@@ -17,6 +17,7 @@ from dancetutor_cli.commands.chart_options import (
     motion_option,
     number,
     preset_option,
+    push_options,
     section_option,
     selection_options,
     style_option,
@@ -52,6 +53,8 @@ class Wanted:
     motion: Path | None
     jobs: int
     style: str | None
+    push: tuple[str, ...]
+    trip: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +103,7 @@ class Result:
 @gait_option
 @motion_option
 @style_option
+@push_options
 @click.option("--physics", is_flag=True, help="A ragdoll follows her as closely as it can: --style neutral.")
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
@@ -134,7 +138,7 @@ def command(file: Path, selection: Selection, dance: Wanted, result: Result) -> 
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))
     task = BakeTask(one_song(file), selection, **asdict(dance))
-    if result.physics and task.style is None:
+    if (result.physics or dance.push or dance.trip) and task.style is None:
         task = replace(task, style="neutral")
     from dancetutor_cli.library.selection import note_bytes
 

@@ -18,6 +18,7 @@ __all__ = [
     "motion_option",
     "number",
     "preset_option",
+    "push_options",
     "section_option",
     "selection_options",
     "style_option",
@@ -115,6 +116,27 @@ def style_option(command: _Command) -> _Command:
         "configs/styles.",
     )
     return option(command)
+
+
+def push_options(command: _Command) -> _Command:
+    """Add --push and --trip; the function gets `push` and `trip`, tuples to be given to `physics.pushes`."""
+    for option in (
+        click.option(
+            "--trip",
+            type=float,
+            multiple=True,
+            metavar="TIME",
+            help="Something catches the foot that swings at this second.",
+        ),
+        click.option(
+            "--push",
+            multiple=True,
+            metavar="TIME:FORCE:DIRECTION",
+            help="Somebody pushes her: second, newtons, and ahead, left, back, right or degrees to her left.",
+        ),
+    ):
+        command = option(command)
+    return command
 
 
 def motion_option(command: _Command) -> _Command:

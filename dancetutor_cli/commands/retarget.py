@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.chart_options import style_option
+from dancetutor_cli.commands.chart_options import push_options, style_option
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_file, one_of
@@ -34,6 +34,8 @@ class Wanted:
     correct: str
     report_to: str | None
     plot: Path | None
+    push: tuple[str, ...]
+    trip: tuple[float, ...]
 
 
 @click.command()
@@ -48,6 +50,7 @@ class Wanted:
 )
 @click.option("--animation", metavar="NAME", help="The animation of a .glb that is meant; default: its first.")
 @style_option
+@push_options
 @click.option(
     "--correct",
     default=",".join(_CORRECTIONS),
@@ -71,18 +74,21 @@ def command(file: Path, wanted: Wanted) -> None:
     Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
     are kept, and legs end where the captured feet stood, all in proportion to the character's legs.
     """
+    from dancetutor_cli.jobs.bake import wishes_of
     from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
+    from dancetutor_cli.physics.pipeline import Wishes
 
     check_file(wanted.output, SUFFIXES)
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
     if wanted.report_to is not None and wanted.report_to != _TABLE:
         check_file(Path(wanted.report_to))
-    task = RetargetTask(
-        file, wanted.character, wanted.animation, wanted.style or "neutral", corrections_of(wanted.correct)
-    )
+    wishes = wishes_of(wanted.push, wanted.trip, corrections_of(wanted.correct)) or Wishes()
+    task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
     words = _written(work, wanted.output)
+    for note in work.passed.motion.notes:
+        click.echo(f"warning: {note}", err=True)
     click.echo(f"{wanted.output}: {words}")
     if wanted.report_to is not None or wanted.plot is not None:
         _report(work, wanted)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.motion.model import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
     from dancetutor_cli.pads import Pad
+    from dancetutor_cli.physics.pipeline import Wishes
     from dancetutor_cli.play.model import Play
     from dancetutor_cli.play.preset import Preset
 
@@ -39,6 +40,7 @@ class BakeTask:
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
     jobs : processes among which the pieces of a long song are shared
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
+    push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds; only with a style
     """
 
     path: Path
@@ -53,6 +55,8 @@ class BakeTask:
     jobs: int = 1
     motion: Path | None = None
     style: str | None = None
+    push: tuple[str, ...] = ()
+    trip: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +80,7 @@ def ask(task: BakeTask) -> Asked:
 
     check_motion(task.motion, task.gait)
     check_style(task.style, task.bar)
+    wishes_of(task.push, task.trip)
     song, chart, preset, notes = chosen(task.path, task.selection, task.preset, task.section)
     play, pad = _play(task, song, chart, preset)
     if not (play.limb >= 0).any():
@@ -107,6 +112,16 @@ def check_style(style: str | None, bar: bool) -> None:
     if bar:
         raise UsageError("a style moves her arms, and hands on the bar stay where they are; leave --bar or --style out")
     engine()
+
+
+def wishes_of(push: Sequence[str], trip: Sequence[float], corrections: tuple[str, ...] = ()) -> Wishes | None:
+    """What shall happen to a motion in a ragdoll; None for nothing. UsageError for a push that is none."""
+    if not (push or trip or corrections):
+        return None
+    from dancetutor_cli.physics.pipeline import Wishes
+    from dancetutor_cli.physics.pushes import Trip, parse_push
+
+    return Wishes(corrections, tuple(parse_push(text) for text in push), tuple(Trip(second) for second in trip))
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
@@ -213,7 +228,8 @@ class Dance:
         from dancetutor_cli.bake.styled import styled
         from dancetutor_cli.motion.settings import load_settings
 
-        return styled(bake_asked(self.asked, self.task), self.task.style, load_settings(self.task.motion))
+        befalls = wishes_of(self.task.push, self.task.trip)
+        return styled(bake_asked(self.asked, self.task), self.task.style, load_settings(self.task.motion), befalls)
 
     @property
     def own_motion(self) -> Motion:

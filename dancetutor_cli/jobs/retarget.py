@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.bake import Report
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.motion.model import Motion
-    from dancetutor_cli.physics.pipeline import Passed
+    from dancetutor_cli.physics.pipeline import Passed, Wishes
     from dancetutor_cli.physics.style import Style
     from dancetutor_cli.physics.tuning import Tuning
     from dancetutor_cli.rig.skeleton import Skeleton
@@ -29,14 +29,14 @@ SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral sty
 class RetargetTask:
     """What to retarget. source : the file; animation : the one wanted of a .glb, None for its first
 
-    style : name or file, as `physics.style.load_style` takes it; corrections : of `physics.pipeline.CORRECTIONS`
+    style : name or file, as `physics.style.load_style` takes it; wishes : corrections, pushes, trips
     """
 
     source: Path
     character: str
     animation: str | None
     style: str
-    corrections: tuple[str, ...]
+    wishes: Wishes
 
 
 @dataclass
@@ -86,7 +86,7 @@ class Retargeting:
         from dancetutor_cli.rig.skeleton import dancer_skeleton
 
         style = load_style(self.task.style)
-        if "limits" not in self.task.corrections:
+        if "limits" not in self.task.wishes.corrections:
             style = replace(style, limits=False)
         same = self.body.offsets.tobytes() == dancer_skeleton().offsets.tobytes()
         return style if same else tuning_of(self.body).of(style)
@@ -99,7 +99,7 @@ class Retargeting:
         from dancetutor_cli.physics.pipeline import through_ragdoll
 
         try:
-            passed = through_ragdoll(self.given, self.style, self.task.corrections)
+            passed = through_ragdoll(self.given, self.style, self.task.wishes)
         except FileError:
             raise
         except DancetutorError as error:
@@ -130,7 +130,7 @@ class Retargeting:
         whole = report(passed.motion)
         faults = fault_figures(self.given, passed.motion, passed.plants)
         whole = replace(whole, figures=(*whole.figures, *faults))
-        plain = not set(self.task.corrections) - {"limits"}
+        plain = not set(self.task.wishes.corrections) - {"limits"}
         return with_distances(whole, passed.distances, self.task.style if plain else None)
 
 

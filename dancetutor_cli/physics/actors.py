@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,19 +24,22 @@ KNEE = 10.0  # degrees of bend below which a knee is damped: an inner angle of 1
 DAMPING = 8.0  # N m s/rad at a straight knee
 
 
-class Actor(Protocol):
-    """Takes part in a simulation. Its `constraints` are XML of the engine's equality section."""
+class Actor(ABC):
+    """Takes part in a simulation. `constraints` : XML of the engine's equality section"""
 
-    constraints: str
+    constraints = ""
 
+    @abstractmethod
     def before(self, model: Any, data: Any, step: int) -> None:
         """Called before each step of the engine."""
 
+    def springs(self, step: int) -> tuple[Array, Array] | None:
+        """Parts of kp and kd (a,) that the actuators have in a step; None: all of them."""
+        return None
 
-class StiffKnees:
+
+class StiffKnees(Actor):
     """Knees damped from 170 degrees on, so that they do not pop: rotations beyond are possible, but slow."""
-
-    constraints = ""
 
     def __init__(self, ragdoll: Ragdoll) -> None:
         self.names = [f"{s}_knee" for s in "lr"]
@@ -53,7 +57,7 @@ class StiffKnees:
             model.dof_damping[speed] = self.base + DAMPING * min(max(1.0 - bend / KNEE, 0.0), 1.0)
 
 
-class BreakableSoles:
+class BreakableSoles(Actor):
     """Four joints between each foot's corners and the floor: made where the sole touches it, broken by too much force.
 
     Which of them held in which step is `plants`.

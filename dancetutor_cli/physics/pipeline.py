@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,25 +10,29 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.numerics.smoothing import cubic
+from dancetutor_cli.numerics.smoothing import cubic, upper_envelope
 from dancetutor_cli.physics.actors import Actor, BreakableSoles, StiffKnees
 from dancetutor_cli.physics.distances import Distances
 from dancetutor_cli.physics.follower import follow_all
 from dancetutor_cli.physics.legs import soft_legs
 from dancetutor_cli.physics.plants import Plants, let_go, planted, tidied
 from dancetutor_cli.physics.points import place_points, points_of
+from dancetutor_cli.physics.pushes import Blow, Push, Struck, Trip, disturbed, recovered, told
 from dancetutor_cli.physics.ragdoll import bones_of
-from dancetutor_cli.physics.repin import feet_of, repinned
+from dancetutor_cli.physics.repin import Feet, feet_of, repinned
 from dancetutor_cli.physics.restrain import restrained
 from dancetutor_cli.physics.simulation import Ragdoll, simulate
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.physics.toes import eased_ankles, flatten_toes
 from dancetutor_cli.play.model import Limb
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.limits import beyond
 
 Array = NDArray[np.float64]
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 CORRECTIONS = ("knees", "feet", "limits")
 EASINGS = 3  # rounds of turning feet until their ankles are within limits
+GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
 PALM_FADE = 0.35  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
 
@@ -45,38 +49,40 @@ class Passed:
     plants: Plants | None = None
 
 
-def through_ragdoll(motion: Motion, style: Style, corrections: Collection[str] = ()) -> Passed:
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What shall happen to a motion beside its style.
+
+    corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
+    pushes, trips : what befalls her
+    """
+
+    corrections: tuple[str, ...] = ()
+    pushes: tuple[Push, ...] = ()
+    trips: tuple[Trip, ...] = ()
+
+
+def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> Passed:
     """Let the ragdoll of a style follow a motion of a skeleton with the dancer's joints.
 
-    Joints without a body keep their turns, feet their places in the world, unless corrected; times and contacts stay.
-    corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
-    Raises DancetutorError with time and joint where the simulation fails, UsageError for points that there are not.
+    Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
+    unless she is pushed or caught so that she misses them: then the motion's notes say which.
+    Raises DancetutorError with time and joint where the simulation fails, UsageError for points that there are not or
+    a push outside of the motion.
     """
-    skeleton, rate = motion.skeleton, style.numbers.update_rate
-    bones = bones_of(skeleton)
-    points = points_of(skeleton, bones, style)
-    start, length = float(motion.times[0]), float(motion.times[-1] - motion.times[0])
-    at = start + np.arange(-int(BEFORE * rate), int(np.ceil(length * rate)) + 1) / rate
-    given = _resampled(motion, at, style.numbers.sample_rate)
-    ragdoll = Ragdoll(skeleton, bones, points, style)
-    aimed = follow_all(skeleton, *given, style)
-    soles = BreakableSoles(ragdoll, *aimed) if "feet" in corrections else None
-    actors: list[Actor] = [StiffKnees(ragdoll)] if "knees" in corrections else []
-    made = simulate(ragdoll, *aimed, float(at[0]), actors + ([soles] if soles else []))
-    first = int(BEFORE * rate)
-    shown = tuple(k for k, p in enumerate(points) if not p.extra)
-    chosen = tuple(points[k] for k in shown)
-    apart = place_points(skeleton, bones, chosen, *given) - place_points(skeleton, bones, chosen, *made)
-    distances = Distances(tuple(p.name for p in chosen), at[first:], 100.0 * np.linalg.norm(apart[first:], axis=2))
-    rotations, root = _read(at, *made, motion.times)
+    skeleton, corrections = motion.skeleton, wishes.corrections
+    motion, blows = disturbed(motion, wishes.pushes, wishes.trips)
+    _, made, distances, held_at = _followed(motion, style, wishes, blows)
+    rotations, root = _read(held_at.at, *made, motion.times)
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)
     if style.limits:
         rotations = restrained(skeleton, rotations)
     feet, held, plants = feet_of(skeleton, motion.rotations, motion.root), np.ones((len(root), 2)), None
-    if soles is not None:
-        plants = let_go(skeleton, feet, _at_keys(soles.plants(), at, motion.times))
+    motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
+    if held_at.soles is not None:
+        plants = let_go(skeleton, feet, _at_keys(held_at.soles.plants(), held_at.at, motion.times))
         feet, held = planted(skeleton, feet, plants)
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
     if "knees" in corrections:
@@ -88,12 +94,61 @@ def through_ragdoll(motion: Motion, style: Style, corrections: Collection[str] =
         if not changed:
             break
         poses = repinned(skeleton, (rotations, root), feet)
+    if wishes.pushes or wishes.trips:
+        poses = _possible(motion, poses, feet)
     rotations, root = poses
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
         if style.limits:
             rotations = restrained(skeleton, rotations)
-    return Passed(replace(motion, rotations=quat.continuous(rotations), root=root), distances, plants)
+    done = replace(motion, rotations=quat.continuous(rotations), root=root)
+    return Passed(told(done, motion.root, wishes.pushes, missed), distances, plants)
+
+
+def _possible(motion: Motion, poses: Poses, feet: Feet) -> Poses:
+    """Poses that give way only so far that hips and ankles of feet which stay stay within their limits."""
+    for _ in range(GIVING_BACK):
+        past = np.zeros(len(motion.times))
+        for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
+            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > 0.5)
+        if not past.any():
+            break
+        share = 0.3 * np.minimum(upper_envelope(motion.times, past, 0.2), 1.0)
+        rotations = quat.slerp(poses[0], motion.rotations, share[:, None])
+        poses = repinned(motion.skeleton, (rotations, poses[1] + share[:, None] * (motion.root - poses[1])), feet)
+    return poses
+
+
+@dataclass(frozen=True, slots=True)
+class _Steps:
+    """Seconds of the simulation's steps, (f,), and the soles' joints in them."""
+
+    at: Array
+    soles: BreakableSoles | None
+
+
+def _followed(
+    motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]
+) -> tuple[Poses, Poses, Distances, _Steps]:
+    """The input and what the ragdoll made of it at the update rate, and how far it was."""
+    skeleton, rate = motion.skeleton, style.numbers.update_rate
+    bones = bones_of(skeleton)
+    points = points_of(skeleton, bones, style)
+    start, length = float(motion.times[0]), float(motion.times[-1] - motion.times[0])
+    at = start + np.arange(-int(BEFORE * rate), int(np.ceil(length * rate)) + 1) / rate
+    given = _resampled(motion, at, style.numbers.sample_rate)
+    ragdoll = Ragdoll(skeleton, bones, points, style)
+    aimed = follow_all(skeleton, *given, style)
+    soles = BreakableSoles(ragdoll, *aimed) if "feet" in wishes.corrections else None
+    actors: list[Actor] = [StiffKnees(ragdoll)] if "knees" in wishes.corrections else []
+    if blows:
+        actors.append(Struck(ragdoll, len(at), float(at[0]), blows))
+    made = simulate(ragdoll, *aimed, float(at[0]), actors + ([soles] if soles else []))
+    first = int(BEFORE * rate)
+    shown = tuple(p for p in points if not p.extra)
+    apart = place_points(skeleton, bones, shown, *given) - place_points(skeleton, bones, shown, *made)
+    distances = Distances(tuple(p.name for p in shown), at[first:], 100.0 * np.linalg.norm(apart[first:], axis=2))
+    return given, made, distances, _Steps(at, soles)
 
 
 def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:

@@ -74,11 +74,14 @@ def simulate(
         low, high = max(first - 1, 0), min(last + 1, len(root))
         places = place_points(ragdoll.skeleton, bones, points, rotations[low:high], root[low:high])
         speed = np.gradient(places, 1.0 / rate, axis=0) if len(places) > 1 else np.zeros_like(places)
-        control = (kp * places + kd * speed)[first - low : last - low].reshape(last - first, -1)
+        part = slice(first - low, last - low)
+        pull, drag = ((k * v)[part].reshape(last - first, -1) for k, v in ((kp, places), (kd, speed)))
         pushed = quat.rotate(rotations[first:last, joints[0]][:, None], forces)
         for step in range(first, last):
             out[step] = data.qpos
-            data.ctrl[:] = control[step - first]
+            stiff = next((s for s in (actor.springs(step) for actor in actors) if s is not None), None)
+            here = step - first
+            data.ctrl[:] = pull[here] + drag[here] if stiff is None else stiff[0] * pull[here] + stiff[1] * drag[here]
             pelvis[:, :3] = pushed[step - first]
             for actor in actors:
                 actor.before(model, data, step)

@@ -9,6 +9,7 @@ import pytest
 from dancetutor_cli.bake import Report
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
+from dancetutor_cli.physics.pipeline import Wishes
 from dancetutor_cli.physics.plants import PIVOT, Plants, planted, tidied
 from dancetutor_cli.physics.repin import Feet
 from dancetutor_cli.rig import quaternion as quat
@@ -30,7 +31,7 @@ def retargeted(source: Path, fault: str, folder: Path, corrections: tuple[str, .
     path = folder / f"{fault}.bvh"
     if not path.exists():
         write_bvh(path, tool.spoiled(source, (fault,), (0.1, 6.0)))
-    return Retargeting(RetargetTask(path, "dancer", None, "neutral", corrections))
+    return Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes(corrections)))
 
 
 def value(report: Report, name: str) -> float:
