@@ -243,6 +243,8 @@ class HairSettings:
     stiffness: float
     head_radius: float
     back_radius: float
+    fastest: float
+    highest: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,8 @@ TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the r
 HEAD = (0.0, 0.085, 0.005)  # middle of the head's ball from the skullbase
 BACK = ((0.0, 0.0, 0.015), (0.0, 0.17, 0.020))  # the back's capsule: its ends from vt10 and from vt4
 ITERATIONS = 5  # of the constraints in each step
+DOWN = (0.0, -1.0, 0.0)
+DROOP = 0.1  # by how much of it each segment rises less than the one before
 SETTLE = 1.0  # seconds of hanging still before the first frame
 
 
@@ -84,6 +86,19 @@ def _pushed_out(p: Vec, a: Vec, b: Vec, radius: float) -> Vec:
     return p
 
 
+@njit(cache=True)
+def _no_further(a: Vec, b: Vec, most: float) -> Vec:
+    """Unit vector b, or what is `most` radians from unit vector a towards it, if that is nearer."""
+    cosine = dot(a, b)
+    if cosine >= math.cos(most):
+        return b
+    aside = sub(b, scale(a, cosine))
+    size = length(aside)
+    if size < 1e-9:
+        return a
+    return add(scale(a, math.cos(most)), scale(aside, math.sin(most) / size))
+
+
 @njit(cache=True, inline="always")
 def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
@@ -98,6 +113,8 @@ class _Braid(NamedTuple):
     stiffness: float
     head_radius: float
     back_radius: float
+    fastest: float
+    highest: float
 
 
 @njit(cache=True)
@@ -113,8 +130,11 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Arr
         p[k + 1, 0], p[k + 1, 1], p[k + 1, 2] = add(_vec(p[k]), qrot(first, _vec(bones[k])))
     before[:] = p
     keep = math.exp(-braid.damping * step)
+    fastest, highest = math.radians(braid.fastest) * step, math.radians(braid.highest)
+    old = p.copy()
     for frame in range(-settle, len(root)):
         f = max(frame, 0)
+        old[:] = p
         q = (turn[f, 0], turn[f, 1], turn[f, 2], turn[f, 3])
         for k in range(1, n + 1):
             for d in range(3):
@@ -134,11 +154,28 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Arr
                 else:
                     rest = add(above, scale(sub(above, _vec(p[k - 2])), lengths[k - 1] / lengths[k - 2]))
                 here = add(here, scale(sub(rest, here), braid.stiffness))
+                free = here
                 here = _pushed_out(here, centre, centre, braid.head_radius)
                 here = _pushed_out(here, bottom, top, braid.back_radius)
+                for d in range(3):  # what head and back push aside does not fly off
+                    before[k, d] += here[d] - free[d]
                 bone = sub(here, above)
                 here = add(above, scale(bone, lengths[k - 1] / length(bone)))
                 p[k, 0], p[k, 1], p[k, 2] = here
+        for k in range(1, n + 1):
+            was = scale(sub(_vec(old[k]), _vec(old[k - 1])), 1.0 / lengths[k - 1])
+            now = scale(sub(_vec(p[k]), _vec(p[k - 1])), 1.0 / length(sub(_vec(p[k]), _vec(p[k - 1]))))
+            now = _no_further(was, _no_further(DOWN, now, highest * (1.0 - DROOP * (k - 1))), fastest)
+            here = add(_vec(p[k - 1]), scale(now, lengths[k - 1]))
+            free = here
+            for _ in range(2):
+                here = _pushed_out(here, centre, centre, braid.head_radius)
+                here = _pushed_out(here, bottom, top, braid.back_radius)
+                bone = sub(here, _vec(p[k - 1]))
+                here = add(_vec(p[k - 1]), scale(bone, lengths[k - 1] / length(bone)))
+            for d in range(3):
+                before[k, d] += here[d] - free[d]
+            p[k, 0], p[k, 1], p[k, 2] = here
         if frame >= 0:
             out[frame] = p
     return out

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.physics.hair import BACK, HEAD, JOINTS, add_hair
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.physics.hair import BACK, HEAD, JOINTS, TIP, add_hair
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
@@ -67,3 +68,33 @@ def test_same_motion_same_hair() -> None:
         add_hair(SKELETON, times, rotations, root, HAIR)
         results.append(rotations.tobytes())
     assert results[0] == results[1]
+
+
+def half_turns(seconds: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Half a turn in so many seconds, again and again to both sides, with hops, 60 frames per second."""
+    times = np.arange(420) / 60
+    ways = (1, -1, 1, 1, -1, -1, 1, -1)
+    yaw = sum(way * np.pi * smooth((times - 1 - 0.7 * k) / seconds) for k, way in enumerate(ways))
+    rotations = np.tile(quat.IDENTITY, (len(times), len(SKELETON.names), 1))
+    rotations[:, 0] = quat.from_axis_angle((0, 1, 0), yaw)
+    root = np.tile(SKELETON.offsets[0], (len(times), 1))
+    root[:, 1] += 0.06 * np.abs(np.sin(np.pi * (times - 1) / 0.35))
+    return times, rotations, root
+
+
+@pytest.mark.parametrize("seconds", [0.18, 0.25, 0.4])
+def test_in_fast_half_turns_it_neither_whips_nor_stands_out(seconds: float) -> None:
+    times, rotations, root = half_turns(seconds)
+    add_hair(SKELETON, times, rotations, root, HAIR)
+    positions, world = world_transforms(SKELETON, rotations, root)
+    last = SKELETON.index(JOINTS[-1])
+    tip = positions[:, last] + quat.rotate(world[:, last], np.array(TIP))
+    points = np.stack([*(positions[:, SKELETON.index(name)] for name in JOINTS), tip], axis=1)
+    bones = np.diff(points, axis=1)
+    bones /= np.linalg.norm(bones, axis=2, keepdims=True)
+    turned = np.degrees(np.arccos(np.clip((bones[1:] * bones[:-1]).sum(axis=2), -1, 1))) * 60
+    assert turned.max() < 1500, "it was up to 5,400 degrees per second"
+    assert np.percentile(turned, 95) < HAIR.fastest
+    raised = np.degrees(np.arccos(np.clip(-bones[..., 1], -1, 1)))
+    assert raised.max() < HAIR.highest + 10 and raised[:, 3].max() < 60
+    assert (raised.min(axis=1) < 50).all(), "never all of it out like a rod"
