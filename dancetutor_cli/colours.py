@@ -29,6 +29,19 @@ class LimbColours:
         return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
 
 
+@dataclass(frozen=True, slots=True)
+class PartnerColours:
+    """Which colours the second of two dancers wears in place of the first one's.
+
+    hues : degrees on the colour circle, from and to, that are clothes; turn : degrees by which they are others
+    least : share of grey that a colour may have and still count, 0..1
+    """
+
+    hues: tuple[float, float]
+    turn: float
+    least: float
+
+
 def hex_colour(rgb: RGB) -> str:
     """``(255, 138, 31)`` to ``"#ff8a1f"``."""
     return "#{:02x}{:02x}{:02x}".format(*rgb)
@@ -47,6 +60,20 @@ def read_limb_colours(path: Path) -> LimbColours:
 def limb_colours() -> LimbColours:
     """The colours of configs/colours.yaml."""
     return read_limb_colours(config_path("colours.yaml"))
+
+
+@cache
+def partner_colours() -> PartnerColours:
+    """What configs/colours.yaml says about the second of two dancers; FileError names what is wrong."""
+    path = config_path("colours.yaml")
+    said = read(path).data.get("partner")
+    try:
+        if not isinstance(said, dict):
+            raise TypeError
+        first, last = map(float, said["hues"])
+        return PartnerColours((first, last), float(said["turn"]), float(said["least"]))
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileError(path, "'partner' must give hues (two degrees), turn (degrees) and least (0 to 1)") from error
 
 
 def _rgb(path: Path, name: str, value: object) -> RGB:

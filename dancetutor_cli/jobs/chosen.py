@@ -22,8 +22,10 @@ class Chosen(NamedTuple):
     notes: tuple[str, ...]
 
 
-def chosen(path: Path, selection: Selection, preset: str | None, section: str | None) -> Chosen:
+def chosen(path: Path, selection: Selection, preset: str | None, section: str | None, *, both: bool = False) -> Chosen:
     """Read a file and choose one chart. A DancetutorError of one line for all that is wrong with the request.
+
+    both : of a chart for two, where nobody has chosen a player, the whole chart and not the first player's part
 
     preset : name or file, None: what `lint.presets` finds; section : looked at here so that a slip is told at once
     """
@@ -35,6 +37,8 @@ def chosen(path: Path, selection: Selection, preset: str | None, section: str | 
     choice = choice_for(path, preset)
     song = charts.load(path)
     chart = selection.one(song)
+    if both and selection.player is None and chart.written is not None:
+        chart = song.charts[chart.index]
     costs = preset_for(chart, path, choice)
     unfit = mismatch(costs, chart.steps_type)
     notes = [] if unfit is None else [f"{chart.label}: {unfit}"]

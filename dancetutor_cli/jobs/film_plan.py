@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dancetutor_cli.chart.tempo import fastest_bpm
-from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import Request, Subject
 from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.film import FilmPlan, turned
@@ -27,10 +27,11 @@ from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.jobs.danced import Danced
     from dancetutor_cli.motion.model import Motion
     from dancetutor_cli.pads import Pad
-    from dancetutor_cli.play.model import Play
     from dancetutor_cli.video.film_look import FilmLook
+    from dancetutor_cli.video.notes import Cue
 
 
 HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
@@ -48,24 +49,20 @@ class Prepared:
 def prepare(request: Request, subject: Subject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
     from dancetutor_cli.character import dressed
-    from dancetutor_cli.lint.solved import solved_chart
+    from dancetutor_cli.jobs.danced import danced
 
     song, chart, clock = subject.song, subject.chart, subject.clock
-    solved = solved_chart(song, chart, subject.preset)
-    play, pad = solved.play, solved.pad
-    if play is None or pad is None:
-        raise UsageError(f"{request.path}: no pad is known for steps type '{chart.steps_type}'")
-    if request.play is not None:
-        from dancetutor_cli.formats.play_json import read_play
-
-        play = read_play(request.play, chart, play.rows, pad)
+    dance = danced(request, subject)
+    solved, play, pad = dance.solved, dance.play, dance.pad
     scrolls = segments_of(song, chart)
     track = note_track(chart, play, scrolls)
     presses = presses_of(track)
     start, end = clock.passes[0].start, clock.passes[-1].end
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
-    character, motions = _fitted(dressed(request.character, request.gait), _motions(request, subject, play, pad))
+    who = dressed(request.character, request.gait)
+    character, motions = _fitted(who, dance.motions)
+    _, partners = _fitted(who, dance.partners)
     look = _seen(request.look, character, pad)
     plan = FilmPlan(
         look=look,
@@ -83,8 +80,11 @@ def prepare(request: Request, subject: Subject) -> Prepared:
         pad=pad,
         rows=step_rows(play),
         character=character,
-        callouts=() if request.background else callouts_of(replace(solved, play=play), _calls(look), scrolls),
-        cues=cues_of(play, chart.timing, subtitle_style().moves),
+        partners=partners,
+        callouts=()
+        if request.background or partners
+        else callouts_of(replace(solved[0], play=play), _calls(look), scrolls),
+        cues=tuple(_cues(dance)),
     )
     fade = 0.0 if request.section else 1.0
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
@@ -111,42 +111,26 @@ def _calls(look: FilmLook) -> CallStyle:
     return CallStyle(style.callouts, look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
 
 
-def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
-    """The dancer's motion at each rate of the film, on the clock that is heard there: she falls as fast as all do."""
-    if request.look.layout.dancer is None:
-        return {}
-    from dancetutor_cli.bake import bake
-    from dancetutor_cli.bake.rate import at_rate
-    from dancetutor_cli.bake.styled import styled
-    from dancetutor_cli.motion.settings import load_settings
-
-    settings = load_settings(request.motion)
-    passes = subject.clock.passes
-    return {
-        rate: styled(
-            bake(
-                subject.chart,
-                at_rate(play, rate),
-                pad,
-                fps=request.fps,
-                section=(passes[0].start / rate, passes[-1].end / rate),
-                rate=rate,
-                bar=request.bar,
-                gait=request.gait,
-                settings=settings,
-            ),
-            request.style,
-            settings,
-        ).motion
-        for rate in sorted({one.rate for one in passes})
-    }
+def _cues(dance: Danced) -> Iterator[Cue]:
+    """The moves for subtitles; of two who dance with the player's number."""
+    words = subtitle_style().moves
+    if len(dance.solved) == 1:
+        yield from cues_of(dance.play, dance.solved[0].chart.timing, words)
+        return
+    cues = [
+        replace(cue, text=f"P{one.chart.player}: {cue.text}")
+        for one in dance.solved
+        if one.play is not None
+        for cue in cues_of(one.play, one.chart.timing, words)
+    ]
+    yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
 
 
 def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
     return [note if rate == 1.0 else f"at rate {rate:g}, {note}" for note in notes]
 
 
-def _fitted(name: str, motions: dict[float, Motion]) -> tuple[Character | None, dict[float, Motion]]:
+def _fitted(name: str, motions: Mapping[float, Motion]) -> tuple[Character | None, Mapping[float, Motion]]:
     """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand."""
     from dancetutor_cli.character import DANCER, load_character
 

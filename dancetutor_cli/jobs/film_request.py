@@ -88,7 +88,7 @@ def look_up(request: Request) -> Subject:
 
         check_motion(request.motion, request.gait)
         check_style(request.style, request.bar)
-    song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section)
+    song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section, both=True)
     music, missing = (None, None) if request.mute else find_music(song, chart)
     instead = "the film ends after the last note" if request.background else "the film has claps on the steps instead"
     warnings = () if missing is None else (f"{missing}; {instead}",)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -46,6 +46,7 @@ class FilmPlan:
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
     character : who dances, the motion is for its skeleton; None for the project's own dancer
+    partners : of a chart for two the motions of the second one; empty for one
     speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
     motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
         the layout has no dancer; rows : the play's, for the next rows' pads
@@ -69,6 +70,7 @@ class FilmPlan:
     cues: tuple[Cue, ...] = ()
     speeds: NDArray[np.float64] | None = None
     character: Character | None = None
+    partners: Mapping[float, Motion] = field(default_factory=dict)
 
 
 def turned(look: FilmLook) -> bool:
@@ -191,7 +193,7 @@ class Film:
         shot = dancer.Shot(
             size, camera, look.quality, look.renderer, self.layout.dancer.region, stands=self.layout.screen is not None
         )
-        return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character)
+        return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character, plan.partners)
 
     @cached_property
     def _screen(self) -> Television | None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.partner import with_partner
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video.clock import Moment
@@ -18,7 +19,7 @@ from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import WHOLE, Region, with_pan_range
 from dancetutor_cli.video.scene.follow import Follow, is_wide
 from dancetutor_cli.video.scene.look import default_look
-from dancetutor_cli.video.scene.props import JOINT, bar_matrix, with_bar
+from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
 from dancetutor_cli.video.scene.stage import PANEL
 
@@ -52,6 +53,7 @@ class Dancer:
 
     motions : hers at each rate, in seconds of the music as it is heard at that rate
     character : who dances; None: the project's own dancer
+    partners : of a chart for two the second one's motions, likewise; empty: she dances alone
     """
 
     def __init__(
@@ -61,15 +63,18 @@ class Dancer:
         lights: PanelLights,
         shot: Shot,
         character: Character | None = None,
+        partners: Mapping[float, Motion] | None = None,
     ) -> None:
-        self.motions, self.lights = motions, lights
+        self.motions, self.partners, self.lights = motions, partners or {}, lights
         self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
         floor = -default_look().stage.pad_height
-        self.scene = Scene(with_bar(character or load_dancer(), self._bar, floor), pad)
+        self.alone = character or load_dancer()
+        seen = with_partner(self.alone) if self.partners else self.alone
+        self.scene = Scene(with_bar(seen, self._bar, floor), pad)
         self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
-        self._follow = {} if shot.stands else self._followers(shot.camera, shot.size, shot.region)
+        self._follow = {} if shot.stands or self.partners else self._followers(shot.camera, shot.size, shot.region)
         self.renderer = renderer.create(self.scene, shot.size, shot.quality, shot.kind)
-        skeleton = self.scene.character.skeleton
+        skeleton = self.alone.skeleton
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
         self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])
 
@@ -124,18 +129,23 @@ class Dancer:
 
         Joints go by name: a character's file may order them its own way.
         """
-        skeleton = self.scene.character.skeleton
+        parts = [self._joints_of(self.motions, moments)]
+        if self.partners:
+            parts.append(self._joints_of(self.partners, moments))
+        if self._bar is not None:
+            parts.append(np.broadcast_to(bar_matrix(self._bar), (len(moments), 1, 4, 4)))
+        return np.concatenate(parts, axis=1)
+
+    def _joints_of(self, motions: Mapping[float, Motion], moments: Sequence[Moment]) -> NDArray[np.float64]:
+        skeleton = self.alone.skeleton
         rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
         rotations[..., 0] = 1.0
         rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
         for one in np.unique(rate):
             here = np.flatnonzero(rate == one)
-            sampled, root[here] = sample(self.motions[float(one)], heard[here])
+            sampled, root[here] = sample(motions[float(one)], heard[here])
             rotations[here[:, None], self._ours] = sampled[:, self._theirs]
-        out = joint_matrices(skeleton, rotations, root)
-        if self._bar is not None:
-            out[:, skeleton.index(JOINT)] = bar_matrix(self._bar)
-        return out
+        return joint_matrices(skeleton, rotations, root)
 
     def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         levels = [self.lights.at(column, second) for column in range(self.scene.panels)]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.partner import PREFIX
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
 from dancetutor_cli.video.scene.scene import FrameState, Scene, foot_marks, hand_marks, light_direction, shadow_axes
@@ -82,15 +83,19 @@ def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> fl
 
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
     """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
-    strength of the mark 0..1), (4, 10). A hand that is not near the floor leaves nothing on it."""
+    strength of the mark 0..1), (4, 10). A hand that is not near the floor leaves nothing on it. Of two who dance the
+    feet of the second come in place of hands."""
     out = np.zeros((4, 10))
     out[:, 5] = NO_FOOT
     if state.joints is None:
         return out
     low = scene.look.light.contact_height
-    marks = (*foot_marks(scene, state.joints), *hand_marks(scene, state.joints))
-    for limb, (mark, colour) in enumerate(zip(marks, scene.colours.by_limb, strict=True)):
-        foot = limb < 2
+    colours = scene.colours.by_limb
+    partner = any(name.startswith(PREFIX) for name in scene.character.skeleton.names)
+    others = foot_marks(scene, state.joints, PREFIX) if partner else hand_marks(scene, state.joints)
+    colours = (*colours[:2], *colours[:2]) if partner else colours
+    for limb, (mark, colour) in enumerate(zip((*foot_marks(scene, state.joints), *others), colours, strict=True)):
+        foot = limb < 2 or partner
         if mark is not None and mark.height < (_MARK_HEIGHT if foot else low):
             near = max(0.0, 1.0 - mark.height / low)
             strength = scene.look.stage.mark * (_strength(near) if foot else near)

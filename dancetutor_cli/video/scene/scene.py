@@ -97,16 +97,20 @@ def check_state(scene: Scene, state: FrameState) -> None:
         raise UsageError("frame: the joints have places that are no place on Earth; bake the motion again")
 
 
-def foot_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:
-    """Where the left and the right foot are, for marks and contact shadows; None for a character without feet."""
+def foot_marks(scene: Scene, joints: Array, whose: str = "") -> tuple[FootMark | None, FootMark | None]:
+    """Where the left and the right foot are, for marks and contact shadows; None for a character without feet.
+
+    whose : before the names of the joints, `character.partner.PREFIX` for the second of two
+    """
     names = scene.character.skeleton.names
     rest = scene.character.skeleton.rest
     out: list[FootMark | None] = []
     for side in "lr":
-        if f"{side}_talocrural" not in names or f"{side}_metatarsal" not in names:
+        needed = f"{whose}{side}_talocrural", f"{whose}{side}_metatarsal"
+        if not set(needed) <= set(names):
             out.append(None)
             continue
-        ankle, ball = names.index(f"{side}_talocrural"), names.index(f"{side}_metatarsal")
+        ankle, ball = map(names.index, needed)
         heel, toe = (
             joints[j, :3, :3] @ np.array([dx, -rest[j, 1], dz]) + joints[j, :3, 3]
             for j, (dx, dz) in ((ankle, _HEEL), (ball, _TOE))

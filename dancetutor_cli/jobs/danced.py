@@ -1,0 +1,147 @@
+"""Who dances in a film, and how: the play that it shows, and the motions of the one or the two who dance it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.film_request import Request, Subject
+from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.rows import prepare
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.pads import Pad
+
+# The pad on which both stand: of a couple each has half of it.
+_WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
+
+
+@dataclass(frozen=True)
+class Danced:
+    """A chart as it is danced.
+
+    solved : each player's part, one for most charts; play : what the picture shows, of both; pad : under both
+    motions : at each rate, none where the picture has no dancer; partners : the second player's
+    """
+
+    solved: tuple[ChartSubject, ...]
+    play: Play
+    pad: Pad
+    motions: Mapping[float, Motion]
+    partners: Mapping[float, Motion] = field(default_factory=dict)
+
+
+def danced(request: Request, subject: Subject) -> Danced:
+    """Find the feet and bake the motions. UsageError for a steps type without a pad."""
+    chart = subject.chart
+    if len(chart.players) > 1:
+        return _by_two(request, subject)
+    chart = chart.players[0] if chart.players else chart
+    solved = solved_chart(subject.song, chart, subject.preset)
+    play, pad = _known(request, solved)
+    if request.play is not None:
+        from dancetutor_cli.formats.play_json import read_play
+
+        play = read_play(request.play, chart, play.rows, pad)
+    return Danced((solved,), play, pad, _motions(request, replace(subject, chart=chart), play, pad))
+
+
+def _by_two(request: Request, subject: Subject) -> Danced:
+    chart = subject.chart
+    if request.bar or request.play is not None:
+        option = "--bar" if request.bar else "--play"
+        raise UsageError(f"{option} is for one dancer, and {chart.label} is for two: choose with --player 1 or 2")
+    whole = load_pad(_WHOLE[chart.steps_type])
+    assert whole is not None
+    solved = tuple(solved_chart(subject.song, part, subject.preset) for part in chart.players)
+    plays, motions = [], []
+    for one in solved:
+        play, pad = _known(request, one)
+        plays.append(play)
+        baked = _motions(request, replace(subject, chart=one.chart), play, pad)
+        motions.append({rate: _moved(motion, one.chart, pad, whole) for rate, motion in baked.items()})
+    return Danced(solved, _together(chart, plays, whole), whole, motions[0], motions[1])
+
+
+def _known(request: Request, solved: ChartSubject) -> tuple[Play, Pad]:
+    if solved.play is None or solved.pad is None:
+        raise UsageError(f"{request.path}: no pad is known for steps type '{solved.chart.steps_type}'")
+    return solved.play, solved.pad
+
+
+def _moved(motion: Motion, part: Chart, pad: Pad, whole: Pad) -> Motion:
+    """A player's motion on the part of the pad that is this player's. Panels' x goes to her right, the world's to her
+    left."""
+    from dancetutor_cli.video.scene.stage import PANEL
+
+    away = whole.panels[part.first_column] - pad.panels[0] + np.array(pad.centre) - np.array(whole.centre)
+    shift = np.array([-away[0] * PANEL, 0.0, away[1] * PANEL])
+    return replace(motion, root=motion.root + shift)
+
+
+def _together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
+    """What both step as one play of the chart as it is written: who steps what, and what happens; no costs."""
+    rows = prepare(chart, whole)
+    limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
+    part = np.zeros(rows.steps.shape, dtype=np.uint8)
+    moves: list[set[str]] = [set() for _ in range(len(rows))]
+    for player, play in zip(chart.players, plays, strict=True):
+        here = np.minimum(np.searchsorted(rows.tick, play.rows.tick), len(rows) - 1)
+        at, column = np.nonzero((play.rows.steps > 0) & (rows.tick[here] == play.rows.tick)[:, None])
+        limb[here[at], column + player.first_column] = play.limb[at, column]
+        part[here[at], column + player.first_column] = play.part[at, column]
+        for row, names in zip(here.tolist(), play.moves, strict=True):
+            moves[row] |= set(names)
+    return Play(
+        rows=rows,
+        limb=limb,
+        part=part,
+        feet=np.full((len(rows), 2), -1, dtype=np.int16),
+        facing=np.zeros(len(rows)),
+        terms=(),
+        cost=np.zeros((len(rows), 0), dtype=np.int32),
+        margin=None,
+        moves=tuple(tuple(sorted(names)) for names in moves),
+        preset=plays[0].preset,
+    )
+
+
+def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
+    """The dancer's motion at each rate of the film, on the clock that is heard there: she falls as fast as all do."""
+    if request.look.layout.dancer is None:
+        return {}
+    from dancetutor_cli.bake import bake
+    from dancetutor_cli.bake.rate import at_rate
+    from dancetutor_cli.bake.styled import styled
+    from dancetutor_cli.motion.settings import load_settings
+
+    settings = load_settings(request.motion)
+    passes = subject.clock.passes
+    return {
+        rate: styled(
+            bake(
+                subject.chart,
+                at_rate(play, rate),
+                pad,
+                fps=request.fps,
+                section=(passes[0].start / rate, passes[-1].end / rate),
+                rate=rate,
+                bar=request.bar,
+                gait=request.gait,
+                settings=settings,
+            ),
+            request.style,
+            settings,
+        ).motion
+        for rate in sorted({one.rate for one in passes})
+    }

@@ -1,0 +1,120 @@
+"""Films of charts for two: both dance, each on the panels that the notes are on, in clothes of two colours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.partner import PREFIX, turned, with_partner
+from dancetutor_cli.colours import partner_colours
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs.danced import Danced, danced
+from dancetutor_cli.jobs.film_plan import prepare
+from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.video.clock import Moment
+from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.scene.prepare import feet_on_floor
+from dancetutor_cli.video.scene.scene import FrameState
+from dancetutor_cli.video.scene.stage import PANEL
+
+HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"
+COUPLE = "10000001\n01000010\n00010100\n00101000\n"
+ROUTINE = "10000000\n01000000\n00010000\n00100000\n&\n00001000\n00000001\n00001000\n00000010\n"
+CHARTS = {"dance-couple": COUPLE, "dance-routine": ROUTINE}
+
+
+def request_for(folder: Path, kind: str, **more: object) -> Request:
+    path = folder / "two.sm"
+    path.write_text(HEAD + f"#NOTES:{kind}::Hard:9::\n{CHARTS[kind]};\n")
+    look = FilmLook(load_layout("side-by-side"), (320, 180), quality="draft", renderer="cpu")
+    return Request(path, Selection(), look, fps=10, section="0:1.6", mute=True, **more)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module", params=list(CHARTS))
+def dance(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Danced:
+    wanted = request_for(tmp_path_factory.mktemp("two"), request.param)
+    return danced(wanted, look_up(wanted))
+
+
+def test_each_foot_stands_on_the_panel_of_its_note(dance: Danced) -> None:
+    """On the pad of both: a contact's panel, moved as the body is, is where the picture has the note's panel."""
+    whole = dance.pad
+    for one, motions in zip(dance.solved, (dance.motions, dance.partners), strict=True):
+        motion, chart, pad = motions[1.0], one.chart, one.pad
+        assert pad is not None and len(motion.contacts) >= 4
+        own = [(np.array(pad.centre) - pad.panels[c.column])[0] * PANEL for c in motion.contacts]
+        assert np.allclose([c.panel[0] for c in motion.contacts], own, atol=1e-9)  # where its own pad alone has them
+        middle = (np.array(whole.centre) - whole.panels[chart.first_column + motion.contacts[0].column])[0] * PANEL
+        shift = middle - motion.contacts[0].panel[0]
+        for contact in motion.contacts:
+            place = (np.array(whole.centre) - whole.panels[chart.first_column + contact.column])[0] * PANEL
+            assert contact.panel[0] + shift == pytest.approx(place)
+        end = float(motion.root[-1, 0])
+        sides = [
+            (np.array(whole.centre) - whole.panels[chart.first_column + c.column])[0] * PANEL for c in motion.contacts
+        ]
+        assert min(sides) - PANEL < end < max(sides) + PANEL  # she is where her panels are
+
+
+def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: Danced) -> None:
+    for one in dance.solved:
+        assert one.play is not None
+        for row, column in zip(*np.nonzero(one.play.rows.steps), strict=True):
+            tick = one.play.rows.tick[row]
+            there = int(np.flatnonzero(dance.play.rows.tick == tick)[0])
+            assert dance.play.limb[there, column + one.chart.first_column] == one.play.limb[row, column]
+    steps = sum(int((one.play.rows.steps > 0).sum()) for one in dance.solved if one.play is not None)
+    assert int((dance.play.limb >= 0).sum()) == steps
+
+
+def test_two_are_drawn_and_each_has_rings_under_her_feet(tmp_path: Path) -> None:
+    wanted = request_for(tmp_path, "dance-couple")
+    plan = prepare(wanted, look_up(wanted)).plan
+    assert plan.callouts == () and len(plan.directions) == 8
+    two = Film(plan)
+    both = two.frame(8).copy()
+    joints = two._dancer.joints([Moment(0.8)])[0]
+    assert len(joints) == 2 * len(load_dancer().skeleton.names)
+    gap = joints[0, 0, 3] - joints[len(joints) // 2, 0, 3]
+    assert gap == pytest.approx(3 * PANEL, abs=1.5 * PANEL)  # the first stands to the left of who looks on
+    nobody = np.zeros(8)
+    marks = feet_on_floor(two._dancer.scene, FrameState(joints, two._dancer.camera, nobody, nobody.astype(np.int64)))
+    places = marks[marks[:, 9] > 0][:, 0]
+    assert len(places) >= 3 and places.max() - places.min() > 2 * PANEL
+    assert both.std() > 10
+    green = (both[..., 1].astype(int) > both[..., 2].astype(int) + 25) & (both[..., 1] > both[..., 0])
+    assert green.sum() > 30  # the second one's clothes
+
+
+def test_clothes_change_and_skin_hair_and_white_do_not() -> None:
+    one, two = load_dancer(), with_partner(load_dancer())
+    count = len(one.skeleton.names)
+    assert two.skeleton.names[count:] == tuple(PREFIX + name for name in one.skeleton.names)
+    assert np.allclose(two.skeleton.rest[count:], one.skeleton.rest)
+    assert [mesh.joints.min() >= count for mesh in two.meshes] == [False] * len(one.meshes) + [True] * len(one.meshes)
+    colours = np.array(
+        [[[90, 80, 200], [232, 190, 160], [200, 40, 110], [255, 255, 255], [60, 60, 64]]], dtype=np.uint8
+    )
+    new = turned(colours, partner_colours())
+    assert new[0, 0, 1] > new[0, 0, 2] and (new[0, 1:] == colours[0, 1:]).all()
+    assert two.meshes[len(one.meshes)].material.texture is not one.meshes[0].material.texture
+
+
+@pytest.mark.parametrize("option", [{"bar": True}, {"play": Path("x.json")}])
+def test_what_is_for_one_dancer_is_told(tmp_path: Path, option: dict[str, object]) -> None:
+    wanted = request_for(tmp_path, "dance-couple", **option)
+    with pytest.raises(UsageError, match="for two: choose with --player 1 or 2"):
+        danced(wanted, look_up(wanted))
+
+
+def test_one_of_them_is_filmed_alone(tmp_path: Path) -> None:
+    wanted = request_for(tmp_path, "dance-couple")
+    wanted = Request(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
+    dance = danced(wanted, look_up(wanted))
+    assert len(dance.solved) == 1 and dance.partners == {} and dance.pad.steps_type == "dance-single"
