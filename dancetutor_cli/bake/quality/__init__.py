@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.capsules import capsule_figures
 from dancetutor_cli.bake.quality.contact import contact_figures
+from dancetutor_cli.bake.quality.dynamics import dynamics_figures
 from dancetutor_cli.bake.quality.figures import Figure, Report
 from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.grips_kept import bar_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
 from dancetutor_cli.bake.quality.posture import posture_figures
+from dancetutor_cli.bake.quality.published import published_figures
 from dancetutor_cli.bake.quality.resampled import Body, body_of
 from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
@@ -56,6 +58,8 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
         *flight_figures(body),
         *smoothness,
         *balance_figures(body, motion.bar is not None),
+        *dynamics_figures(motion, body),
+        *published_figures(motion, body),
         *shape,
         *limbs,
         *posture_figures(body, motion.skeleton, motion.contacts),
