@@ -13,6 +13,7 @@ import click
 from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
+    form_option,
     gait_option,
     motion_option,
     number,
@@ -50,6 +51,7 @@ class Wanted:
     play_file: Path | None
     bar: bool
     gait: str
+    form: str
     motion: Path | None
     jobs: int
     style: str | None
@@ -101,6 +103,7 @@ class Result:
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @gait_option
+@form_option
 @motion_option
 @style_option
 @push_options

@@ -14,6 +14,7 @@ from dancetutor_cli.library.selection import Selection
 __all__ = [
     "Selection",
     "character_option",
+    "form_option",
     "gait_option",
     "motion_option",
     "number",
@@ -102,6 +103,20 @@ def gait_option(command: _Command) -> _Command:
         show_default=True,
         metavar="NAME|FILE",
         help="How she walks on and off: flat, heels, or a file as those in configs/gaits.",
+    )
+    return option(command)
+
+
+def form_option(command: _Command) -> _Command:
+    """Add --form; the function gets keyword argument `form`, to be given to `motion.settings.load_settings`."""
+    option = click.option(
+        "--form",
+        shell_complete=named(folder("forms")),
+        default="usual",
+        show_default=True,
+        metavar="NAME|FILE",
+        help="How she stands and turns: usual, middle, edge, heels-in, heels-out, screen, turning, or a file as those "
+        "in configs/forms.",
     )
     return option(command)
 

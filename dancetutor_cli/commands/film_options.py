@@ -12,6 +12,7 @@ import click
 from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
+    form_option,
     gait_option,
     motion_option,
     number,
@@ -60,6 +61,7 @@ _OPTIONS = (
     character_option,
     click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
     gait_option,
+    form_option,
     motion_option,
     style_option,
     click.option(
@@ -176,6 +178,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
         character=check_character(options["character"]),
         bar=options["bar"],
         gait=options["gait"],
+        form=options["form"],
         motion=options["motion"],
         style=options["style"],
         background=background,

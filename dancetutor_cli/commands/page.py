@@ -13,6 +13,7 @@ import click
 from dancetutor_cli.commands.chart_options import (
     Selection,
     character_option,
+    form_option,
     gait_option,
     motion_option,
     preset_option,
@@ -39,6 +40,7 @@ class PageWish:
     play_file: Path | None
     bar: bool
     gait: str
+    form: str
     motion: Path | None
     jobs: int
     quiet: bool
@@ -64,6 +66,7 @@ class PageWish:
     help="A second dancer beside her: the next best play, another preset's, or one of a JSON file.",
 )
 @gait_option
+@form_option
 @motion_option
 @click.option(
     "--jobs",
@@ -94,7 +97,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     bake = BakeTask(
         file, selection, wish.preset, play_file=wish.play_file, bar=wish.bar, gait=wish.gait, motion=wish.motion,
-        jobs=wish.jobs,
+        jobs=wish.jobs, form=wish.form,
     )  # fmt: skip
     task = PageTask(bake, wish.character, wish.music, wish.beside)
     if not wish.quiet:

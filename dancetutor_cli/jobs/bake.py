@@ -13,6 +13,7 @@ from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.jobs.chosen import chosen
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.part import part_of
+from dancetutor_cli.motion.forms import USUAL
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake.pieces import BakedPiece, Piece
@@ -38,6 +39,7 @@ class BakeTask:
     section : as the user wrote it, or None; rate : speed of the music, 1 is its own
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
+    form : name or file of how she stands and turns
     jobs : processes among which the pieces of a long song are shared
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
     push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds; only with a style
@@ -54,6 +56,7 @@ class BakeTask:
     gait: str = "flat"
     jobs: int = 1
     motion: Path | None = None
+    form: str = USUAL
     style: str | None = None
     push: tuple[str, ...] = ()
     trip: tuple[float, ...] = ()
@@ -78,7 +81,7 @@ def ask(task: BakeTask) -> Asked:
     """Read and solve. Raises a DancetutorError of one line for all that is wrong with the request."""
     from dancetutor_cli.bake.rate import at_rate
 
-    check_motion(task.motion, task.gait)
+    check_motion(task.motion, task.gait, task.form)
     check_style(task.style, task.bar)
     wishes_of(task.push, task.trip)
     song, chart, preset, notes = chosen(task.path, task.selection, task.preset, task.section)
@@ -92,12 +95,12 @@ def ask(task: BakeTask) -> Asked:
     return Asked(song, chart, at_rate(play, task.rate), pad, section, notes)
 
 
-def check_motion(motion: Path | None, gait: str) -> None:
-    """Say what is wrong with a file of motion or with a gait: FileError or UsageError, before the work."""
+def check_motion(motion: Path | None, gait: str, form: str = USUAL) -> None:
+    """Say what is wrong with a file of motion, a gait or a form: FileError or UsageError, before the work."""
     from dancetutor_cli.motion.gait import load_gait
     from dancetutor_cli.motion.settings import load_settings
 
-    load_settings(motion)
+    load_settings(motion, form)
     load_gait(gait)
 
 
@@ -138,7 +141,7 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
         rate=task.rate,
         bar=task.bar,
         gait=task.gait,
-        settings=load_settings(task.motion),
+        settings=load_settings(task.motion, task.form),
         each=partial(_shared, task.jobs),
     )
 
@@ -175,7 +178,7 @@ def plan_asked(asked: Asked, task: BakeTask) -> tuple[Plan, Bar | None]:
     from dancetutor_cli.bake import planned
     from dancetutor_cli.motion.settings import load_settings
 
-    how = {"settings": load_settings(task.motion), "rate": task.rate, "bar": task.bar, "gait": task.gait}
+    how = {"settings": load_settings(task.motion, task.form), "rate": task.rate, "bar": task.bar, "gait": task.gait}
     plan, context = planned(asked.chart, asked.play, asked.pad, **how)  # type: ignore[arg-type]
     return plan, context.bar
 
@@ -229,7 +232,8 @@ class Dance:
         from dancetutor_cli.motion.settings import load_settings
 
         befalls = wishes_of(self.task.push, self.task.trip)
-        return styled(bake_asked(self.asked, self.task), self.task.style, load_settings(self.task.motion), befalls)
+        settings = load_settings(self.task.motion, self.task.form)
+        return styled(bake_asked(self.asked, self.task), self.task.style, settings, befalls)
 
     @property
     def own_motion(self) -> Motion:

@@ -125,7 +125,7 @@ def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[f
     from dancetutor_cli.bake.styled import styled
     from dancetutor_cli.motion.settings import load_settings
 
-    settings = load_settings(request.motion)
+    settings = load_settings(request.motion, request.form)
     passes = subject.clock.passes
     return {
         rate: styled(

@@ -31,6 +31,7 @@ def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
         "preset": _plain(subject.preset),  # whoever chose it, with all that it extends
         "character": _character(request.character),
         "gait": _gait(request.gait),
+        "form": _form(request.form),
         "style": _style(request.style),
         "feet": feet_fingerprint(request.path),
         "findings": _findings(request.path),
@@ -66,6 +67,13 @@ def _gait(name: str) -> str:
     from dancetutor_cli.motion.gait import gait_names
 
     return name if name in gait_names() else file_hash(Path(name))
+
+
+def _form(name: str) -> str:
+    """The content of a form's file; those by name are part of the program."""
+    from dancetutor_cli.motion.forms import form_names
+
+    return name if name in form_names() else file_hash(Path(name))
 
 
 def _style(name: str | None) -> str | None:

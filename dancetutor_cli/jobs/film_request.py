@@ -13,6 +13,7 @@ from dancetutor_cli.jobs.chosen import chosen
 from dancetutor_cli.library.music import find_music
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.part import part_of
+from dancetutor_cli.motion.forms import USUAL
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.practice import Practice, passes_of, whole_song
@@ -32,6 +33,7 @@ class Request:
     play : a JSON file of analyze whose feet hold instead of the solver's
     character : a name of `character.BUILT_IN`, or a .glb or .vrm file
     bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
+    form : name or file of how she stands and turns
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
     background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
@@ -52,6 +54,7 @@ class Request:
     bar: bool = False
     gait: str = "flat"
     motion: Path | None = None
+    form: str = USUAL
     style: str | None = None
     background: bool = False
 
@@ -86,7 +89,7 @@ def look_up(request: Request) -> Subject:
     if request.look.layout.dancer is not None:
         from dancetutor_cli.jobs.bake import check_motion, check_style
 
-        check_motion(request.motion, request.gait)
+        check_motion(request.motion, request.gait, request.form)
         check_style(request.style, request.bar)
     song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section, both=True)
     music, missing = (None, None) if request.mute else find_music(song, chart)

@@ -16,6 +16,7 @@ class StepSettings:
     height_fast: float
     fast: float
     jack_height: float
+    edge: float
     edge_margin: float
     on_the_way: float
     lift_pitch: float

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from dancetutor_cli.marked_yaml import MarkedYaml, read
+from dancetutor_cli.motion.forms import USUAL, form_file
 from dancetutor_cli.motion.sections import (
     ArmSettings,
     AsideSettings,
@@ -82,14 +83,18 @@ _SECTIONS: dict[str, type[Any]] = get_type_hints(MotionSettings)
 LARGEST = 1000
 
 
-def load_settings(path: Path | None = None) -> MotionSettings:
-    """The numbers of `configs/motion.yaml`, with those on top that another file names.
+def load_settings(path: Path | None = None, form: str = USUAL) -> MotionSettings:
+    """The numbers of `configs/motion.yaml`, with those on top that a form names, and those that another file names.
 
-    Raises FileError naming the file, the line and the names that exist.
+    Raises FileError naming the file, the line and the names that exist, UsageError for a form that there is not.
     """
     base = default_settings()
-    if path is None:
-        return base
+    if form != USUAL:
+        base = _changed(base, form_file(form))
+    return base if path is None else _changed(base, path)
+
+
+def _changed(base: MotionSettings, path: Path) -> MotionSettings:
     source = read(path)
     source.only((), list(_SECTIONS))
     changed = {name: numbers(source, name, type(getattr(base, name)), getattr(base, name)) for name in source.data}

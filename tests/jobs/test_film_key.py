@@ -94,6 +94,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "motion": [folder / "motion.yaml"],
         "style": ["neutral", str(folder / "sway.yaml")],
         "background": [True],
+        "form": ["edge", str(folder / "strut.yaml")],
     }
 
 

@@ -74,7 +74,8 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
         return _bracket(footing, foot, goal)
     panels, following = footing.context.panels, goal.following
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0])
-    ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, goal.cut, step.edge_margin)
+    cut = max(goal.cut, step.edge)
+    ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
     ball = ball + step.on_the_way * goal.cut * (np.clip(way, panel - room, panel + room) - ball)

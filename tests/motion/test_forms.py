@@ -1,0 +1,111 @@
+"""--form: where feet land, how they are turned and how far the body turns; the notes are met all the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.bake.quality import report
+from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.marked_yaml import read
+from dancetutor_cli.motion.forms import USUAL, form_names
+from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.settings import default_settings, load_settings
+from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.resources import charts_path, config_path
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+
+DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+FORMS = ("usual", "middle", "edge", "heels-in", "heels-out", "screen", "turning")
+
+
+def danced(form: str) -> Motion:
+    task = BakeTask(DEMO, Selection(index=3), section="16:21.3", form=form)
+    return bake_asked(ask(task), task)
+
+
+@pytest.fixture(scope="module")
+def motions() -> dict[str, Motion]:
+    return {form: danced(form) for form in FORMS}
+
+
+def feet(motion: Motion) -> tuple[float, float]:
+    """Of feet that land alone: mean distance of the ball from the panel's middle, metres; mean toe-out, degrees."""
+    presses = [c for c in motion.contacts if c.limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT) and c.part == Part.WHOLE]
+    rotations, root = sample(motion, np.array([press.start + 0.002 for press in presses]))
+    places, world = world_transforms(motion.skeleton, rotations, root)
+    away, out = [], []
+    for k, press in enumerate(presses):
+        side = "lr"[press.limb]
+        ankle, ball = (places[k, motion.skeleton.index(f"{side}_{name}")] for name in ("talocrural", "metatarsal"))
+        away.append(np.hypot(*(ball[[0, 2]] - press.panel)))
+        front = quat.to_matrix(world[k, :1])[0, :, 2]
+        along = ball - ankle
+        turned = np.degrees(np.arctan2(along[0], along[2]) - np.arctan2(front[0], front[2]))
+        out.append(((turned + 180) % 360 - 180) * (1 if press.limb == Limb.LEFT_FOOT else -1))
+    return float(np.mean(away)), float(np.mean(out))
+
+
+def body_turn(motion: Motion) -> float:
+    """How far the pelvis is turned from the screen, degrees, in the mean."""
+    front = quat.to_matrix(motion.rotations[:, 0])[:, :, 2]
+    return float(np.degrees(np.abs(np.arctan2(front[:, 0], front[:, 2]))).mean())
+
+
+def test_the_forms_are_these_and_each_changes_something() -> None:
+    assert set(form_names()) == set(FORMS)
+    usual = default_settings()
+    assert all((load_settings(None, form) == usual) == (form == USUAL) for form in FORMS)
+
+
+def test_usual_says_what_motion_yaml_says() -> None:
+    said, whole = read(config_path("forms/usual.yaml")).data, read(config_path("motion.yaml")).data
+    assert all(whole[section][name] == value for section, numbers in said.items() for name, value in numbers.items())
+    changed = {
+        (section, name)
+        for form in FORMS
+        for section, numbers in read(config_path(f"forms/{form}.yaml")).data.items()
+        for name in numbers
+    }
+    assert changed == {(section, name) for section, numbers in said.items() for name in numbers}
+
+
+def test_toes_land_on_the_middle_or_the_edge(motions: dict[str, Motion]) -> None:
+    middle, usual, edge = (feet(motions[form])[0] for form in ("middle", "usual", "edge"))
+    assert middle < usual - 0.01 and usual < edge - 0.01
+
+
+def test_heels_are_in_or_out(motions: dict[str, Motion]) -> None:
+    out = {form: feet(motions[form])[1] for form in ("heels-out", "usual", "heels-in")}
+    assert out["heels-out"] < out["usual"] - 5 and out["usual"] < out["heels-in"] - 8
+
+
+def test_she_faces_the_screen_or_turns(motions: dict[str, Motion]) -> None:
+    screen, usual, turning = (body_turn(motions[form]) for form in ("screen", "usual", "turning"))
+    assert screen < usual - 1 and usual < turning - 1
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_note_is_met_whatever_the_form(motions: dict[str, Motion], form: str) -> None:
+    measured = report(motions[form])
+    assert all(measured[name].met for name in ("contact error", "contacts missed", "plant slide"))
+
+
+def test_a_form_of_ones_own_and_motion_on_top(tmp_path: Path) -> None:
+    mine, numbers = tmp_path / "mine.yaml", tmp_path / "numbers.yaml"
+    mine.write_text("step: {toe_out: 15, edge: 0.5}\n")
+    numbers.write_text("step: {toe_out: 3}\n")
+    assert load_settings(None, str(mine)).step.toe_out == 15
+    both = load_settings(numbers, str(mine)).step
+    assert (both.toe_out, both.edge) == (3, 0.5)
+    with pytest.raises(UsageError, match=r"no form 'edgy' \(did you mean edge\?\); there are: edge, heels-in"):
+        load_settings(None, "edgy")
+    mine.write_text("step: {toes: 15}\n")
+    with pytest.raises(FileError, match=":1: unknown key 'toes' in 'step'"):
+        load_settings(None, str(mine))
