@@ -34,12 +34,14 @@ class PartnerColours:
     """Which colours the second of two dancers wears in place of the first one's.
 
     hues : degrees on the colour circle, from and to, that are clothes; turn : degrees by which they are others
-    least : share of grey that a colour may have and still count, 0..1
+    least : share of colour that one must have to count, 0..1
+    tint : sRGB that a character without such colours is tinted with
     """
 
     hues: tuple[float, float]
     turn: float
     least: float
+    tint: RGB
 
 
 def hex_colour(rgb: RGB) -> str:
@@ -53,7 +55,7 @@ def read_limb_colours(path: Path) -> LimbColours:
     names = [field.name for field in fields(LimbColours)]
     if not isinstance(limbs, dict) or sorted(map(str, limbs)) != sorted(names):
         raise FileError(path, f"'limbs' must give a colour for each of: {', '.join(names)}")
-    return LimbColours(*(_rgb(path, name, limbs[name]) for name in names))
+    return LimbColours(*(_rgb(path, f"limbs.{name}", limbs[name]) for name in names))
 
 
 @cache
@@ -71,12 +73,14 @@ def partner_colours() -> PartnerColours:
         if not isinstance(said, dict):
             raise TypeError
         first, last = map(float, said["hues"])
-        return PartnerColours((first, last), float(said["turn"]), float(said["least"]))
+        return PartnerColours(
+            (first, last), float(said["turn"]), float(said["least"]), _rgb(path, "tint", said["tint"])
+        )
     except (KeyError, TypeError, ValueError) as error:
-        raise FileError(path, "'partner' must give hues (two degrees), turn (degrees) and least (0 to 1)") from error
+        raise FileError(path, "'partner' must give hues (two degrees), turn (degrees), least (0 to 1), tint") from error
 
 
 def _rgb(path: Path, name: str, value: object) -> RGB:
     if not isinstance(value, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
-        raise FileError(path, f'limbs.{name}: {value!r} is not a colour; write it as "#rrggbb"')
+        raise FileError(path, f'{name}: {value!r} is not a colour; write it as "#rrggbb"')
     return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character, Mesh
-from dancetutor_cli.colours import PartnerColours, partner_colours
+from dancetutor_cli.colours import LimbColours, PartnerColours, partner_colours
 
+_LIMBS = {field.name for field in fields(LimbColours)}
+_SEEN = 0.01  # part of the textures that has to change for two to be told apart
 PREFIX = "partner_"  # of the names of the second one's joints: who asks for a joint by name gets the first one's
 
 
@@ -28,8 +31,8 @@ def with_partner(character: Character) -> Character:
         parents=np.concatenate((one.parents, parents)),
         offsets=np.vstack((one.offsets, offsets)),
     )
-    painted: dict[int, NDArray[np.uint8]] = {}  # meshes share textures, and do so after it
-    others = tuple(_other(mesh, count, painted) for mesh in character.meshes)
+    paint = _Paint.of(character, partner_colours())
+    others = tuple(_other(mesh, count, paint) for mesh in character.meshes)
     return replace(
         character,
         name=f"two of {character.name}",
@@ -39,13 +42,29 @@ def with_partner(character: Character) -> Character:
     )
 
 
-def _other(mesh: Mesh, count: int, painted: dict[int, NDArray[np.uint8]]) -> Mesh:
-    colours, material = partner_colours(), mesh.material
-    texture = material.texture
-    if texture is not None:
-        if id(texture) not in painted:
-            painted[id(texture)] = np.dstack((turned(texture[..., :3], colours), texture[..., 3]))
-        texture = painted[id(texture)]
+@dataclass(frozen=True, slots=True)
+class _Paint:
+    """The second one's textures, by the `id` of the first one's (meshes share them); tint : where no hue is turned"""
+
+    textures: Mapping[int, NDArray[np.uint8]]
+    tint: tuple[float, float, float]
+
+    @staticmethod
+    def of(character: Character, colours: PartnerColours) -> _Paint:
+        textures = {id(t): t for mesh in character.meshes if (t := mesh.material.texture) is not None}
+        painted = {key: np.dstack((turned(t[..., :3], colours), t[..., 3])) for key, t in textures.items()}
+        differs = sum(int((painted[key] != t).any(axis=2).sum()) for key, t in textures.items())
+        plain = differs < _SEEN * sum(t.shape[0] * t.shape[1] for t in textures.values()) or not textures
+        r, g, b = (level / 255 for level in colours.tint)
+        return _Paint(painted, (r, g, b) if plain else (1.0, 1.0, 1.0))
+
+
+def _other(mesh: Mesh, count: int, paint: _Paint) -> Mesh:
+    material = mesh.material
+    texture = None if material.texture is None else paint.textures[id(material.texture)]
+    if material.name not in _LIMBS:  # shoes and wristbands say whose limb it is
+        r, g, b, alpha = material.base_color
+        material = replace(material, base_color=(r * paint.tint[0], g * paint.tint[1], b * paint.tint[2], alpha))
     return replace(
         mesh,
         name=PREFIX + mesh.name,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.partner import PREFIX, turned, with_partner
 from dancetutor_cli.colours import partner_colours
 from dancetutor_cli.errors import UsageError
@@ -104,6 +104,17 @@ def test_clothes_change_and_skin_hair_and_white_do_not() -> None:
     new = turned(colours, partner_colours())
     assert new[0, 0, 1] > new[0, 0, 2] and (new[0, 1:] == colours[0, 1:]).all()
     assert two.meshes[len(one.meshes)].material.texture is not one.meshes[0].material.texture
+
+
+def test_who_has_no_such_colours_is_tinted() -> None:
+    one = load_character("mannequin")
+    two = with_partner(one)
+    for mine, others in zip(one.meshes, two.meshes[len(one.meshes) :], strict=True):
+        limb = mine.material.name in ("left_foot", "right_foot", "left_hand", "right_hand")
+        assert (mine.material.base_color == others.material.base_color) == limb
+    assert [m.material.base_color for m in with_partner(load_dancer()).meshes[8:]] == [
+        m.material.base_color for m in load_dancer().meshes
+    ]
 
 
 @pytest.mark.parametrize("option", [{"bar": True}, {"play": Path("x.json")}])
