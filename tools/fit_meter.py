@@ -24,7 +24,7 @@ from meter_data import Labelled, labelled, sorted_out
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from dancetutor_cli.meter.estimate import _TAGS, Sized, meters_on, on_scale, scales_of
+from dancetutor_cli.meter.estimate import _TAGS, Sized, on_scale, scales_of, sized
 from dancetutor_cli.meter.features import Feature
 from dancetutor_cli.meter.model import Curve, Model, Scale, model_of
 from dancetutor_cli.resources import config_path
@@ -39,20 +39,13 @@ COVERED = 0.8
 BANDS = (3.0, 6.0, 9.0, 12.0, 15.0)
 FEWEST_IN_BAND = 25
 TERMS: Mapping[str, Sequence[Feature]] = {
-    "speed": (Feature("steps", 20, "mean"), Feature("steps", 60, "peak")),
+    "speed": (Feature("steps", 10, "mean"),),
     "bursts": (Feature("steps", 1, "peak"),),
-    "streams": (Feature("steps", 5, "peak"), Feature("stream rows", 10, "mean")),
-    "stamina": (Feature("stream rows", 60, "peak"), Feature("steps", 0, "count")),
-    "jumps": (Feature("jumps", 10, "mean"), Feature("jumps", 10, "peak")),
-    "crossovers": (Feature("crossovers", 10, "mean"), Feature("crossovers", 10, "peak")),
-    "turns": (Feature("turns", 10, "mean"),),
-    "spins": (Feature("spins", 10, "peak"),),
-    "footswitches": (Feature("footswitches", 10, "mean"), Feature("footswitches", 10, "peak")),
-    "brackets": (Feature("brackets", 10, "mean"), Feature("brackets", 10, "peak")),
-    "doublesteps": (Feature("doublesteps", 10, "mean"),),
-    "jacks": (Feature("jacks", 10, "mean"), Feature("jacks", 10, "peak")),
-    "hands": (Feature("hands", 10, "mean"),),
-    "holds": (Feature("held", 10, "mean"), Feature("held", 10, "peak")),
+    "streams": (Feature("steps", 5, "peak"), Feature("steps", 10, "peak"), Feature("stream rows", 10, "mean")),
+    "stamina": (Feature("steps", 0, "count"),),
+    **{thing: (Feature(thing, 10, "mean"),) for thing in ("jumps", "crossovers", "turns", "spins", "footswitches")},
+    **{thing: (Feature(thing, 10, "mean"),) for thing in ("brackets", "doublesteps", "jacks", "hands")},
+    "holds": (Feature("held", 10, "mean"),),
 }
 WANTED = tuple(dict.fromkeys(feature for of in TERMS.values() for feature in of))
 QUANTILES = {"steps": (0.1, 0.25, 0.4, 0.6, 0.8, 0.95)}  # where curves bend; others at half and most of what is not 0
@@ -195,11 +188,6 @@ class Judged:
         return self.estimate - self.chart.meter
 
 
-def sized(model: Model, one: Labelled) -> Sized:
-    """A chart on all scales of a model."""
-    return Sized(model, one.meter, one.difficulty, meters_on(model, one.values), one.values, one.values)
-
-
 def folds_of(charts: Sequence[Labelled]) -> NDArray[np.int64]:
     """The fold of each chart: all of a family in one."""
     families = sorted({one.family for one in charts})
@@ -215,7 +203,7 @@ def judged(charts: Sequence[Labelled], names: Sequence[str]) -> list[Judged]:
         files: dict[str, list[tuple[Labelled, Sized]]] = defaultdict(list)
         for one, of in zip(charts, folds, strict=True):
             if of == fold:
-                files[one.file].append((one, sized(model, one)))
+                files[one.file].append((one, sized(model, one.values, (one.meter, one.difficulty))))
         for rows in files.values():
             found = scales_of([this for _, this in rows], rows[0][0].tag)
             for (one, this), (scale, known) in zip(rows, found, strict=True):

@@ -57,7 +57,7 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
             continue
         for subject in solved(song, song.charts, run.task(path)):
             play, chart = subject.play, subject.chart
-            if play is None or not subject.row_count:
+            if play is None or not subject.row_count or chart.player:  # a couple's meter is for both players
                 continue
             key = (chart.steps_type, chart.meter, play.rows.steps.tobytes(), play.rows.second.round(2).tobytes())
             if key in seen:

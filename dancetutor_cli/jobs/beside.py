@@ -141,7 +141,7 @@ def beside(tasks: Iterable[Task], theirs: Mapping[Key, Mapping[str, int]]) -> Be
             continue
         for subject in solved(song, task.selection.charts(song), task):
             chart, play = subject.chart, subject.play
-            if play is None:
+            if play is None or chart.player:  # of a couple the game counts both players' steps together
                 continue
             mine = _key(task.path.absolute().as_posix(), chart.steps_type, chart.difficulty, chart.description)
             near = by_chart[mine.song, mine.steps_type, mine.difficulty]

@@ -53,20 +53,19 @@ class Meters:
         for of_pad in self._sized.values():
             one_pad = [sized for _, sized in of_pad]
             scales = scales_of(one_pad, self._song.tags.get("METERTYPE", ""), scale)
-            at_rate_1 = [
-                self._played(index, on_scale(sized, found, True, faster=False) if known else None)
-                for (index, sized), (found, known) in zip(of_pad, scales, strict=True)
+            usual = [
+                on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
             ]
-            charts = [one for one in at_rate_1 if one is not None]
-            for (index, sized), (found, known), here in zip(of_pad, scales, at_rate_1, strict=True):
-                findings = () if here is None else self._findings(here, charts)
-                out[index] = Told(on_scale(sized, found, known), findings)
+            here = [self._played(index, estimate) for (index, _), estimate in zip(of_pad, usual, strict=True)]
+            sure = [one for one in here if one.estimate.known]  # nothing is said where the scale is a guess
+            for (index, one), played in zip(of_pad, here, strict=True):
+                at_1 = played.estimate
+                estimate = at_1 if one.rate == 1.0 else on_scale(one, at_1.scale, at_1.known)
+                out[index] = Told(estimate, self._findings(played, sure) if at_1.known else ())
         return out
 
-    def _played(self, index: int, estimate: Estimate | None) -> Played | None:
-        """A chart as the rules see it; None where its scale is a guess: nothing is said of it then."""
-        if estimate is None:
-            return None
+    def _played(self, index: int, estimate: Estimate) -> Played:
+        """A chart as the rules see it."""
         chart = self._song.charts[index]
         place = {"line": chart.line, "column": 1, "chart": index}
         return Played(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)

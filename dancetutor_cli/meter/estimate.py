@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dancetutor_cli.meter.bill import AUTO, Estimate
 from dancetutor_cli.meter.features import features
@@ -22,15 +22,15 @@ class Sized:
     """A chart before its scale is known.
 
     label : the meter it has in the file; on : scale -> its meter there at rate 1
-    values, played : the features of `model.wanted` at rate 1, and at the rate asked for
+    terms, played : for each scale the meters that terms add, at rate 1 and at the rate asked for
     """
 
     model: Model
     label: int
     difficulty: str
     on: Mapping[str, float]
-    values: Sequence[float]
-    played: Sequence[float]
+    terms: Sequence[Mapping[str, float]]
+    played: Sequence[Mapping[str, float]]
     rate: float = 1.0
 
 
@@ -39,20 +39,17 @@ def size(play: Play, steps_type: str, label: tuple[int, str], rate: float = 1.0)
     model = model_for(steps_type)
     if model is None:
         return None
-    values = features(play, model.wanted)
-    played = values if rate == 1.0 else features(play, model.wanted, rate)
-    return Sized(model, *label, meters_on(model, values), values, played, rate)
+    one = sized(model, features(play, model.wanted), label)
+    if rate == 1.0:
+        return one
+    return replace(one, played=model.terms(features(play, model.wanted, rate)), rate=rate)
 
 
-def meters_on(model: Model, values: Sequence[float]) -> dict[str, float]:
-    """Scale -> the meter on it. values : those of `model.wanted`"""
-    return {scale.name: scale.start + sum(_terms(model, scale, values).values()) for scale in model.scales}
-
-
-def _terms(model: Model, scale: Scale, values: Sequence[float]) -> dict[str, float]:
-    """Name of the term -> the meters that it adds."""
-    place = model.place
-    return {name: sum([curve(values[place[curve.feature]]) for curve in of]) for name, of in scale.terms.items()}
+def sized(model: Model, values: Sequence[float], label: tuple[int, str]) -> Sized:
+    """The same by the features of `model.wanted`."""
+    terms = model.terms(values)
+    on = {scale.name: scale.start + sum(of.values()) for scale, of in zip(model.scales, terms, strict=True)}
+    return Sized(model, *label, on, terms, terms)
 
 
 def _interval(scale: Scale, meter: float) -> tuple[float, float]:
@@ -112,8 +109,8 @@ class _Misses:
 def on_scale(one: Sized, name: str, known: bool, *, faster: bool = True) -> Estimate:
     """The estimate on a scale (its usual one if the pad lacks it), at the rate asked for unless not `faster`."""
     model = one.model
-    scale = next((scale for scale in model.scales if scale.name == name), model.scales[0])
-    terms = _terms(model, scale, one.played if faster else one.values)
+    number = next((n for n, scale in enumerate(model.scales) if scale.name == name), 0)
+    scale, terms = model.scales[number], (one.played if faster else one.terms)[number]
     meter = scale.start + sum(terms.values())
     billed = sorted(((term, value) for term, value in terms.items() if value >= _WORTH), key=lambda bill: -bill[1])
     rest = meter - sum(value for _, value in billed)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.play.model import Play, StepKind
+from dancetutor_cli.play.model import Play
 
 _SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
 # What is counted -> the moves of a row that it is.
@@ -22,10 +22,12 @@ _NAMED = {
     "hands": ("hand",),
     "spins": ("spin",),
     "stream rows": ("stream",),
+    "jumps": ("jump",),
 }
-THINGS = ("steps", *_NAMED, "jumps", "turns", "held")
-_CROSSOVERS, _BRACKETS = THINGS.index("crossovers"), THINGS.index("brackets")
-HOWS = ("mean", "peak", "count")
+THINGS = ("steps", *_NAMED, "turns", "held")
+_CROSSOVERS = THINGS.index("crossovers")
+HOWS = ("mean", "peak", "count")  # the last two of steps alone
+_PLACE = {thing: n for n, thing in enumerate(THINGS)}
 _PEAK = 0.98  # the share of rows that are easier than a peak
 _QUARTER = 90.0  # degrees
 
@@ -35,8 +37,8 @@ class Feature(NamedTuple):
 
     thing : one of `THINGS`. "turns": quarter turns of the body; "held": steps while the other foot holds; "crossovers"
         counts the step that crosses, not those that stay crossed
-    seconds : how far back each row looks; how : "mean" of all rows with a step, "peak": what 98 in 100 rows stay
-        below, "count": of the whole chart, whatever its time
+    seconds : how far back each row looks; how : "mean" of all rows with a step, and of steps alone "peak": what 98 in
+        100 rows do not exceed, "count": of the whole chart, whatever its time
     """
 
     thing: str
@@ -49,70 +51,58 @@ def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[f
 
     rate : how fast the music plays, above 0. The feet are those of rate 1
     """
-    kinds = play.rows.steps
-    seen = (kinds != StepKind.NONE) & (kinds != StepKind.ROLL_TAP)
-    pressed = seen.sum(axis=1)
-    rows = np.flatnonzero(pressed)
+    rows = np.flatnonzero(play.rows.steps.any(axis=1))  # taps of rolls, too: somebody has to tap them
     out = [0.0] * len(wanted)
     if not len(rows):
         return out
-    things = _things(play, rows, pressed[rows])
-    total = things.sum(axis=1)
     second = np.maximum.accumulate(play.rows.second[rows])
-    for seconds, of_seconds in _plan(tuple(wanted)):
-        first = second.searchsorted(second - seconds * rate) if seconds else rows[:0]
-        for how, places, numbers in of_seconds:
-            if how == "count":
-                values = total[numbers]
-            elif how == "mean":
-                values = things[numbers] @ _windows_of(first) / (len(rows) * seconds)
-            else:
-                values = np.array([_peak(things[n], first) if total[n] else 0.0 for n in numbers]) / seconds
-            for place, value in zip(places, values.tolist(), strict=True):
-                out[place] = value
+    order = np.arange(len(rows))
+    firsts = {seconds: second.searchsorted(second - seconds * rate) for seconds in _spans(tuple(wanted))}
+    means: dict[float, list[float]] = {}
+    for place, (thing, seconds, how) in enumerate(wanted):
+        if how == "count":
+            out[place] = float(len(rows))
+        elif how == "peak":
+            out[place] = _peak(order - firsts[seconds]) / seconds
+        else:
+            if seconds not in means:
+                windows = np.cumsum(np.bincount(firsts[seconds], minlength=len(rows))) - order  # that each row is in
+                means[seconds] = (_things(play, rows) @ windows / (len(rows) * seconds)).tolist()
+            out[place] = means[seconds][_PLACE[thing]]
     return out
 
 
-def _windows_of(first: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(rows,): the windows that each row is in. first : the row that the window of each row begins with"""
-    begun = np.cumsum(np.bincount(first, minlength=len(first)))
-    return np.asarray(begun - np.arange(len(first)), dtype=np.float64)
-
-
-def _peak(happens: NDArray[np.float64], first: NDArray[np.int64]) -> float:
-    """What 98 in 100 windows have no more of than."""
-    sums = np.zeros(len(happens) + 1)
-    np.cumsum(happens, out=sums[1:])
-    within = sums[1:] - sums[first]
-    at = int(_PEAK * (len(within) - 1))
-    within.partition(at)
-    return float(within[at])
+def _peak(before: NDArray[np.int64]) -> float:
+    """What 98 in 100 windows have no more rows than. before : rows in each, but for its last one"""
+    at = int(_PEAK * (len(before) - 1))
+    before.partition(at)
+    return float(before[at]) + 1.0
 
 
 @cache
-def _plan(wanted: tuple[Feature, ...]) -> tuple[tuple[float, list[tuple[str, list[int], list[int]]]], ...]:
-    """What is worked out together: by seconds and how, places in the answer and numbers of things."""
-    found: dict[float, dict[str, tuple[list[int], list[int]]]] = {}
-    for place, feature in enumerate(wanted):
-        places, numbers = found.setdefault(feature.seconds, {}).setdefault(feature.how, ([], []))
-        places.append(place)
-        numbers.append(THINGS.index(feature.thing))
-    return tuple((seconds, [(how, *of) for how, of in hows.items()]) for seconds, hows in found.items())
+def _spans(wanted: tuple[Feature, ...]) -> tuple[float, ...]:
+    """The different seconds of some features."""
+    return tuple(dict.fromkeys(feature.seconds for feature in wanted if feature.seconds))
 
 
-def _things(play: Play, rows: NDArray[np.int64], pressed: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(`THINGS`, rows): how often each happens in each of some rows with a step. pressed : panels in each"""
+def _things(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(`THINGS`, rows): how often each happens in each of some rows with a step."""
     number = {names: n for n, names in enumerate(dict.fromkeys(play.moves))}
     codes = np.fromiter(map(number.__getitem__, play.moves), np.intp, len(play.moves))[rows]
     out = np.empty((len(THINGS), len(rows)))
     out[0] = 1.0
-    out[1:-3] = np.array([_marked(names) for names in number]).T.take(codes, axis=1)
+    out[1:-2] = np.array([_marked(names) for names in number]).T.take(codes, axis=1)
     crossed = out[_CROSSOVERS]
     out[_CROSSOVERS, 1:] = crossed[1:] * (crossed[:-1] == 0)
-    out[-3] = (pressed > 1) & (out[_BRACKETS] == 0)
-    turned = np.abs(np.diff(play.facing[rows], prepend=play.facing[rows[0]]))
-    out[-2] = np.minimum(turned, 360.0 - np.minimum(turned, 360.0)) / _QUARTER
-    until = np.maximum.accumulate(play.rows.hold_end.max(axis=1, initial=-1))
+    facing = play.facing[rows]
+    turned = np.abs(facing[1:] - facing[:-1])
+    out[-2, 0] = 0.0
+    out[-2, 1:] = np.minimum(turned, 360.0 - np.minimum(turned, 360.0)) / _QUARTER
+    ends = play.rows.hold_end.T
+    until = ends[0]
+    for column in ends[1:]:  # there are few columns, and rows by the thousand
+        until = np.maximum(until, column)
+    until = np.maximum.accumulate(until)
     out[-1] = until[rows - 1] > play.rows.tick[rows]
     out[-1, 0] = 0.0
     return out

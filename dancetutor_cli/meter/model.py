@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.marked_yaml import MarkedYaml, read
@@ -33,12 +35,6 @@ class Curve:
     at: tuple[float, ...]
     meters: tuple[float, ...]
 
-    def __call__(self, value: float) -> float:
-        """Meters for a value of the feature, 0 or more."""
-        n = min(max(bisect_left(self.at, value), 1), len(self.at) - 1)
-        low, high = self.at[n - 1], self.at[n]
-        return self.meters[n - 1] + (self.meters[n] - self.meters[n - 1]) * (value - low) / (high - low)
-
 
 @dataclass(frozen=True, slots=True)
 class Scale:
@@ -59,14 +55,40 @@ class Scale:
     above: tuple[float, ...]
 
 
+class _Pieces(NamedTuple):
+    """All straight pieces of all curves of all scales, side by side: what is worked out at once.
+
+    feature : its place in `Model.wanted`; low, width : where the piece begins, and how long it is (the last: endless)
+    slope : meters for each unit; starts : the piece that each term of each scale begins with
+    """
+
+    feature: NDArray[np.int64]
+    low: NDArray[np.float64]
+    width: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    starts: NDArray[np.int64]
+
+
 @dataclass(frozen=True, slots=True)
 class Model:
-    """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale."""
+    """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale.
+
+    wanted : every feature that a curve asks for, once
+    """
 
     scales: tuple[Scale, ...]
     alone: tuple[float, float]
-    wanted: tuple[Feature, ...]  # every feature that a curve asks for, once
-    place: Mapping[Feature, int]  # of each in `wanted`
+    wanted: tuple[Feature, ...]
+    _pieces: _Pieces
+
+    def terms(self, values: Sequence[float]) -> list[dict[str, float]]:
+        """For each scale: name of the term -> the meters that it adds. values : those of `wanted`"""
+        pieces = self._pieces
+        inside = np.asarray(values)[pieces.feature] - pieces.low
+        np.minimum(np.maximum(inside, 0.0, out=inside), pieces.width, out=inside)
+        inside *= pieces.slope
+        meters = iter(np.add.reduceat(inside, pieces.starts).tolist())
+        return [dict(zip(scale.terms, meters, strict=False)) for scale in self.scales]
 
 
 @cache
@@ -91,7 +113,19 @@ def load_model(path: Path) -> Model:
 
 def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> Model:
     """A model for features in this order."""
-    return Model(scales, alone, wanted, {feature: n for n, feature in enumerate(wanted)})
+    rows: list[tuple[int, float, float, float]] = []
+    starts = []
+    for scale in scales:
+        for curves in scale.terms.values():
+            starts.append(len(rows))
+            for curve in curves:
+                place, last = wanted.index(curve.feature), len(curve.at) - 1
+                for n, ((a, low), (b, high)) in enumerate(pairwise(zip(curve.at, curve.meters, strict=True)), 1):
+                    width = np.inf if n == last else b - a
+                    rows.append((place, a, width, (high - low) / (b - a)))
+    feature, low_ends, widths, slopes = (np.array(column, dtype=np.float64) for column in zip(*rows, strict=True))
+    pieces = _Pieces(feature.astype(np.int64), low_ends, widths, slopes, np.array(starts))
+    return Model(scales, alone, wanted, pieces)
 
 
 def _scale(source: MarkedYaml, name: str) -> Scale:
@@ -129,6 +163,8 @@ def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
     seconds = _numbers(source, keys, [said["seconds"]], 1)[0]
     if seconds < 0 or (seconds == 0) != (said["how"] == "count"):
         raise source.error(keys, "'seconds' must be above 0, and 0 for a count")
+    if said["how"] != "mean" and said["of"] != "steps":
+        raise source.error(keys, "only steps have a peak or a count; of others 'how' is mean")
     return Curve(Feature(said["of"], seconds, said["how"]), at, meters)
 
 

@@ -66,7 +66,7 @@ def test_what_is_played_faster_is_never_easier(scale: str) -> None:
 def test_streams_are_what_a_stream_is_billed_for() -> None:
     told = dict(estimated(stream(["1000", "0100", "0010", "0001"])).terms)
     slow = dict(estimated(stream(["1000", "0100", "0010", "0001"], bpm=60)).terms)
-    assert told["streams"] > 3 > slow.get("streams", 0.0)
+    assert told["streams"] > slow["streams"] + 1
     assert (
         estimated(stream(["1100", "0000", "0011", "0000"], bpm=100)).meter
         > estimated(stream(["1000", "0000", "0001", "0000"], bpm=100)).meter

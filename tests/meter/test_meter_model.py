@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.meter.features import Feature
-from dancetutor_cli.meter.model import Curve, load_model
+from dancetutor_cli.meter.model import load_model
 from dancetutor_cli.resources import config_path
 
 GOOD = """\
@@ -31,9 +30,20 @@ def model_of(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_a_curve_is_straight_between_its_points_and_goes_on() -> None:
-    curve = Curve(Feature("steps", 5, "peak"), (0.0, 2.0, 4.0), (0.0, 1.0, 1.5))
-    assert [curve(x) for x in (0, 1, 2, 3, 4, 6)] == pytest.approx([0, 0.5, 1, 1.25, 1.5, 2.0])
+def test_a_curve_is_straight_between_its_points_and_goes_on(tmp_path: Path) -> None:
+    model = load_model(model_of(tmp_path, GOOD))
+    told = [model.terms([value])[0]["streams"] for value in (0, 1, 2, 3, 4, 6)]
+    assert told == pytest.approx([0, 0.5, 1, 1.25, 1.5, 2.0])
+
+
+def test_the_curves_of_a_term_add_up_and_scales_stay_apart(tmp_path: Path) -> None:
+    more = "        - {of: jumps, seconds: 10, how: mean, at: [0, 1], meters: [0, 2]}\n"
+    text = GOOD.replace("    interval", more + "      jacks:\n" + more.replace("jumps", "jacks") + "    interval")
+    itg = text[text.index("  itg:") : text.index("alone")]
+    path = model_of(tmp_path, text.replace("alone", itg.replace("itg", "ddr").replace("[0, 2]", "[0, 4]") + "alone"))
+    model = load_model(path)
+    assert [feature.thing for feature in model.wanted] == ["steps", "jumps", "jacks"]
+    assert model.terms([2.0, 1.0, 0.5]) == [{"streams": 3.0, "jacks": 1.0}, {"streams": 5.0, "jacks": 2.0}]
 
 
 @pytest.mark.parametrize(
@@ -50,7 +60,7 @@ def test_a_curve_is_straight_between_its_points_and_goes_on() -> None:
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(tmp_path: Path, right: str, wrong: str, line: int, says: str) -> None:
-    assert load_model(model_of(tmp_path, GOOD)).scales[0].terms["streams"][0](2.0) == 1.0
+    assert load_model(model_of(tmp_path, GOOD)).scales[0].terms["streams"][0].meters == (0.0, 1.0, 1.5)
     with pytest.raises(FileError, match=says) as error:
         load_model(model_of(tmp_path, GOOD.replace(right, wrong)))
     assert error.value.line == line
