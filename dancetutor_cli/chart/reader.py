@@ -21,6 +21,12 @@ from dancetutor_cli.errors import ChartError, FileError, NoChartsError
 
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")
+# Tags whose loss somebody sees or hears in a game.
+_SEEN = frozenset({
+    "TITLE", "SUBTITLE", "ARTIST", "TITLETRANSLIT", "SUBTITLETRANSLIT", "ARTISTTRANSLIT", "GENRE", "CREDIT", "BANNER",
+    "BACKGROUND", "JACKET", "CDTITLE", "LYRICSPATH", "PREVIEWVID", "MUSIC", "OFFSET", "SAMPLESTART", "SAMPLELENGTH",
+    "DISPLAYBPM", "BPMS", "STOPS", "DELAYS", "WARPS", "BGCHANGES", "FGCHANGES",
+})  # fmt: skip
 _OF_A_SONG = ("TITLE", "MUSIC", "BPMS")
 EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
 _LARGEST_METER = 2**31 - 1
@@ -169,7 +175,8 @@ class _Reader:
             ended = tag.spans and self.data[tag.spans[-1][1] : tag.spans[-1][1] + 1] == b"#"
             if ended and not self.text(tag) and self._on_one_line(tag):
                 message = f"the value of {text.shown(tag.name)} starts with '#': the games read that as the next tag"
-                self.warnings.append(ReadWarning("hash-in-value", message, self.lines(tag.start)))
+                code = "hash-in-value" if tag.name in _SEEN else "hash-in-unused-value"
+                self.warnings.append(ReadWarning(code, message, self.lines(tag.start)))
         if b"\r" in self.data and b"\n" not in self.data:
             message = "lines end at CR alone: the games read each measure as one row"
             self.warnings.append(ReadWarning("cr-only", message, 1))

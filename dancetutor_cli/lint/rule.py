@@ -116,11 +116,13 @@ class TimedRule(ChartRule):
     """A rule about moves that are worth a word only if they are quick.
 
     Option `max_seconds` says how quick: a number, or "by-meter": what at most `share` per cent of the charts of this
-    meter contain, see `lint.times`. `times` : what the move is called there. `passage_beats` : those at most so many
-    beats apart are one finding, at the surest of them; 0: each is one
+    meter contain, see `lint.times`, but not more than `slowest`. `times` : what the move is called there.
+    `passage_beats` : those at most so many beats apart are one finding, at the surest of them; 0: each is one,
+    endless: one for a chart
     """
 
     times: ClassVar[str] = ""
+    slowest: ClassVar[float] = math.inf
     passage_beats: ClassVar[float] = 0
     about_feet: ClassVar[bool] = True
 
@@ -143,7 +145,12 @@ class TimedRule(ChartRule):
             row, _, said, column = passage[subject.surest(rows) if self.about_feet else 0]
             if len(rows) > 1:
                 said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
-            yield self.finding(said, subject.at_row(row, column))
+            least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
+            yield self.finding(said, subject.at_row(row, column), **least)
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """Whether who plays this chart expects what happens in these rows: never more than an info."""
+        return False
 
     def _passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
         passage: list[Happening] = []
@@ -162,7 +169,8 @@ class TimedRule(ChartRule):
             return float(longest)
         from dancetutor_cli.lint.times import limit
 
-        return limit(self.times, self.options["share"], subject.chart.steps_type, subject.chart.meter)
+        few = limit(self.times, self.options["share"], subject.chart.steps_type, subject.chart.meter)
+        return min(few, self.slowest)
 
 
 class MoveRule(TimedRule):

@@ -58,7 +58,7 @@ def test_a_file_changes_single_entries(tmp_path: Path) -> None:
     given = configured("rules:\n  doublestep: error\n  DT205: {max_rows: 3}\n", tmp_path)
     assert severity(given, "DT201", tmp_path / "x.sm") == "error"
     rules = given.settings.for_chart(tmp_path / "x.sm", "dance-single", "Hard", 9)
-    assert rules["DT205"] == {"severity": "warning", "max_rows": 3, "max_seconds": 0.45}
+    assert rules["DT205"] == {"severity": "warning", "max_rows": 3, "max_seconds": 0.3}
 
 
 @pytest.mark.parametrize(

@@ -58,11 +58,14 @@ def test_every_warning_of_the_odd_files_becomes_a_finding(hostile: Path) -> None
         warned = {(w.code, w.line) for w in song.warnings} | {(w.code, w.line) for c in song.charts for w in c.warnings}
         result = analyze_file(Task(path, PresetChoice(preset), Selection(), settings))
         told = [(finding.rule, finding.line) for finding, _ in result.all_findings()]
+        folded = [finding.message for finding, _ in result.all_findings() if finding.rule == "DT102"]
         for code, line in warned:
             rules = [rule.code for rule in all_rules().values() if code in rule.codes]
             assert len(rules) == 1, f"{path.name}: {code} has {rules}"
             if rules == ["DT106"] and any(told_at[0] == "DT102" for told_at in told):
                 continue  # may come of a misread row beside it
+            if rules == ["DT102"] and any(f"in line {line}" in said or f", {line}" in said for said in folded):
+                continue  # one finding with the lines of all that is odd in the same way
             assert (rules[0], line) in told, f"{path.name}: {code} in line {line} is not told"
             found += 1
     if not found:

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.lint.check import check_chart
+from dancetutor_cli.lint.check import check_chart, check_file
 from dancetutor_cli.lint.configuration import default_rules, load_configuration, with_assignments
 from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+from dancetutor_cli.play import load_preset
 
 SPLIT = "#TITLE:T;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:{};#DIFFICULTY:Hard;#METER:9;#BPMS:{};#NOTES:\n{}\n;"
 
@@ -46,3 +48,17 @@ def test_other_odd_notes_are_warnings() -> None:
 @pytest.mark.parametrize(("bpms", "severity"), [("0=120,4=1e9,5=120", "info"), ("0=120,4=fast", "warning")])
 def test_a_gimmick_is_an_info_and_a_slip_a_warning(bpms: str, severity: str) -> None:
     assert [one.severity for one in found("DT105", "dance-single", bpms, ["1000"])] == [severity]
+
+
+@pytest.mark.parametrize(("tag", "severity"), [("MENUCOLOR", "info"), ("TITLE", "warning")])
+def test_a_lost_value_is_a_warning_where_somebody_sees_it(tag: str, severity: str) -> None:
+    song = parse(f"#{tag}:#FF0000;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n;\n".encode(), Path("x.sm"))
+    found = check_file(FileSubject(song), load_configuration(None).settings)
+    assert [one.severity for one in found if one.rule == "DT104"] == [severity]
+
+
+@pytest.mark.parametrize(("meter", "severity"), [(99, "info"), (16, "error")])
+def test_no_limb_for_a_gimmick_is_an_info(meter: int, severity: str) -> None:
+    song = parse(f"#BPMS:0=120;\n#NOTES:dance-double::Edit:{meter}::\n11111000\n;\n".encode(), Path("x.sm"))
+    findings = check_chart(solved_chart(song, song.charts[0], load_preset("thesis")), load_configuration(None).settings)
+    assert [one.severity for one in findings if one.rule == "DT301"] == [severity]

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import Happening, TimedRule
+from dancetutor_cli.lint.rule import EPSILON, Happening, TimedRule
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from dancetutor_cli.lint.subject import ChartSubject
+
+_WALKED = 4  # panels
+_WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 
 
 class Crossover(TimedRule):
@@ -18,9 +24,10 @@ class Crossover(TimedRule):
     dancetutor.yaml may do so for others.
 
     `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
-    but begins anew; nor where the steps from one rest or jump to the next can be danced uncrossed on the other foot.
-    by-meter: what at most `share` per cent of the charts of a meter have; on two pads, where walking
-    from one to the other crosses the feet, few crossings are so quick.
+    but begins anew; nor where the steps from one rest or jump to the next can be danced uncrossed on the other foot,
+    nor in a walk from one pad to the other. by-meter: what at most `share` per cent of the charts of a meter have, and
+    0.4 s at most: who has more moves both feet; on two pads, where walking from one to the other crosses the feet, few
+    crossings are so quick.
 
     Bad (max_seconds = 0.6):
 
@@ -40,13 +47,42 @@ class Crossover(TimedRule):
     code = "DT204"
     name = "crossover"
     times = "crossover"
+    slowest = 0.4
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each step after which the feet are newly crossed."""
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
 
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
-            if goes_on_the_other_foot(subject, first, self.longest(subject)):
+            if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
                 continue
             said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"
             yield Happening(first, subject.pause(first), said)
+
+
+def _walks_over(subject: ChartSubject, row: int) -> bool:
+    """Whether the steps around a row go on and on to one side, panel by panel, farther than a pad is wide."""
+    import numpy as np
+
+    play, pad = subject.play, subject.pad
+    if play is None or pad is None or np.ptp(pad.panels[:, 0]) <= _WIDE:
+        return False
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    around = [subject.pressed(int(one)) for one in rows[max(at - 2 * _WALKED, 0) : at + 2 * _WALKED]]
+    here = min(at, 2 * _WALKED)
+    for way in (1, -1):
+        first, last = here, here
+        while first and _onwards(around[first - 1], around[first], pad.panels[:, 0] * way):
+            first -= 1
+        while last + 1 < len(around) and _onwards(around[last], around[last + 1], pad.panels[:, 0] * way):
+            last += 1
+        walked = [pressed[0] for pressed in around[first : last + 1]]
+        if len({*walked}) >= _WALKED and np.ptp(pad.panels[walked, 0]) >= _WIDE:
+            return True
+    return False
+
+
+def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> bool:
+    """Whether of two single steps the later one is not farther back."""
+    return len(before) == len(after) == 1 and bool(x[after[0]] >= x[before[0]] - EPSILON)

@@ -26,8 +26,10 @@ class DifferingPair(FileRule):
     name = "differing-pair"
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding for each chart that is different or missing."""
+        """One finding for the pair, at the first chart that is different or missing."""
         from dancetutor_cli.lint.pairs import differences
 
-        for message, line, index in differences(subject.song):
-            yield self.finding(message, subject.place(line), chart=index)
+        if found := list(differences(subject.song)):
+            _, line, index = found[0]
+            told = "; ".join(message for message, _, _ in found)
+            yield self.finding(told, subject.place(line), chart=index if len(found) == 1 else None)

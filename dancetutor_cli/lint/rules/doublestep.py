@@ -5,25 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import MoveRule
+import numpy as np
+
+from dancetutor_cli.lint.rule import EPSILON, MoveRule
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from dancetutor_cli.lint.subject import ChartSubject
 
 _BEFORE, _AFTER = 3, 1  # steps
-_JUMPED = 0.13  # seconds: a 16th at 115 BPM
+_CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; so quickly a short crossover is nearer than a doublestep
+ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
+_SHORT = 2  # crossed rows of such a crossover
 
 
 class Doublestep(MoveRule):
     """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
 
     Players expect left and right in turn; a doublestep makes them stumble, and is mostly an accident of the pattern
-    before it. Doublesteps that a hold forces or a mine asks for are not reported, nor brackets: both panels at once are
-    no step after the other. Nor those beside a bracket that has time to be jumped, or a hold that changes feet: any
-    foot may go on there. Nor those that cross the feet: the other foot would be there uncrossed.
+    before it. It is reported at the pace of the passage only: who has about twice that time just before or soon after
+    takes the panel on her side with the foot of that side. Doublesteps that a hold forces or a mine asks for are not
+    reported, nor brackets: both panels at once are no step after the other. Nor those beside two panels that can be
+    jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there. Nor those that cross
+    the feet, nor 16ths that a short crossover solves.
 
     `max_seconds`: only steps at most this long after the step before count; after a longer rest players put down
-    whichever foot they like. by-meter: what at most `share` per cent of the charts of a meter have.
+    whichever foot they like. by-meter: what at most `share` per cent of the charts of a meter have, 0.32 s at
+    most: quarters of an easy chart make nobody stumble.
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):
@@ -45,13 +54,15 @@ class Doublestep(MoveRule):
     name = "doublestep"
     move = "doublestep"
     times = "doublestep"
+    slowest = 0.32
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Doublesteps from one panel to another, no mine between them."""
         return [
             row for row in subject.rows_with(self.move)
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
-            and not _begun_anew(subject, row) and not subject.feet.crossed(row)
+            and not subject.feet.crossed(row) and not _any_foot_near(subject, row)
+            and not _danced_otherwise(subject, row, self.longest(subject))
         ]  # fmt: skip
 
     def message(self, subject: ChartSubject, row: int) -> str:
@@ -59,13 +70,59 @@ class Doublestep(MoveRule):
         return f"the {subject.foot_name(row)} foot steps twice in a row though the other is free"
 
 
-def _begun_anew(subject: ChartSubject, row: int) -> bool:
-    """Whether a bracket that can be jumped as well, or a hold that changes feet, is near: there any foot may go on."""
+def _any_foot_near(subject: ChartSubject, row: int) -> bool:
+    """Whether two panels that can be jumped, a wall of mines or a hold that changes feet is near."""
+    from dancetutor_cli.lint.other_foot import after_wall
+
     assert subject.play is not None
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
-    for one in rows[max(at - _BEFORE, 0) : at + _AFTER + 1].tolist():
+    for place in range(max(at - _BEFORE, 0), min(at + _AFTER + 1, len(rows))):
+        one = int(rows[place])
         pair = subject.brackets(one) and len(subject.pressed(one)) == 2 and not subject.is_jump(one)
-        if (pair and subject.pause(one) > _JUMPED) or (one < row and "holdswitch" in subject.play.moves[one]):
+        switched = one < row and "holdswitch" in subject.play.moves[one]
+        if pair or switched or (place <= at and after_wall(subject, place)):
             return True
     return False
+
+
+def _danced_otherwise(subject: ChartSubject, row: int, quick: float) -> bool:
+    """Whether people rather begin on the other foot before or after it, where there is time, or cross for a moment."""
+    from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, is_rest, segment, standing
+
+    assert subject.play is not None and subject.feet is not None
+    rows, pause = subject.step_rows, subject.pause(row)
+    at = int(rows.searchsorted(row))
+    if is_rest(subject, at):
+        return True
+    before, last = segment(subject, at - 1, quick)[0], segment(subject, at, quick, forwards_only=True)[1]
+    foot = int(subject.play.limb[row].max())
+    if _own_side(subject, int(rows[before]), exchanged=True) and exchanged_is_uncrossed(
+        subject, rows[before:at], standing(subject, int(rows[before]))
+    ):
+        return True
+    ends = last + 1 < len(rows)
+    stand = standing(subject, row)
+    if ends and _own_side(subject, int(rows[last + 1])) and exchanged_is_uncrossed(subject, rows[at : last + 1], stand):
+        return True
+    facings = exchanged_facings(subject, rows[at : last + 1], stand)
+    crossed = [abs(one) for one in facings if abs(one) > 90 + EPSILON]
+    return ends and pause < _CROSSED_RATHER and foot <= 1 and len(crossed) <= _SHORT and max(crossed, default=0.0) < 180
+
+
+def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bool:
+    """Whether a row is one step on the side of its pad that is the foot's own; exchanged : the other foot's."""
+    assert subject.play is not None and subject.pad is not None
+    limbs = subject.play.limb[row]
+    if (limbs >= 0).sum() != 1 or limbs.max() > 1:
+        return False
+    panels, column = subject.pad.panels, int(limbs.argmax())
+    of_pad = panels[len(panels) // 2 * (2 * column // len(panels)) :][: len(panels) // 2] if _two(panels) else panels
+    off = panels[column, 0] - of_pad[:, 0].mean()
+    right = (int(limbs.max()) == 1) != exchanged
+    return bool(off > EPSILON if right else off < -EPSILON)
+
+
+def _two(panels: NDArray[np.float64]) -> bool:
+    """Whether these are the panels of two pads side by side."""
+    return float(np.ptp(panels[:, 0])) > ONE_PAD

@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dancetutor_cli.lint.feet import SLIP
 from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.rule import ChartRule
+from dancetutor_cli.lint.other_foot import standing
+from dancetutor_cli.lint.rule import EPSILON, ChartRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
+_FEET_STEP = 0.045  # seconds between two rows: 16ths at 333 BPM
+_PASSAGE = 8  # beats
+_RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
+
 
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
+
+    Two steps of a flam are none if the other foot is free to take the first. Rows less than 20 ms apart are told as
+    what they are, a slip of the grid, and three rows or more less than 45 ms apart as a burst, once in two measures.
 
     `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
     are a flam, one movement of the foot, and do not count.
@@ -38,14 +50,65 @@ class FastStep(ChartRule):
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each step that is too fast."""
-        import numpy as np
-
-        feet = subject.feet
-        for rows, columns, ways, seconds in feet.travels() if feet else ():
-            fast = ways > self.options["max_speed"] * seconds + 1e-6
-            for at in np.flatnonzero(fast & (seconds >= self.options["min_seconds"])).tolist():
-                row, column = int(rows[at]), int(columns[at])
-                name = feet.limb_name(row, column) if feet else ""
-                message = f"the {name} moves {ways[at]:.1f} panels in {seconds[at] * 1000:.0f} ms"
+        """One finding for each step that is too fast; one for a passage in which the rows are."""
+        feet, bursts = subject.feet, []
+        for row, column, way, seconds in self._fast(subject):
+            burst = _burst(subject, row)
+            if burst:
+                bursts.append(burst)
+            elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
+                message = f"the {feet.limb_name(row, column)} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+                if subject.pause(row) < SLIP:
+                    apart = f"{subject.pause(row) * 1000:.0f} ms"
+                    message = f"this row comes {apart} after the one before: were they meant as one?"
                 yield self.finding(message, subject.at_row(row, column))
+        end = -math.inf
+        for rows in sorted({tuple(rows) for rows in bursts}):
+            if subject.beat(rows[0]) > end + _PASSAGE:
+                quickest = 1000 * min(subject.pause(row) for row in rows[1:])
+                message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
+                yield self.finding(message, subject.at_row(rows[1]))
+            end = subject.beat(rows[-1])
+
+    def _fast(self, subject: ChartSubject) -> Iterator[tuple[int, int, float, float]]:
+        """Row, column, way (panel widths) and time (s) of each step that is farther than the options allow."""
+        for rows, columns, ways, seconds in subject.feet.travels() if subject.feet else ():
+            fast = (ways > self.options["max_speed"] * seconds + EPSILON) & (seconds >= self.options["min_seconds"])
+            found = (rows[fast], columns[fast], ways[fast], seconds[fast])
+            yield from zip(*(one.tolist() for one in found), strict=True)
+
+
+def _burst(subject: ChartSubject, row: int) -> list[int]:
+    """The rows around one that come quicker than feet step, if they are three or more."""
+    rows = subject.step_rows
+    first = last = int(rows.searchsorted(row))
+    while first and subject.pause(int(rows[first])) < _FEET_STEP:
+        first -= 1
+    while last + 1 < len(rows) and subject.pause(int(rows[last + 1])) < _FEET_STEP:
+        last += 1
+    return rows[first : last + 1].tolist() if last - first >= 2 else []
+
+
+def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bool:
+    """Whether two single steps are a flam for two feet: the other foot has had time to come and takes the first."""
+    play, pad, rows = subject.play, subject.pad, subject.step_rows
+    at = int(rows.searchsorted(row))
+    if play is None or pad is None or subject.feet is None or at < 2:
+        return False
+    before = int(rows[at - 1])
+    if any((play.limb[one] >= 0).sum() != 1 or subject.feet.down[one] != 1 for one in (before, row)):
+        return False
+    limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())
+    if limb > 1 or int(play.limb[before, first]) != limb or min(stood := standing(subject, before)) < 0:
+        return False
+    stepped = subject.feet.presses.of(1 - limb).row
+    since = int(stepped.searchsorted(before)) - 1
+    if since < 0:
+        return False
+    seconds = play.rows.second[before] - play.rows.second[stepped[since]]
+    way = float(np.hypot(*(pad.panels[first] - pad.panels[stood[1 - limb]])))
+    came = float(np.hypot(*(pad.panels[second] - pad.panels[stood[limb]])))
+    x, y = (pad.panels[first] - pad.panels[second]) * (1 if limb == 0 else -1)
+    uncrossed = abs(np.degrees(np.arctan2(y, x))) <= 90 + EPSILON
+    in_time = seconds >= _RESTED and way <= max_speed * seconds and came <= max_speed * subject.pause(before)
+    return bool(uncrossed and in_time)

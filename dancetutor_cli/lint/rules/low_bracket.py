@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ class LowBracket(TimedRule):
     """One foot has to press two panels in a chart whose players do not know brackets yet.
 
     Where three panels are down at once it is a hand (DT302). Two panels again and again are jumps, however quick; so
-    are those of which a foot has just stepped one. Those at most two measures apart are one finding.
+    are those of which a foot has just stepped one. It is one finding for a chart.
 
     `least_meter`: the meter from which on brackets are expected. `max_seconds`: only rows at most this long after the
     step before count, less than a 16th at 150 BPM; with more time players jump. `most_quick`: in a chart in which more
@@ -40,7 +41,7 @@ class LowBracket(TimedRule):
 
     code = "DT210"
     name = "low-bracket"
-    passage_beats = 8
+    passage_beats = math.inf
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each bracket in a chart of so low a meter."""

@@ -37,8 +37,12 @@ class MineInTheWay(ChartRule):
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each such step."""
+        """One finding for each row with such a step."""
         limit = self.options["max_seconds"]
-        for row, column, seconds in subject.feet.mines_before_steps(limit) if subject.feet else ():
+        told: set[int] = set()
+        for row, column, seconds in sorted(subject.feet.mines_before_steps(limit)) if subject.feet else ():
+            if row in told:  # once for a row, not for each foot
+                continue
+            told.add(row)
             message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
             yield self.finding(message, subject.at_row(row, column))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import Happening, TimedRule
+from dancetutor_cli.lint.rule import EPSILON, Happening, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -39,7 +39,10 @@ class MineUnderHold(TimedRule):
     times = "mine-under-hold"
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
-        """Each such mine, with the time since the foot's step; where it cannot leave at all, no time at all."""
+        """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
+        told: set[int] = set()
         for row, column, foot, seconds in subject.feet.mines_under_held() if subject.feet else ():
             message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
-            yield Happening(row, seconds, message, column)
+            if row not in told and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
+                told.add(row)
+                yield Happening(row, seconds, message, column)

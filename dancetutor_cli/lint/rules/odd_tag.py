@@ -8,6 +8,8 @@ from dancetutor_cli.lint.rule import ReaderRule
 class OddTag(ReaderRule):
     """A tag is not what it should be: a decimal comma, a meter that is no number, a difficulty no game knows.
 
+    A value that is lost where no player sees it, such as MENUCOLOR's, is an info.
+
     Bad: #OFFSET:1,5;
 
     Better: #OFFSET:1.5;
@@ -22,7 +24,9 @@ class OddTag(ReaderRule):
             "odd-difficulty",
             "odd-time-signature",
             "hash-in-value",
+            "hash-in-unused-value",
             "nul-byte",
             "cr-only",
         }
     )
+    usual = frozenset({"hash-in-unused-value"})

@@ -18,8 +18,9 @@ ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 class Spin(MoveRule):
     """The pattern goes on round behind the dancer's back, beyond 180 degrees: a spin, or a doublestep to avoid it.
 
-    Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot, nor of
-    a walk along two pads, on which one foot passes the other. A spin in a jump is DT203.
+    Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot; a rest
+    is about twice the pace of the passage, two panels at once may always be a jump. Nor of a walk along two pads, on
+    which one foot passes the other. A spin in a jump is DT203.
 
     `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
     back.
@@ -51,8 +52,6 @@ class Spin(MoveRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
-        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
-
         play = subject.play
         if play is None:
             return
@@ -60,10 +59,25 @@ class Spin(MoveRule):
             first = row
             while first and abs(play.facing[first - 1]) > UNCROSSED:
                 first -= 1
-            if goes_on_the_other_foot(subject, row, self.longest(subject)) or self._walks(subject, row):
+            if self._begun_otherwise(subject, row) or self._walks(subject, row):
                 continue
             steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
             yield Happening(row, max(map(subject.pause, steps)), self.said)
+
+    def _begun_otherwise(self, subject: ChartSubject, row: int) -> bool:
+        """Whether the steps around the spin, or those up to the rest before it, go uncrossed on the other foot."""
+        from dancetutor_cli.lint.other_foot import begins_anew, exchanged_is_uncrossed, goes_on_the_other_foot, segment
+
+        quick, rows = self.longest(subject), subject.step_rows
+        if goes_on_the_other_foot(subject, row, quick):
+            return True
+        at = int(rows.searchsorted(row))
+        if not at or not begins_anew(subject, at, quick):
+            return False
+        first, last = segment(subject, at, quick)
+        return goes_on_the_other_foot(subject, int(rows[at - 1]), quick) and exchanged_is_uncrossed(
+            subject, rows[first : last + 1], swap=False
+        )
 
     def _walks(self, subject: ChartSubject, row: int) -> bool:
         """Whether she only goes along a pad for two: a foot has passed the other, side by side."""

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.lint.feet import SLIP
 from dancetutor_cli.lint.rule import MoveRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
+_GIMMICK = 99  # the meter
+
 
 class Unplayable(MoveRule):
     """No limb is left for a step of this row: both feet and both hands press something already.
+
+    Those at most two measures apart are one finding. In a chart whose meter is the 99 of gimmicks, or where the rows
+    come less than 20 ms apart, it is an info: nobody is surprised.
 
     Bad: five panels at once.
 
@@ -32,6 +38,11 @@ class Unplayable(MoveRule):
     name = "unplayable"
     move = "unplayable"
     about_feet = False
+    passage_beats = 8
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """A gimmick says so by its meter or its rows."""
+        return subject.chart.meter == _GIMMICK or any(subject.pause(row) < SLIP for row in rows)
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
