@@ -24,7 +24,7 @@ figcaption{font-weight:600;margin-bottom:.3rem}svg{width:100%;height:auto;font:1
 .key i{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.3em}
 .wide{overflow-x:auto}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #eef1f5}th{background:#f6f8fa}
-td.t,th.t{text-align:left;overflow-wrap:anywhere}td.off{background:#fdeceb}
+td{white-space:nowrap}td.t,th.t{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:7em}td.off{background:#fdeceb}
 ul{margin:.3rem 0}li{overflow-wrap:anywhere}
 """
 _MINUTE = 60.0

@@ -10,7 +10,7 @@ from dancetutor_cli.reports.safe import safe_path
 
 LINES = 18  # at most
 _TYPES, _OUTLIERS, _MISSING = 2, 4, 5
-_LAST = 20  # meters above stand together
+_LAST = 20  # it and all meters above stand together, below a +
 
 
 def pack_lines(pack: Pack, width: int) -> list[str]:
@@ -33,7 +33,7 @@ def _by_meter(steps_type: str, charts: list[PackChart]) -> Iterator[str]:
     labels = Counter(min(one.result.meter, _LAST) for one in charts)
     plays = Counter(min(round(one.result.estimate.meter), _LAST) for one in charts if one.result.estimate)
     shown = range(min([*labels, *plays]), max([*labels, *plays]) + 1)
-    heads = {meter: f"{meter}+" if meter == _LAST else str(meter) for meter in shown}
+    heads = {meter: "+" if meter == _LAST else str(meter) for meter in shown}
     wide = 1 + max(len(str(one)) for one in (*labels.values(), *plays.values(), *heads.values()))
     yield f"  {steps_type:14}" + "".join(f"{heads[meter]:>{wide}}" for meter in shown)
     yield f"  {'  labelled':14}" + "".join(f"{labels[meter] or '·':>{wide}}" for meter in shown)
