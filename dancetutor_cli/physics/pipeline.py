@@ -24,6 +24,7 @@ from dancetutor_cli.physics.restrain import restrained
 from dancetutor_cli.physics.simulation import Ragdoll, simulate
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.physics.toes import eased_ankles, flatten_toes
+from dancetutor_cli.physics.weight import kept_mass, mass_of
 from dancetutor_cli.play.model import Limb
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import beyond
@@ -33,6 +34,7 @@ Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 CORRECTIONS = ("knees", "feet", "limits")
 EASINGS = 3  # rounds of turning feet until their ankles are within limits
 GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
+AFTERMATH = 0.3  # seconds over which what befalls her begins to count, and ceases to 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
 PALM_FADE = 0.35  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
 
@@ -87,7 +89,11 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
     if "knees" in corrections:
         root, feet = soft_legs(skeleton, (rotations, root), feet, held, motion.times)
-    poses = repinned(skeleton, (rotations, root), feet)
+    if wishes.corrections:
+        poses = repinned(skeleton, (rotations, root), feet)
+    else:
+        path = (motion.times, mass_of(skeleton, (motion.rotations, motion.root)))
+        poses = kept_mass(skeleton, (rotations, root), feet, path, _undisturbed(motion, wishes), share)
     for _ in range(EASINGS if plants is not None else 0):
         assert plants is not None
         feet, changed = eased_ankles(skeleton, poses[0], feet, plants, held)
@@ -103,6 +109,15 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
             rotations = restrained(skeleton, rotations)
     done = replace(motion, rotations=quat.continuous(rotations), root=root)
     return Passed(told(done, motion.root, wishes.pushes, missed), distances, plants)
+
+
+def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
+    """How far (f,) nothing has befallen her lately, 0 to 1."""
+    out = np.ones(len(motion.times))
+    for second in (*(p.second for p in wishes.pushes), *(t.second for t in wishes.trips)):
+        since = motion.times - second
+        out *= 1.0 - smooth(since / AFTERMATH + 1.0) * smooth((AFTERMATH + 0.7 - since) / AFTERMATH)
+    return out
 
 
 def _possible(motion: Motion, poses: Poses, feet: Feet) -> Poses:

@@ -52,6 +52,13 @@ def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str
         assert reports[name][figure].met, (name, reports[name][figure])
 
 
+@pytest.mark.parametrize("name", style_names())
+def test_she_neither_falls_nor_jerks_nor_floats_in_any_style(reports: dict[str, Report], name: str) -> None:
+    jerks = tuple(f"jerk of the {part}" for part in ("root", "left hand", "right hand", "head"))
+    for figure in ("balance", "knee angle", "residual force, median", *jerks):
+        assert reports[name][figure].met, (name, reports[name][figure])
+
+
 def test_palms_press_their_panels_on_time_in_every_style() -> None:
     events = [
         (1.0, {0: plays.L}),

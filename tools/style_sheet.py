@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Draw one phrase in every style, a sheet each, without names: can somebody who has not seen them sort them?
+
+usage: tools/style_sheet.py FILE FOLDER --index N --at 12.0:14.0 [--count 10] [--seed 1]
+FOLDER gets A.png to E.png in an order of the seed, FOLDER.key beside it says which is which.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+from motion_sheet import AROUND, sheet
+
+from dancetutor_cli.bake.styled import styled
+from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.physics.style import style_names
+
+
+def main() -> None:
+    """The command line."""
+    options = _options()
+    start, end = (float(x) for x in options.at.split(":"))
+    section = f"{start - AROUND}:{end + AROUND}"
+    task = BakeTask(options.file, Selection(index=options.index), section=section)
+    asked = ask(task)
+    plain = bake_asked(asked, task)
+    names = style_names()
+    random.Random(options.seed).shuffle(names)
+    options.folder.mkdir(parents=True, exist_ok=True)
+    key = []
+    for letter, name in zip("ABCDEFGHIJ", names, strict=False):
+        motion = styled(plain, name, default_settings()).motion
+        sheet(motion, asked.pad, np.linspace(start, end, options.count)).save(options.folder / f"{letter}.png")
+        key.append(f"{letter} {name}\n")
+    Path(f"{options.folder}.key").write_text("".join(key), encoding="utf-8")
+    print(f"{options.folder}: {len(key)} sheets; {options.folder}.key")
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--index", type=int, default=0, help="place of the chart in the file")
+    parser.add_argument("--at", required=True, metavar="START:END", help="seconds of the music")
+    parser.add_argument("--count", type=int, default=10, help="moments")
+    parser.add_argument("--seed", type=int, default=1, help="of the order")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()
