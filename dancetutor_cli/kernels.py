@@ -6,23 +6,26 @@ only mean that a kernel is compiled again: what is kept has a checksum, and a fo
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import pickle
 import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba
 from numba.core import caching as _caching
 from numba.core import cgutils as _cgutils
+from numba.core import event as _event
 from numba.extending import intrinsic
 
 from dancetutor_cli.kernel_folder import CHECKSUM, kernel_folder
 
 caching: Any = _caching  # have types in some versions only, or in none
 cgutils: Any = _cgutils
+event: Any = _event
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
 
 
@@ -31,10 +34,23 @@ def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     if function is None:
         return lambda later: _njit(later, **options)
     kept = options.pop("cache", False)
-    compiled = _plain(**options)(function)
+    compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
     if kept and kernel_folder().kept:
         compiled._cache = _KernelCache(function)
     return compiled
+
+
+F = TypeVar("F")
+
+
+def inner_kernel(function: F) -> F:
+    """A kept kernel that only kernels call, never Python: there it would crash.
+
+    It gets no door for Python, whose making is a part of what compiling it takes. tests/test_kernels.py looks at all
+    modules for such calls.
+    """
+    made: F = _njit(cache=True, no_cpython_wrapper=True)(function)
+    return made
 
 
 def _borrowed(_typing: Any, array: Any) -> Any:
@@ -59,6 +75,29 @@ if TYPE_CHECKING:
     def borrowed(array: Any) -> Any: ...
 else:
     njit, borrowed = _njit, intrinsic(_borrowed)
+
+
+class _NoCollecting(event.Listener):  # type: ignore[misc]
+    """No garbage is collected while numba compiles: it makes millions of objects and keeps most of them."""
+
+    def __init__(self) -> None:
+        self._depth, self._was_on = 0, False
+
+    def on_start(self, event: Any) -> None:
+        """A kernel is compiled, maybe for another one."""
+        if self._depth == 0:
+            self._was_on = gc.isenabled()
+            gc.disable()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """It is done, or has failed."""
+        self._depth -= 1
+        if self._depth == 0 and self._was_on:
+            gc.enable()
+
+
+event.register("numba:compile", _NoCollecting())
 
 
 class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
@@ -111,7 +150,7 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
         return stamp_of(self._source)
 
 
-_KERNEL = re.compile(rb"njit|@kernel\b")  # the second is `video.scene.cpu.uncounted`
+_KERNEL = re.compile(rb"njit|@kernel\b|@inner_kernel\b")  # the second is `video.scene.cpu.uncounted`
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import errno
 import importlib.util
 import os
@@ -172,3 +173,49 @@ def test_a_kernel_is_compiled_again_when_one_beside_it_changes(tmp_path: Path) -
     before = kernels.stamp_of.__wrapped__(ground)
     surfaces.write_text(surfaces.read_text("utf-8").replace("return", "return 1 *", 1), "utf-8")
     assert kernels.stamp_of.__wrapped__(ground) != before
+
+
+def _kernels(tree: ast.AST) -> Iterator[tuple[ast.FunctionDef, bool]]:
+    """The kernels of a module, and whether they are inner ones."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            said = " ".join(ast.unparse(one) for one in node.decorator_list)
+            if "njit" in said or "kernel" in said:
+                yield node, "inner" in said
+
+
+def _named(tree: ast.AST, inside: frozenset[ast.AST]) -> Iterator[str]:
+    """Names that are read in a module outside of its kernels."""
+    for node in ast.iter_child_nodes(tree):
+        if node in inside:
+            continue
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+            yield node.id
+        elif isinstance(node, ast.ImportFrom | ast.Import):
+            continue
+        yield from _named(node, inside)
+
+
+def test_inner_kernels_are_only_called_by_kernels() -> None:
+    """Called from Python they would crash: no module that has or imports one names it outside of a kernel."""
+    root = Path(kernels.__file__).parent
+    trees = {path: ast.parse(path.read_text("utf-8")) for path in sorted(root.rglob("*.py"))}
+    inner = {
+        (path.relative_to(root.parent).with_suffix("").as_posix().replace("/", "."), node.name)
+        for path, tree in trees.items()
+        for node, is_inner in _kernels(tree)
+        if is_inner
+    }
+    assert len(inner) > 40
+    others = [*Path(__file__).parent.rglob("*.py"), *(Path(__file__).parents[1] / "tools").glob("*.py")]
+    trees.update({path: ast.parse(path.read_text("utf-8")) for path in others})
+    for path, tree in trees.items():
+        inside = frozenset(node for node, _ in _kernels(tree))
+        module = (
+            path.relative_to(root.parent).with_suffix("").as_posix().replace("/", ".") if root in path.parents else ""
+        )
+        known = {name for home, name in inner if home == module}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                known |= {one.asname or one.name for one in node.names if (node.module, one.name) in inner}
+        assert not known & set(_named(tree, inside)), path

@@ -42,7 +42,8 @@ class BandedLeastSquares:
 
     def solve(self) -> Array:
         """The minimum, (n, d). The terms must fix every node."""
-        return _solve(_factor(self.bands), self.right)
+        factor = _factor(self.bands)
+        return np.stack([_solve_one(factor, np.ascontiguousarray(column)) for column in self.right.T], axis=1)
 
 
 def differences(order: int) -> Array:
@@ -81,14 +82,6 @@ def _accumulate(
                 right[start[r] + i, d] += weighted * target[r, d]
             for j in range(i, coefficients.shape[1]):
                 bands[start[r] + i, j - i] += weighted * coefficients[r, j]
-
-
-@njit(cache=True)
-def _solve(factor: Array, right: Array) -> Array:
-    out = np.empty_like(right)
-    for d in range(right.shape[1]):
-        out[:, d] = _solve_one(factor, right[:, d])
-    return out
 
 
 @njit(cache=True)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.numerics.banded import BandedLeastSquares, _factor, _solve_one
 
 Array = NDArray[np.float64]
@@ -110,7 +110,7 @@ class _Rows(NamedTuple):
     give: Array
 
 
-@njit(cache=True)
+@inner_kernel
 def _times_band(bands: Array, x: Array) -> Array:
     n, reach = bands.shape
     out = np.zeros(n)
@@ -122,7 +122,7 @@ def _times_band(bands: Array, x: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@inner_kernel
 def _times_rows(limits: _Rows, x: Array) -> Array:
     start, width, rows = limits.start, limits.width, limits.rows
     out = np.zeros(len(start))
@@ -134,7 +134,7 @@ def _times_rows(limits: _Rows, x: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_transposed(limits: _Rows, z: Array, out: Array) -> None:
     start, width, rows = limits.start, limits.width, limits.rows
     for r in range(len(start)):
@@ -142,7 +142,7 @@ def _add_transposed(limits: _Rows, z: Array, out: Array) -> None:
             out[start[r] + i] += rows[r, i] * z[r]
 
 
-@njit(cache=True)
+@inner_kernel
 def _longest_step(value: Array, change: Array) -> float:
     step = 1.0
     for i in range(len(value)):
@@ -151,7 +151,7 @@ def _longest_step(value: Array, change: Array) -> float:
     return step
 
 
-@njit(cache=True)
+@inner_kernel
 def _direction(
     factor: Array, limits: _Rows, dual: Array, primal: Array, slack: tuple[Array, Array], aim: Array
 ) -> tuple[Array, Array, Array]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.motion.settings import HairSettings
 from dancetutor_cli.numerics.smoothing import cubic
 from dancetutor_cli.rig import quaternion as quat
@@ -73,7 +73,7 @@ def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, f
     )  # fmt: skip
 
 
-@njit(cache=True)
+@inner_kernel
 def _pushed_out(p: Vec, a: Vec, b: Vec, radius: float) -> Vec:
     """p, moved out of the capsule around the line from a to b."""
     along = sub(b, a)
@@ -86,7 +86,7 @@ def _pushed_out(p: Vec, a: Vec, b: Vec, radius: float) -> Vec:
     return p
 
 
-@njit(cache=True)
+@inner_kernel
 def _no_further(a: Vec, b: Vec, most: float) -> Vec:
     """Unit vector b, or what is `most` radians from unit vector a towards it, if that is nearer."""
     cosine = dot(a, b)
@@ -99,9 +99,21 @@ def _no_further(a: Vec, b: Vec, most: float) -> Vec:
     return add(scale(a, math.cos(most)), scale(aside, math.sin(most) / size))
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
+
+
+@inner_kernel
+def _put(a: Array, k: int, v: Vec) -> None:
+    a[k, 0], a[k, 1], a[k, 2] = v
+
+
+@inner_kernel
+def _copy(a: Array, to: Array) -> None:
+    """Points (n, 3). Assigning them whole makes numba compile what it says of wrong shapes, for a second and more."""
+    for k in range(len(a)):
+        _put(to, k, _vec(a[k]))
 
 
 class _Braid(NamedTuple):
@@ -121,20 +133,22 @@ class _Braid(NamedTuple):
 def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Array:
     root, turn, step = anchors.root, anchors.head_turn, 1.0 / braid.rate
     n = len(bones)
-    lengths = np.sqrt((bones**2).sum(axis=1))
+    lengths = np.empty(n)
+    for k in range(n):
+        lengths[k] = length(_vec(bones[k]))
     out = np.empty((len(root), n + 1, 3))
     p, before = np.empty((n + 1, 3)), np.empty((n + 1, 3))
-    p[0] = root[0]
+    _put(p, 0, _vec(root[0]))
     first = (turn[0, 0], turn[0, 1], turn[0, 2], turn[0, 3])
     for k in range(n):
-        p[k + 1, 0], p[k + 1, 1], p[k + 1, 2] = add(_vec(p[k]), qrot(first, _vec(bones[k])))
-    before[:] = p
+        _put(p, k + 1, add(_vec(p[k]), qrot(first, _vec(bones[k]))))
+    _copy(p, before)
     keep = math.exp(-braid.damping * step)
     fastest, highest = math.radians(braid.fastest) * step, math.radians(braid.highest)
     old = p.copy()
     for frame in range(-settle, len(root)):
         f = max(frame, 0)
-        old[:] = p
+        _copy(p, old)
         q = (turn[f, 0], turn[f, 1], turn[f, 2], turn[f, 3])
         for k in range(1, n + 1):
             for d in range(3):
@@ -142,7 +156,7 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Arr
                 before[k, d] = p[k, d]
                 p[k, d] += moved
             p[k, 1] -= braid.gravity * step * step
-        p[0] = root[f]
+        _put(p, 0, _vec(root[f]))
         centre, bottom, top = _vec(anchors.head[f]), _vec(anchors.back_low[f]), _vec(anchors.back_high[f])
         held = add(_vec(p[0]), qrot(q, _vec(bones[0])))
         for _ in range(ITERATIONS):
@@ -161,7 +175,7 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Arr
                     before[k, d] += here[d] - free[d]
                 bone = sub(here, above)
                 here = add(above, scale(bone, lengths[k - 1] / length(bone)))
-                p[k, 0], p[k, 1], p[k, 2] = here
+                _put(p, k, here)
         for k in range(1, n + 1):
             was = scale(sub(_vec(old[k]), _vec(old[k - 1])), 1.0 / lengths[k - 1])
             now = scale(sub(_vec(p[k]), _vec(p[k - 1])), 1.0 / length(sub(_vec(p[k]), _vec(p[k - 1]))))
@@ -175,7 +189,7 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int) -> Arr
                 here = add(_vec(p[k - 1]), scale(bone, lengths[k - 1] / length(bone)))
             for d in range(3):
                 before[k, d] += here[d] - free[d]
-            p[k, 0], p[k, 1], p[k, 2] = here
+            _put(p, k, here)
         if frame >= 0:
-            out[frame] = p
+            _copy(p, out[frame])
     return out

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.rig.limb import Vec, add, dot, length, scale, sub
 
 Array = NDArray[np.float64]
@@ -59,12 +59,12 @@ def _deepest(
         out[f] = max(out[f], -min(left, right))
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
-@njit(cache=True)
+@inner_kernel
 def _gap(line: tuple[Vec, Vec, Vec, Vec], radii: tuple[float, float, float, float], part: float) -> float:
     """Room between the sphere that is `part` of the way along the first cone, and the second one."""
     a, b, c, d = line

@@ -39,8 +39,10 @@ def _forward(
         for j in range(len(parents)):
             p = parents[j]
             if p < 0:
-                positions[f, j] = root[f]
-                world[f, j] = local[f, j]
+                for k in range(3):  # not a row at once: numba would compile what it says of wrong shapes
+                    positions[f, j, k] = root[f, k]
+                for k in range(4):
+                    world[f, j, k] = local[f, j, k]
                 continue
             w, x, y, z = world[f, p, 0], world[f, p, 1], world[f, p, 2], world[f, p, 3]
             vx, vy, vz = offsets[j, 0], offsets[j, 1], offsets[j, 2]

@@ -7,43 +7,43 @@ from __future__ import annotations
 
 import math
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel
 
 Vec = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def add(a: Vec, b: Vec) -> Vec:
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def sub(a: Vec, b: Vec) -> Vec:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def scale(a: Vec, k: float) -> Vec:
     return (a[0] * k, a[1] * k, a[2] * k)
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def dot(a: Vec, b: Vec) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def cross(a: Vec, b: Vec) -> Vec:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def length(a: Vec) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-@njit(cache=True)
+@inner_kernel
 def unit(a: Vec) -> Vec:
     n = length(a)
     if n < 1e-12:
@@ -51,7 +51,7 @@ def unit(a: Vec) -> Vec:
     return (a[0] / n, a[1] / n, a[2] / n)
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def qmul(a: Quat, b: Quat) -> Quat:
     return (
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
@@ -61,32 +61,32 @@ def qmul(a: Quat, b: Quat) -> Quat:
     )
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def qconj(a: Quat) -> Quat:
     return (a[0], -a[1], -a[2], -a[3])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def qrot(q: Quat, v: Vec) -> Vec:
     axis = (q[1], q[2], q[3])
     t = scale(cross(axis, v), 2.0)
     return add(add(v, scale(t, q[0])), cross(axis, t))
 
 
-@njit(cache=True)
+@inner_kernel
 def qaxis(axis: Vec, angle: float) -> Quat:
     """Turn about a unit axis."""
     s = math.sin(angle / 2.0)
     return (math.cos(angle / 2.0), axis[0] * s, axis[1] * s, axis[2] * s)
 
 
-@njit(cache=True)
+@inner_kernel
 def qunit(q: Quat) -> Quat:
     n = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return (q[0] / n, q[1] / n, q[2] / n, q[3] / n)
 
 
-@njit(cache=True)
+@inner_kernel
 def qlerp(a: Quat, b: Quat, t: float) -> Quat:
     """Normalised interpolation on the short arc; close to slerp for the small angles of a spine."""
     sign = 1.0 if a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] >= 0.0 else -1.0
@@ -94,7 +94,7 @@ def qlerp(a: Quat, b: Quat, t: float) -> Quat:
     return qunit((u * a[0] + v * b[0], u * a[1] + v * b[1], u * a[2] + v * b[2], u * a[3] + v * b[3]))
 
 
-@njit(cache=True)
+@inner_kernel
 def qbetween(a: Vec, b: Vec) -> Quat:
     """Shortest turn from unit vector a to unit vector b."""
     w = 1.0 + dot(a, b)
@@ -104,7 +104,7 @@ def qbetween(a: Vec, b: Vec) -> Quat:
     return qunit((w, c[0], c[1], c[2]))
 
 
-@njit(cache=True)
+@inner_kernel
 def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
     """The rotation whose matrix has the orthonormal columns x, y, z."""
     trace = x[0] + y[1] + z[2]
@@ -121,7 +121,7 @@ def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
     return ((x[1] - y[0]) / s, (z[0] + x[2]) / s, (z[1] + y[2]) / s, s / 4.0)
 
 
-@njit(cache=True)
+@inner_kernel
 def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float) -> tuple[Quat, Quat]:
     """Closed-form two-bone limb.
 

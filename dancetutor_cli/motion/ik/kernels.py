@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.rig.limb import (
     Quat,
     Vec,
@@ -115,22 +115,22 @@ def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
     return out
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def _quat(a: Array) -> Quat:
     return (a[0], a[1], a[2], a[3])
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def _put(out: Array, q: Quat) -> None:
     out[0], out[1], out[2], out[3] = q
 
 
-@njit(cache=True)
+@inner_kernel
 def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
     """Move the root as little as needed until both ankles are within reach of their hips."""
     left, right = qrot(pelvis, hips[0]), qrot(pelvis, hips[1])
@@ -148,7 +148,7 @@ def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec
     return root
 
 
-@njit(cache=True)
+@inner_kernel
 def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
     """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
     p2, p3 = between
@@ -166,7 +166,7 @@ def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float,
     return p2, p3, p4
 
 
-@njit(cache=True)
+@inner_kernel
 def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
     """Chest rotation from where its middle line and its shoulder line point."""
     x = unit(sub(across, scale(up, dot(across, up))))
@@ -174,7 +174,7 @@ def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
     return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
 
 
-@njit(cache=True)
+@inner_kernel
 def _torso(
     root: Vec, pelvis: Quat, chest: Quat, shoulders: tuple[Vec, Vec], rig: Rig
 ) -> tuple[Quat, Quat, Quat, Vec, Vec]:
@@ -198,7 +198,7 @@ def _torso(
     return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
 
 
-@njit(cache=True, inline="always")
+@inner_kernel
 def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
     """q, swung by as little as needed so that the bone points in the direction."""
     return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
@@ -237,7 +237,7 @@ def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, ro
             _leg((f, side), add(place, qrot(pelvis, hips[side])), pelvis, rig, legs, out)
 
 
-@njit(cache=True)
+@inner_kernel
 def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
     """How far a shoulder is from where its arm could reach the wrist's target."""
     v = sub(wrist, shoulder)
@@ -245,7 +245,7 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
     return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
 
 
-@njit(cache=True)
+@inner_kernel
 def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTargets, out: Array) -> None:
     """One arm; at : frame and side."""
     f, side = at
@@ -263,7 +263,7 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
     _put(out[joints[base + 3]], qlerp(free, pin, pinned) if pinned > 0.0 else free)
 
 
-@njit(cache=True)
+@inner_kernel
 def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets, out: Array) -> None:
     """One leg; at : frame and side."""
     f, side = at

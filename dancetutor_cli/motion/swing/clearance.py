@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, ball_to_ankle
@@ -146,7 +146,7 @@ def _segment_gaps(a: Array, b: Array, c: Array, d: Array, out: Array) -> None:
         out[k] = min(first, _point_gap(cx, cy, (ax, ay, bx, by)), _point_gap(dx, dy, (ax, ay, bx, by)))
 
 
-@njit(cache=True)
+@inner_kernel
 def _point_gap(x: float, y: float, line: tuple[float, float, float, float]) -> float:
     """From a point to a segment, given as the places of its ends."""
     px, py = x - line[0], y - line[1]

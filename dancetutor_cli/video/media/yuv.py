@@ -11,7 +11,7 @@ import numpy as np
 from numba import int32, uint32
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 
 # Weights of red, green and blue in 1/65536: BT.709, luma 16..235 and chroma 16..240 of 255.
 _KR, _KB = 0.2126, 0.0722
@@ -28,7 +28,7 @@ _Y_BIAS = (16 << 16) + (1 << 15)
 _C_BIAS = (128 << 18) + (1 << 17)  # chroma is a sum over four pixels
 
 
-@njit(cache=True)
+@inner_kernel
 def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
     """Kept apart and simple so that the compiler makes vector code of it."""
     for i in range(out.shape[0]):
@@ -36,7 +36,7 @@ def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
         out[i] = (uint32(_Y0) * r + uint32(_Y1) * g + uint32(_Y2) * b + uint32(_Y_BIAS)) >> uint32(16)
 
 
-@njit(cache=True)
+@inner_kernel
 def _chroma(upper: Any, lower: Any, us: Any, vs: Any) -> None:  # pragma: no cover
     """A row of chroma from two rows of pixels."""
     for i in range(us.shape[0]):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.look import RGB, StageLook
 from dancetutor_cli.video.scene.stage import PANEL, Stage, pad_extent
 
@@ -58,7 +58,7 @@ def _mix(palette: Any, a: int, b: int, t: float) -> Any:  # pragma: no cover
     )
 
 
-@njit(cache=True)
+@inner_kernel
 def _line(x: float, tile: float, half: float, footprint: float) -> float:  # pragma: no cover
     """How much of a footprint around x is covered by lines of half width `half`, one every `tile` metres."""
     d = abs(x / tile - np.floor(x / tile + 0.5)) * tile
@@ -66,7 +66,7 @@ def _line(x: float, tile: float, half: float, footprint: float) -> float:  # pra
     return float(cover * min(1.0, 2.0 * half / footprint))
 
 
-@njit(cache=True)
+@inner_kernel
 def _floor(x: float, z: float, footprint: float, palette: Any) -> Any:  # pragma: no cover
     px, pz, tile = palette[13, 0], palette[13, 1], palette[12, 0]
     half_x, half_z, pool = palette[13, 2], palette[13, 3], palette[12, 1]
@@ -93,7 +93,7 @@ def arrow_distance(a: float, b: float) -> float:  # pragma: no cover
     return min(head, shaft)
 
 
-@njit(cache=True)
+@inner_kernel
 def _pad(x: float, z: float, footprint: float, paints: Any) -> Any:  # pragma: no cover
     """Colour, column of the panel or -1, how much it glows when lit, and how white."""
     palette, panel, arrow = paints.palette, paints.panel, paints.arrow
@@ -123,7 +123,7 @@ def _pad(x: float, z: float, footprint: float, paints: Any) -> Any:  # pragma: n
     return r, g, b, column, inside * max(0.72, max(border, sign)), max(0.62 * sign, 0.35 * border)
 
 
-@njit(cache=True)
+@inner_kernel
 def _wall(u: float, v: float, palette: Any) -> Any:  # pragma: no cover
     r, g, b = _mix(palette, 3, 4, smooth(0.0, 0.6, v))
     core, halo = u / 0.045, u / 0.30
@@ -133,7 +133,7 @@ def _wall(u: float, v: float, palette: Any) -> Any:  # pragma: no cover
     return r + palette[5, 0] * light, g + palette[5, 1] * light, b + palette[5, 2] * light
 
 
-@njit(cache=True)
+@inner_kernel
 def surface(kind: int, place: Any, footprint: float, paints: Any) -> Any:  # pragma: no cover
     """Colour (r, g, b), how much it takes shadows, column of the panel or -1, glow and whiteness of a lit panel.
 

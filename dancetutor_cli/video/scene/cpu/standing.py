@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.camera import Camera
 from dancetutor_cli.video.scene.cpu.stage_colours import Paints, paints_of, surface
 from dancetutor_cli.video.scene.look import Look
@@ -54,7 +54,7 @@ class _Stage(NamedTuple):
     paints: Paints
 
 
-@njit(cache=True)
+@inner_kernel
 def _nearest(eye: Any, direction: Any, quads: Any) -> Any:  # pragma: no cover
     """Number of the nearest surface and the distance along the ray, -1 if there is none."""
     ex, ey, ez = eye[0], eye[1], eye[2]
@@ -75,7 +75,7 @@ def _nearest(eye: Any, direction: Any, quads: Any) -> Any:  # pragma: no cover
     return found, best
 
 
-@njit(cache=True)
+@inner_kernel
 def _look(x: float, y: float, rays: Any, quads: Any) -> Any:  # pragma: no cover
     back = rays.back
     dx = back[0, 0] * x + back[0, 1] * y + back[0, 2]
@@ -92,7 +92,7 @@ def _find(rays: Any, quads: Any, left: int, found: Any) -> None:  # pragma: no c
             found[row, column] = _look(column - left + 0.5, row + 0.5, rays, quads)[0]
 
 
-@njit(cache=True)
+@inner_kernel
 def _same_around(found: Any, row: int, column: int) -> bool:  # pragma: no cover
     height, width = found.shape
     for r in range(max(row - 1, 0), min(row + 2, height)):
