@@ -61,7 +61,7 @@ class Doublestep(MoveRule):
         return [
             row for row in subject.rows_with(self.move)
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
-            and not subject.feet.crossed(row) and not _any_foot_near(subject, row)
+            and not subject.feet.crossed(row) and not any_foot_near(subject, row)
             and not _danced_otherwise(subject, row, self.longest(subject))
         ]  # fmt: skip
 
@@ -70,7 +70,7 @@ class Doublestep(MoveRule):
         return f"the {subject.foot_name(row)} foot steps twice in a row though the other is free"
 
 
-def _any_foot_near(subject: ChartSubject, row: int) -> bool:
+def any_foot_near(subject: ChartSubject, row: int) -> bool:
     """Whether two panels that can be jumped, a wall of mines or a hold that changes feet is near."""
     from dancetutor_cli.lint.other_foot import after_wall
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.rule import Happening, TimedRule
+from dancetutor_cli.lint.rules.doublestep import Doublestep, any_foot_near
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
 class TripleStep(TimedRule):
     """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
 
-    Steps while the other foot is held down, taps of a roll and steps around a mine do not count.
+    Steps while the other foot is held down, taps of a roll and steps around a mine do not count; nor those beside two
+    panels that can be jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there.
 
     `max_seconds`: only steps at most this far apart count. by-meter: the time of a doublestep (DT201) that at most
     `share` per cent of the charts of a meter have.
@@ -38,9 +40,12 @@ class TripleStep(TimedRule):
     code = "DT209"
     name = "triple-step"
     times = "doublestep"
+    slowest = Doublestep.slowest
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each third step that is quick enough: where a run begins depends on that."""
         spans = self.options["min_seconds"], self.longest(subject)
         for row, seconds in subject.feet.same_foot_runs(3, *spans) if subject.feet else ():
+            if any_foot_near(subject, row):
+                continue
             yield Happening(row, seconds, f"the {subject.foot_name(row)} foot steps three times in a row")
