@@ -122,6 +122,8 @@ class Retargeting:
 
     def report(self) -> Report:
         """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
+        import numpy as np
+
         from dancetutor_cli.bake import report
         from dancetutor_cli.bake.quality.faults import fault_figures
         from dancetutor_cli.bake.quality.retargeting import with_distances
@@ -129,7 +131,8 @@ class Retargeting:
         passed = self.passed
         whole = report(passed.motion)
         faults = fault_figures(self.given, passed.motion, passed.plants)
-        whole = replace(whole, figures=(*whole.figures, *faults))
+        curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
+        whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
         plain = not set(self.task.wishes.corrections) - {"limits"}
         return with_distances(whole, passed.distances, self.task.style if plain else None)
 

@@ -77,7 +77,18 @@ def test_the_report_tells_faults_before_and_after(bvh: Path, tmp_path: Path) -> 
     assert "Distance of the ragdoll, cm" in printed
     names = {f["name"] for f in json.loads(data.read_text())["figures"]}
     assert {"slide per plant, input", "slide per plant", "frames past limits, input", "elbows bent backward"} <= names
-    assert "farthest retargeting point, cm" in plot.read_text()
+    drawn = plot.read_text()
+    assert "farthest retargeting point, cm" in drawn and "contact error" not in drawn, "a capture has no notes"
+
+
+def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path: Path) -> None:
+    rogue, out = shared_data / "characters" / "kaykit_rogue.glb", tmp_path / "a.npz"
+    assert "keys, " in run(rogue, "-o", out, "--animation", "Jump_Full_Short", "--correct", "none")
+    feet = read_npz(out).root[:, 1]
+    assert np.ptp(feet) > 0.1, "she jumps"
+    assert "there is no animation 'Jmp'; there are: " in said(rogue, "-o", out, "--animation", "Jmp")
+    robot = shared_data / "characters" / "raylib_robot.glb"
+    assert "is no usable humanoid (14 of 15 bones found): no spine; " in said(robot, "-o", out)
 
 
 def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
