@@ -67,7 +67,7 @@ def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[f
         else:
             if seconds not in means:
                 windows = np.cumsum(np.bincount(firsts[seconds], minlength=len(rows))) - order  # that each row is in
-                means[seconds] = (_things(play, rows) @ windows / (len(rows) * seconds)).tolist()
+                means[seconds] = (_sums(play, rows, windows) / (len(rows) * seconds)).tolist()
             out[place] = means[seconds][_PLACE[thing]]
     return out
 
@@ -85,26 +85,26 @@ def _spans(wanted: tuple[Feature, ...]) -> tuple[float, ...]:
     return tuple(dict.fromkeys(feature.seconds for feature in wanted if feature.seconds))
 
 
-def _things(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(`THINGS`, rows): how often each happens in each of some rows with a step."""
+def _sums(play: Play, rows: NDArray[np.int64], windows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(`THINGS`,): how often each happens in all windows together. rows : those with a step; windows : of each row"""
     number = {names: n for n, names in enumerate(dict.fromkeys(play.moves))}
     codes = np.fromiter(map(number.__getitem__, play.moves), np.intp, len(play.moves))[rows]
-    out = np.empty((len(THINGS), len(rows)))
-    out[0] = 1.0
-    out[1:-2] = np.array([_marked(names) for names in number]).T.take(codes, axis=1)
-    crossed = out[_CROSSOVERS]
-    out[_CROSSOVERS, 1:] = crossed[1:] * (crossed[:-1] == 0)
+    marks = np.array([_marked(names) for names in number])
+    out = np.empty(len(THINGS))
+    out[0] = windows.sum()
+    out[1:-2] = np.bincount(codes, windows, len(number)) @ marks
+    crossed = marks[:, _CROSSOVERS - 1].astype(bool)[codes]
+    stays = crossed[1:] & crossed[:-1]
+    out[_CROSSOVERS] -= windows[1:][stays].sum()
     facing = play.facing[rows]
     turned = np.abs(facing[1:] - facing[:-1])
-    out[-2, 0] = 0.0
-    out[-2, 1:] = np.minimum(turned, 360.0 - np.minimum(turned, 360.0)) / _QUARTER
+    out[-2] = np.minimum(turned, 360.0 - np.minimum(turned, 360.0)) @ windows[1:] / _QUARTER
     ends = play.rows.hold_end.T
     until = ends[0]
     for column in ends[1:]:  # there are few columns, and rows by the thousand
         until = np.maximum(until, column)
-    until = np.maximum.accumulate(until)
-    out[-1] = until[rows - 1] > play.rows.tick[rows]
-    out[-1, 0] = 0.0
+    held = np.maximum.accumulate(until)[rows[1:] - 1] > play.rows.tick[rows[1:]]
+    out[-1] = windows[1:][held].sum()
     return out
 
 
