@@ -46,7 +46,7 @@ def measure() -> list[Row]:
             browser = Browser()
             try:
                 browser.size(1280, 720)
-                browser.open(path)
+                browser.open(path, live=True)
                 opened.append(float(browser.run("document.documentElement.dataset.ready")))
                 frame.append(float(browser.run(FRAMES)))
             finally:
