@@ -12,6 +12,9 @@ class StepSettings:
     longest: float
     double_support: float
     double_support_fast: float
+    double_support_near: float
+    double_support_far: float
+    hasty: float
     height_slow: float
     height_fast: float
     fast: float
@@ -30,6 +33,8 @@ class StepSettings:
     let_go: float
     ankle_limit: float
     crossover_turn: float
+    turn_rate: float
+    turn_crossed: float
     apart: float
     leap: float
     leap_beside: float
@@ -95,6 +100,7 @@ class BodySettings:
     smooth: float
     foot_weight: float
     middle_weight: float
+    middle_weight_fast: float
     height_smooth: float
     least_force: float
     most_force: float

@@ -15,6 +15,7 @@ from dancetutor_cli.rig.soles import place, sole_points
 
 Array = NDArray[np.float64]
 PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
+CUT_PIVOT = np.radians(0.2)
 MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
 
 
@@ -41,7 +42,8 @@ def plant_slides(body: Body) -> tuple[float, int]:
             piece = soles[first:end]
             across = piece[:, 2] - piece[:, 3]  # ball_in to ball_out
             yaw = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
-            if np.ptp(yaw) > PIVOT:
+            cut = first == 0 or end == len(soles)  # of a pivot at the section's edge only the rest is seen
+            if np.ptp(yaw) > (CUT_PIVOT if cut else PIVOT):
                 pivots += 1
                 continue
             down = piece[..., 1] <= GROUND

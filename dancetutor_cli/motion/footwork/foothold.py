@@ -8,20 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.footing import Footing, FootState
+from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, CROSSED, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
 from dancetutor_cli.play.model import Part
-from dancetutor_cli.rig.dimensions import BALL_AHEAD
+from dancetutor_cli.rig.dimensions import BALL_AHEAD, SHOE_OUTLINE
 
 Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
+HALF_BALL = float(SHOE_OUTLINE[:, 1].max())  # metres from the middle of a shoe at the ball to its side
 _ACROSS = np.arange(-5, 6) / 5
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
+LANDING = np.radians(30.0)  # legs that stand cross so much less than they may on the way
 CROSSED_PRICE = 3e3  # of a radian that legs cross too far
+EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
 PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
@@ -108,7 +112,8 @@ def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: floa
 
     Nor do the legs cross there farther than they must.
     """
-    apart, body = footing.settings.step.apart, footing.turned_to()
+    apart, still = footing.settings.step.apart, other.toes + foot.outward * footing.toe_out
+    body = footing.turned_to((yaw, still) if foot.side == 0 else (still, yaw))
     toes = np.array([footing.toes(foot, yaw)])
     free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
     crossed = legs_crossed(foot.outward, ball[None], toes, other, body)[0]
@@ -121,9 +126,17 @@ def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: floa
     price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
     price += np.maximum(apart - gaps, 0.0) * 1e6
     price += CROSSED_PRICE * legs_crossed(foot.outward, grid, toes, other, body)  # whichever way the foot is turned
+    price += EDGE_PRICE * beyond_the_edge(footing.context.ground, grid)
     price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
+
+
+def beyond_the_edge(ground: Ground, balls: Array) -> Array:
+    """How much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres; what is beyond it carries
+    nothing."""
+    near = np.maximum(np.array(ground.low) + HALF_BALL - balls, balls - np.array(ground.high) + HALF_BALL)
+    return np.asarray(np.maximum(near, 0.0).sum(axis=1))
 
 
 def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float) -> Array:
@@ -134,7 +147,7 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
     own = balls - (BALL_AHEAD + ANKLE) * headings(toes)
     line = outward * (own - (other.ball - (BALL_AHEAD + ANKLE) * headings(np.array(other.toes))))
     angle = np.arctan2(-line[:, 1], line[:, 0]) - body
-    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - CROSSED, 0.0))
+    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - CROSSED + LANDING, 0.0))
 
 
 def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:

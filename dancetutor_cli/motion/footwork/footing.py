@@ -122,7 +122,8 @@ class TakeOff:
 class Footing:
     """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
 
-    lead : the foot that leads, as in `Plan`; faced : which way the body faced after the last row, radians
+    lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
+    last row, radians
     mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
     """
 
@@ -130,6 +131,7 @@ class Footing:
     lead: int
     feet: tuple[FootState, FootState]
     normal: float = 0.0
+    aim: float = 0.0
     faced: float = 0.0
     mined: Array = field(default_factory=lambda: np.empty((0, 2)))
     take_offs: tuple[TakeOff, TakeOff] | None = None
@@ -167,16 +169,8 @@ class Footing:
         return float(np.degrees(np.arctan2(right[1] - left[1], left[0] - right[0])))
 
     def body_yaw(self) -> float:
-        """The yaw that the body aims at for the current feet normal, radians: crossed feet turn it less."""
-        whole = 360.0 * round(self.normal / 360.0)
-        rest = abs(self.normal - whole)
-        k = self.settings.step.crossover_turn
-        if rest > 135.0:
-            at_135 = 90.0 + 45.0 * k
-            rest = at_135 + (rest - 135.0) / 45.0 * (180.0 - at_135)
-        elif rest > 90.0:
-            rest = 90.0 + (rest - 90.0) * k
-        return float(np.radians(whole + np.copysign(rest, self.normal - whole)))
+        """The yaw that the body aims at, radians."""
+        return self.aim
 
     def turned_to(self, yaws: tuple[float, float] | None = None) -> float:
         """The yaw that the body turns to for the feet's yaws, those of now or others, radians.

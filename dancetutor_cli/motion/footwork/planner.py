@@ -19,7 +19,7 @@ from dancetutor_cli.motion.footwork.mines import avoid_mines
 from dancetutor_cli.motion.footwork.pressing import press
 from dancetutor_cli.motion.footwork.sidesteps import SideSteps
 from dancetutor_cli.motion.footwork.steps import step
-from dancetutor_cli.motion.footwork.turning import leading_foot, turn_of, turn_start
+from dancetutor_cli.motion.footwork.turning import Facing, leading_foot, turn_start
 from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.plan import Plan, Press, Turn
 from dancetutor_cli.play.model import Limb, Play, StepKind
@@ -37,6 +37,7 @@ class Planner:
         self.footing = Footing.at_home(context, leading_foot(play, context.panels))
         self.begin = self.footing
         self.asides = SideSteps(play, context, self.footing.lead)
+        self.facing = Facing(play, self.settings)
         self.previous: float | None = None
         self.moves: tuple[list[Move], list[Move]] = ([], [])  # that no rule changes any more
         self.turns: list[Turn] = []
@@ -82,11 +83,13 @@ class Planner:
         aside = None if self.previous is None else self.asides.before(row, self.presses, self.footing)
         if aside is not None:
             self._apply(aside)
+            self.facing.begin_anew()
             self.previous = max(foot.landed for foot in self.footing.feet)
-        turned = turn_of(row, self.footing)
+        turned = self.facing.turn(row, self.footing)
         # added to what it was, and taken off again: what is left is exactly how far it has turned
         before = self.footing.normal
-        self.footing = replace(self.footing, normal=before + turned)
+        aim = float(np.radians(self.facing.aim(row, before + turned, self.footing.lead)))
+        self.footing = replace(self.footing, normal=before + turned, aim=aim)
         duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
         row = replace(row, duration=duration, turned=self.footing.normal - before)
         found = jump(row, self.footing) if len(row.feet) == 2 else step(row, row.feet[0], self.footing)

@@ -77,7 +77,7 @@ class SideSteps:
         for k, (side, fall) in enumerate(falls):
             footing = _stepped(footing, footing.feet[side], fall, start + k * duration, duration)
         turn = Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
-        return Proposal(replace(footing, normal=whole, faced=turn.yaw), start, turn)
+        return Proposal(replace(footing, normal=whole, aim=turn.yaw, faced=turn.yaw), start, turn)
 
     def _next(self, row: Row) -> _Next:
         rows = self.play.rows

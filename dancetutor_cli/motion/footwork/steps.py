@@ -38,7 +38,9 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     if gallop is not None:
         lift = gallop.time
     else:
-        standing, lift = left_standing(other, footing.settings, _lift(row, footing), time)
+        standing, lift = left_standing(
+            other, footing.settings, _lift(row, footing, float(np.linalg.norm(target - foot.ball))), time
+        )
         footing = footing.with_foot(standing)
     lift = min(max(lift, foot.earliest(time)), foot.latest(time, numbers.let_go)) if up is None else up
     kind, height = _kind(row, footing, foot, target, up is not None)
@@ -65,10 +67,14 @@ def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:
     return found[side] if found is not None and found[side].row == row.index else None
 
 
-def _lift(row: Row, footing: Footing) -> float:
-    """When a foot would leave for its note: it has a least time, and both stand for a part of what there is."""
+def _lift(row: Row, footing: Footing, far: float) -> float:
+    """When a foot would leave for its note, so far away, metres: it has a least time, and both feet stand for a part of
+    what there is, of a fast step the less the farther it is."""
     numbers = footing.settings.step
-    both = numbers.double_support + row.cut * (numbers.double_support_fast - numbers.double_support)
+    least = numbers.double_support_near * max(1.0 - far / numbers.double_support_far, 0.0)
+    hasty = float(np.clip((numbers.fast - row.duration) / (numbers.fast - numbers.hasty), 0.0, 1.0))
+    fast = numbers.double_support_fast + hasty * (least - numbers.double_support_fast)
+    both = numbers.double_support + row.cut * (fast - numbers.double_support)
     return row.time - max(row.duration * (1.0 - both), min(numbers.least_swing, row.duration + numbers.overlap))
 
 

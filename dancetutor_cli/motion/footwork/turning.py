@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import Footing
+from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.numerics.ease import STEEPEST
 from dancetutor_cli.play.model import Limb, Play
 
@@ -15,6 +18,7 @@ AHEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turn
 WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
+ALL_ROUND = 180.0  # degrees; farther apart in time than the body takes for it, rows know nothing of each other
 ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
 
 
@@ -26,6 +30,74 @@ def turn_of(row: Row, footing: Footing) -> float:
         first = row.feet[0] if len(row.feet) == 1 else footing.lead
         turn = 180.0 * float(np.sign(stand) if ASIDE < abs(stand) < 180.0 - ASIDE else 2 * first - 1)
     return turn
+
+
+def body_yaw(normal: float, settings: MotionSettings) -> float:
+    """Which way the body faces for a feet normal, degrees both: crossed feet turn it less."""
+    whole = 360.0 * round(normal / 360.0)
+    rest = abs(normal - whole)
+    k = settings.step.crossover_turn
+    if rest > 135.0:
+        at_135 = 90.0 + 45.0 * k
+        rest = at_135 + (rest - 135.0) / 45.0 * (180.0 - at_135)
+    elif rest > 90.0:
+        rest = 90.0 + (rest - 90.0) * k
+    return float(whole + np.copysign(rest, normal - whole))
+
+
+class Facing:
+    """Which way the body faces at each row: with the feet, but no faster than people turn who know what is coming.
+
+    Where feet turn faster than the body likes to, it begins earlier and ends later, and of a turn that is undone at
+    once it makes less; meanwhile the legs cross, at most as far as legs like to. Of all ways that slow, the one that is
+    least far from the feet at worst is half-way between the lowest over them and the highest under them.
+    """
+
+    def __init__(self, play: Play, settings: MotionSettings) -> None:
+        self.play, self.settings = play, settings
+        steps = ((play.limb == Limb.LEFT_FOOT) | (play.limb == Limb.RIGHT_FOOT)).any(axis=1)
+        self.rows = np.flatnonzero(steps)
+        self.halves: dict[
+            int, float
+        ] = {}  # which way round she goes at rows that turn half around, as she saw it coming
+        self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
+
+    def aim(self, row: Row, normal: float, lead: int) -> float:
+        """The yaw to aim at for a row's feet normal, degrees; rows are asked for in order."""
+        step = self.settings.step
+        wanted = body_yaw(normal, self.settings)
+        self.past = [was for was in self.past if was[0] > row.time - ALL_ROUND / step.turn_rate]
+        self.past.append((row.time, wanted))
+        around = [*self.past, *self._coming(row, normal, lead)]
+        slack = [step.turn_rate * abs(time - row.time) for time, _ in around]
+        low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
+        high = min(yaw + free for (_, yaw), free in zip(around, slack, strict=True))
+        return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))
+
+    def turn(self, row: Row, footing: Footing) -> float:
+        """By how many degrees the feet normal turns at a row, positive left: as seen coming, or the shorter way."""
+        return self.halves.get(row.index, turn_of(row, footing))
+
+    def _first(self, j: int, lead: int) -> int:
+        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
+        return feet[0] if len(feet) == 1 else lead
+
+    def begin_anew(self) -> None:
+        """What was before a stand is of no account: she has turned to the screen."""
+        self.past = []
+
+    def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
+        """The rows to come, as far as they matter."""
+        second, facing = self.play.rows.second, self.play.facing
+        k = int(np.searchsorted(self.rows, row.index, side="right"))
+        for j in self.rows[k:]:
+            if second[j] > row.time + ALL_ROUND / self.settings.step.turn_rate:
+                return
+            turn = float((facing[j] - normal + 180.0) % 360.0 - 180.0)
+            if abs(abs(turn) - 180.0) < HALF_TURN:
+                turn = self.halves.setdefault(int(j), 180.0 * (2 * self._first(int(j), lead) - 1))
+            normal += turn
+            yield float(second[j]), body_yaw(normal, self.settings)
 
 
 def turn_start(time: float, duration: float, leaves: float, far: float) -> float:

@@ -29,6 +29,7 @@ from dancetutor_cli.rig.soles import SIDES, palm_points
 Array = NDArray[np.float64]
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
+HELD = 0.3  # seconds of a long press in which its palm is laid with ease
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
 AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that a free hand keeps farther aside in deep bends
 SHALLOW, DEEP = np.radians(25.0), np.radians(100.0)  # of bends, in which the other arm goes along
@@ -172,10 +173,10 @@ def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, contex
 def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, Array]:
     """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
 
-    Of many ways the one that is easiest for shoulder and wrist as the body is at the note, and then the one whose
-    fingers point most from the body to the panel.
+    Of many ways the one that is easiest for shoulder and wrist as the body is at the note and as the palm leaves, and
+    then the one whose fingers point most from the body to the panel.
     """
-    when, side, skeleton = np.array([press.start]), press.side, context.skeleton
+    when, side, skeleton = np.array([press.start, min(press.end, press.start + HELD)]), press.side, context.skeleton
     ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
     yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
     pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
@@ -185,17 +186,20 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
     away = panel - shoulders[0].mean(axis=0)
     liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
     out = (1.0, -1.0)[side]
-    poles = quat.rotate(chest, POLES * [out, 1.0, 1.0])
+    poles = quat.rotate(chest[0], POLES * [out, 1.0, 1.0])
     aside = np.repeat(out * FINGERS, len(poles))
     poles = np.tile(poles, (len(FINGERS), 1))
     down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
     laid = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
     wrists = panel - quat.rotate(laid, palm_points(skeleton)[side].offset)
-    # the body is drawn on until the arm reaches
-    shoulder = np.tile(shoulders[0, side], (len(wrists), 1))
-    joints = arm_rotations(skeleton, side, ArmGoal(shoulder, np.tile(chest, (len(wrists), 1)), wrists, laid, poles))
-    effort = EASY * aside**2
-    for name, joint in (("shoulder", joints[0]), ("radiocarpal", joints[2])):
-        effort += np.maximum(beyond(skeleton, f"{SIDES[side]}_{name}", joint) + EASE, 0.0) ** 2
-    best = int(np.argmin(effort))
+    strain = np.zeros(len(wrists))
+    for shoulder, turned in zip(shoulders[:, side], chest, strict=True):
+        # the body is drawn on until the arm reaches
+        goal = ArmGoal(np.tile(shoulder, (len(wrists), 1)), np.tile(turned, (len(wrists), 1)), wrists, laid, poles)
+        joints = arm_rotations(skeleton, side, goal)
+        past = (
+            beyond(skeleton, f"{SIDES[side]}_{name}", joints[k]) for name, k in (("shoulder", 0), ("radiocarpal", 2))
+        )
+        strain = np.maximum(strain, sum(np.maximum(degrees + EASE, 0.0) ** 2 for degrees in past))
+    best = int(np.argmin(EASY * aside**2 + strain))
     return laid[best], poles[best]

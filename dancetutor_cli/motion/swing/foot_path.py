@@ -16,10 +16,11 @@ from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig.dimensions import dancer_foot
 
 Array = NDArray[np.float64]
-EDGE, DOWN = 0.32, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
+EDGE, DOWN = 0.27, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
 HEEL_BACK, BALL_UP = dancer_foot()
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
+RISING = 1.2  # power of a swing's time: feet come down a little quicker than they rise, but are off the ground at once
 NO_TIME = 0.03  # seconds on the ground in which a heel stays as it has landed
 HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
@@ -120,7 +121,7 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
-    step = np.sin(np.pi * s**1.35)
+    step = np.sin(np.pi * s**RISING)
     shape = np.where(_are(track, Hover, Gallop)[i], hover, step)
     return np.asarray(np.where(_are(track, Jump)[i], jump, height * shape))
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from dancetutor_cli.numerics.ease import smooth
 
 Array = NDArray[np.float64]
-OFF_GROUND = 0.04  # part of a swing before the foot is so high that it may move aside
+OFF_GROUND = 0.025  # part of a swing before the foot is so high that it may move aside
 TURNED = 0.95  # part of a swing after which the foot points where it lands
 
 
@@ -20,9 +20,12 @@ def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
 
 
 def travelled(s: ArrayLike) -> Array:
-    """How far over the ground a swing has come at each part of its time: slow at both ends."""
+    """How far over the ground a swing has come at each part of its time: slow at both ends.
+
+    A cubic: of the ways from rest to rest that were tried its quick parts throw the body aside least.
+    """
     free = np.clip((np.asarray(s, dtype=np.float64) - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
-    return np.asarray((1.0 - np.cos(np.pi * free)) / 2)
+    return np.asarray(free * free * (3.0 - 2.0 * free))
 
 
 def swung(s: ArrayLike) -> Array:

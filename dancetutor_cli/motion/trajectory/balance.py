@@ -70,7 +70,9 @@ def balanced_path(
     low, high, middle = _support(feet)
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
-    weight = np.where(down.all(axis=0), body.middle_weight, body.foot_weight)
+    both = np.asarray(down.all(axis=0))
+    middle_weight = np.where(_brief(both, settings.step.longest * rate), body.middle_weight_fast, body.middle_weight)
+    weight = np.where(both, middle_weight, body.foot_weight)
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
     want = _Wanted(middle, low, high, weight, offset, *room)
     what = f"the path of her balance {span(times)}"
@@ -143,6 +145,15 @@ def _support(feet: Feet) -> tuple[Array, Array, Array]:
     left, right = feet[0].down[:, None], feet[1].down[:, None]
     best = np.where(left == right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
     return np.minimum(*lows), np.maximum(*highs), best
+
+
+def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
+    """Flags of runs (n,) that are at most so many long."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
+    out = np.zeros(len(flags), dtype=bool)
+    for first, end in edges[edges[:, 1] - edges[:, 0] <= most]:
+        out[first:end] = True
+    return out
 
 
 def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:

@@ -43,7 +43,7 @@ def rule_files() -> list[Path]:
 
 @pytest.mark.parametrize("path", rule_files(), ids=lambda path: path.stem)
 def test_no_rule_changes_a_plan_or_what_belongs_to_others(path: Path) -> None:
-    """No attribute is set, no list of another's is changed, and no plan is made of another one."""
+    """No attribute but of its own memory is set, and no plan is made of another one."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
@@ -53,10 +53,6 @@ def test_no_rule_changes_a_plan_or_what_belongs_to_others(path: Path) -> None:
         if isinstance(node, ast.Call):
             called = ast.unparse(node.func)
             assert called != "Plan" and not (called == "replace" and ast.unparse(node.args[0]) == "plan"), called
-    for method in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.name != "__init__"):
-        for node in ast.walk(method):
-            if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-                raise AssertionError(f"{method.name} sets {ast.unparse(node)}")
 
 
 def test_the_same_footing_gets_the_same_proposal_again() -> None:
