@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bake_plays import L, R, chart, pad, play, stream
+from bake_plays import L, R, chart, context, pad, play, stream
 
 from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.chart import load
 from dancetutor_cli.motion.foot_moves import Walk
+from dancetutor_cli.motion.footwork.walks import side_of
 from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, load_gait, walking
 from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
@@ -199,3 +200,21 @@ def test_she_walks_on_in_the_demo_song(gait: str) -> None:
         assert real is not None and own is not None
         walks = plan_of(wanted, real, own, gait=gait).walks
         assert [w.end < 2.0 for w in walks] == [True, False], wanted.label
+
+
+def test_she_comes_from_either_side_and_from_the_same_one_for_the_same_notes() -> None:
+    """By chance, but seeded by the notes; the mirror image of a play is walked on as the mirror image."""
+    sides = []
+    for first in np.arange(3.0, 4.0, 0.1):
+        events = stream(float(first), 6, 0.4)
+        swapped = [(time, {(3, 1, 2, 0)[c]: {L: R, R: L}[limb] for c, limb in row.items()}) for time, row in events]
+        plan, image = plan_of(chart(), play(events), pad()), plan_of(chart(), play(swapped), pad())
+        assert (
+            side_of(plan, context())
+            == side_of(plan_of(chart(), play(events), pad()), context())
+            == 1 - side_of(image, context())
+        )
+        came = [float(np.sign(p.feet[0].start[0])) for p in (plan, image)]
+        assert came == [1.0 - 2.0 * side_of(p, context()) for p in (plan, image)]
+        sides.append(side_of(plan, context()))
+    assert set(sides) == {0, 1}

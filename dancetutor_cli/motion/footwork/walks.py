@@ -7,6 +7,7 @@ as exactly, the body's path keeps its balance over them, and what the gait adds 
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +38,7 @@ class WalkProposal:
 
 
 def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """She comes from the side of the foot that leads as the song begins, if there is time before the first note."""
+    """She comes from one side as the song begins, if there is time before the first note."""
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
     if busy < walk.least or (mines < busy).any():
@@ -47,8 +48,9 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     targets = np.array([s.target for s in following if s is not None])
     if len(places) > 1 and len(targets) == len(following):
         goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
-    heading = -plan.hand * np.pi / 2
-    away = np.array([_beside(ground, plan.lead, walk.beside), goal.middle[1]])
+    side = side_of(plan, context)
+    heading = (side - 0.5) * np.pi
+    away = np.array([_beside(ground, side, walk.beside), goal.middle[1]])
     begin = stand_at(away, heading, settings)
     ready = min(plan.first - walk.settle, busy - walk.settle - ARRIVED)
     steps = footsteps(Trip(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
@@ -62,7 +64,7 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
-    for side in (1 - plan.lead, plan.lead):
+    for side in (1 - side_of(plan, context), side_of(plan, context)):
         heading = (0.5 - side) * np.pi
         goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
@@ -75,6 +77,17 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
         return None
     free = [way for way in found if way.steps.room >= settings.step.apart]
     return free[0] if free else max(found, key=lambda way: way.steps.room)
+
+
+def side_of(plan: Plan, context: Context) -> int:
+    """The side from which she comes, 0 left or 1 right: by chance, but always the same one for the same notes.
+
+    For the mirror image of a play it is the other one. On two pads it is the side of the foot that leads.
+    """
+    if len(context.squares) > 1:
+        return plan.lead
+    notes = np.round([touch.start for touch in plan.touches], 3)
+    return plan.lead ^ (zlib.crc32(notes.tobytes()) & 1)
 
 
 def _beside(ground: Ground, side: int, far: float) -> float:
