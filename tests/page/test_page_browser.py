@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -85,7 +86,9 @@ def test_it_plays_loops_and_seeks(browser: Browser) -> None:
     browser.key("ArrowRight")
     assert second(browser) == pytest.approx(2.25, abs=0.01)  # the next row is an eighth later
     browser.run("location.hash = '#m1-1.5@2'")
-    browser.wait("document.querySelector('.said').textContent.startsWith('loop measures 1 to 1.5')")
+    browser.wait(
+        "document.querySelector('.said').textContent.startsWith('loop measure 1, beat 1 to measure 1, beat 2')"
+    )
     browser.key("i", "KeyI")  # no count-in: the loop is a second of music, half a second at this speed
     browser.key(" ", "Space")
     browser.turn(0.06 + 0.55)
@@ -117,6 +120,7 @@ def test_the_end_of_the_ramp_brings_the_chosen_speed_back(browser: Browser, page
     browser.key("r", "KeyR")
     browser.key(" ", "Space")
     browser.turn(0.06 + 2.6)  # a pass of two seconds at 80 %
+    assert browser.run("document.querySelector('.rate').value") == "0.85"
     assert text(browser, ".rate-text") == "85 %" and "ramp: 80 % → 85 %" in said(browser)
     assert browser.run("location.hash") == "#m1-1@0.8"
     browser.key("r", "KeyR")
@@ -135,8 +139,8 @@ def test_the_strip_seeks_and_makes_loops(browser: Browser) -> None:
         browser.mouse("mouseMoved", x + 0.1 * k * w, y + h / 2)
     browser.mouse("mouseReleased", x + 0.7 * w, y + h / 2)
     browser.drawn()
-    assert said(browser).startswith("loop measures ")
-    assert browser.run("location.hash").startswith("#m")
+    assert re.match(r"loop measures? \d+( to \d+)?, 0", said(browser))  # whole ones, as they are named
+    assert re.fullmatch(r"#m\d+-\d+", browser.run("location.hash"))
 
 
 def press_pad(browser: Browser, *buttons: int) -> None:
@@ -185,7 +189,10 @@ def test_panels_can_be_given_other_keys(browser: Browser) -> None:
     browser.click("#assign")
     for key in "qwer":
         browser.key(key, f"Key{key.upper()}")
-    assert browser.run("[...document.querySelectorAll('.keys kbd')].map(k => k.textContent).join('')") == "QWER"
+    assert (
+        browser.run("[...document.querySelectorAll('.keys kbd:first-of-type')].map(k => k.textContent).join('')")
+        == "QWER"
+    )
     assert browser.run("JSON.parse(localStorage.getItem('dancetutor')).keys['4'].join()") == "KeyQ,KeyW,KeyE,KeyR"
     assert browser.run("Object.keys(localStorage).every(key => key.startsWith('dancetutor'))")
 
@@ -207,9 +214,18 @@ def test_music_can_be_dropped_and_plays(browser: Browser, page_file: Path) -> No
     )
     assert "No music yet" in text(browser, "#music-state")
     browser.run("window.drop(new Uint8Array(100), 'a.ogg')")
-    browser.wait("document.querySelector('.said').textContent.includes('cannot play')")
+    browser.wait(
+        "document.querySelector('.said').textContent ==="
+        " 'a.ogg cannot be played as music here. No music yet: the page claps instead.'"
+    )
+    assert text(browser, "#music-state") == text(browser, ".said")
     browser.run("window.drop(window.wav, 'a.wav')")
-    browser.wait("document.querySelector('#music-state').textContent === 'The music is loaded.'")
+    browser.wait("document.querySelector('#music-state').textContent === 'The music is loaded: a.wav.'")
+    browser.wait("document.querySelector('.pick').offsetParent === null")
+    browser.run("window.drop(new Uint8Array(100), 'b.ogg')")  # no music: the one before stays, and both places say so
+    browser.wait("document.querySelector('.said').textContent.startsWith('b.ogg cannot')")
+    assert text(browser, "#music-state") == text(browser, ".said")
+    assert text(browser, "#music-state").endswith("The music is loaded: a.wav.")
     browser.key(" ", "Space")
     start = second(browser)
     browser.wait(f"{NOW} > {start} + 0.3")
@@ -226,11 +242,11 @@ def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser, 
     browser.key("ArrowRight")
     browser.key("o", "KeyO")
     about = text(browser, "#panel-author .about")
-    assert "left R" in about and "You gave it the other foot" in about
+    assert "left R" in about and re.search(r"You gave it the other foot: [a-z ]*awkward \(cost \+\d+\)", about)
     assert "Kept in this browser" in text(browser, "#panel-author .saved")
     browser.key("o", "KeyO")  # and back
     about = text(browser, "#panel-author .about")
-    assert "left L" in about and "The other foot costs" in about and text(browser, "#panel-author .saved") == ""
+    assert "left L" in about and "The other foot is " in about and text(browser, "#panel-author .saved") == ""
     browser.key("o", "KeyO")
     assert "measure 1, beat 1: R" in text(browser, ".changes")
     browser.run("for (const b of document.querySelectorAll('#panel-author .column button')) b.click()")
@@ -291,6 +307,10 @@ def test_another_language_is_spoken_at_once(browser: Browser) -> None:
     assert browser.run("document.activeElement.id") == "language"
     told = browser.run("[...document.querySelectorAll('.finding .text:not([lang])')].map(e => e.textContent)")
     assert told and all(line.endswith(".") for line in told)
+    assert browser.run("document.querySelectorAll('.finding [lang=en]').length") == 0  # and not in English besides
+    keys = browser.run("[...document.querySelectorAll('.sheet kbd')].map(e => e.textContent)")
+    assert {"Bild↑", "Bild↓", "Pos1", "Ende"} <= set(keys) and "PageUp" not in keys
+    assert re.search(r"\d,\d Schritte/s", text(browser, "#panel-passages .figure"))
     assert "DT402 versteckte Note" in text(browser, "#panel-findings")
     browser.click(".play")
     browser.turn(1.06)
@@ -327,14 +347,22 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     browser.click(".card")  # loops a passage, where the picture is in sight
     assert boxes(browser, ".picture")[0] == stage and said(browser).startswith("loop measure")
     browser.key("p", "KeyP")
-    ((_, top, right, bottom),) = boxes(browser, ".said")
-    assert "0 hit" in said(browser) and top >= stage[1] and bottom <= stage[3] and right <= stage[2]
+    ((left, top, right, bottom),) = boxes(browser, ".said")  # above the picture, whole, and clear of her
+    assert said(browser).startswith("0 hit") and left >= 0 and top >= 0 and bottom <= stage[1] and right <= 380
+    assert browser.run("(e => e.scrollHeight <= e.clientHeight + 1)(document.querySelector('.said'))")
     browser.click(".more")  # all controls, and still a picture
     assert boxes(browser, ".picture")[0][3] - stage[1] > 200
+    browser.click("#tab-findings")  # a tab that is tapped closes them and opens
+    assert (
+        browser.run("!document.querySelector('.bar.open') && document.querySelector('.more').ariaExpanded") == "false"
+    )
+    assert browser.run("document.querySelector('#panel-findings').offsetParent !== null")
+    browser.click(".more")
     assert browser.run(f"{root}.scrollHeight <= 740 && document.querySelector('.rate').offsetParent !== null")
     browser.click(".more")
-    browser.click("#tab-passages")  # the open tab folds its panel away
-    assert boxes(browser, ".picture")[0][3] > stage[3] + 150
+    browser.click("#tab-findings")  # the open tab folds its panel away, and the lanes become wider for fingers
+    folded, lanes = boxes(browser, ".picture", ".lanes")
+    assert folded[3] > stage[3] + 150 and lanes[2] - lanes[0] > 220
     browser.key("?", "Slash", 8)
     assert text(browser, "dialog.sheet h3 + p").startswith("Tap ▶")
     assert browser.problems == []

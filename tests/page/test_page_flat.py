@@ -37,7 +37,7 @@ def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) ->
     flat.open(page_file)
     flat.run(pad_script())
     flat.run("location.hash = '#m0.5-1.5@0.25'")
-    flat.wait("document.querySelector('.said').textContent.includes('0.5 to 1.5')")
+    flat.wait("document.querySelector('.said').textContent.includes('measure 0, beat 3 to measure 1, beat 2')")
     flat.key("i", "KeyI")
     flat.key("p", "KeyP")
     flat.key(" ", "Space")
@@ -51,6 +51,47 @@ def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) ->
     assert "1 late, 1 missed, 0 wrong" in text(flat, ".score")
 
 
+def test_arrows_are_panels_while_somebody_plays_along(flat: Browser, page_file: Path) -> None:
+    """They neither go to other rows nor change the speed; the first key that is no panel has the keys said."""
+    flat.open(page_file)
+    flat.key("Home")
+    flat.key("ArrowRight")  # nobody plays along: to the first row, and to one between two beats
+    flat.key("ArrowRight")
+    assert text(flat, ".where").startswith("m1 · beat 1.5 ·")
+    flat.key("Home")
+    flat.key("p", "KeyP")
+    flat.key(" ", "Space")
+    flat.turn(0.06 + 2.0)
+    flat.key("ArrowLeft")
+    assert float(flat.run(NOW)) == pytest.approx(2.0, abs=0.01) and "1 hit" in text(flat, ".score")
+    flat.key("ArrowUp")
+    assert text(flat, ".rate-text") == "100 %" and "1 hit" in text(flat, ".score") and "1 wrong" in text(flat, ".score")
+    flat.key("q", "KeyQ")
+    assert text(flat, ".said") == "That key is no panel. The panels are D F J K, or ← ↓ ↑ →."
+    flat.key("ArrowRight")
+    assert text(flat, ".said").startswith("1 hit")
+    flat.turn(60)  # and at the end how it went
+    assert text(flat, ".said").startswith("The song is over, ") and text(flat, ".play") == "▶"
+    flat.key(" ", "Space")  # once more from the start, all notes anew
+    flat.turn(0.06)
+    assert text(flat, ".said").startswith("0 hit, 0 early, 0 late, 0 missed, 0 wrong")
+    assert flat.problems == []
+
+
+def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) -> None:
+    flat.open(page_file, "#m900-1000")
+    assert text(flat, ".said").startswith("The link begins in measure 900, but the last one is measure ")
+    start = float(flat.run(NOW))
+    for link, said in (("#m2-1", "The link ends before it begins"), ("#nonsense", "This link is not understood"),
+                       ("#m1-99", "The link goes on beyond the last measure")):  # fmt: skip
+        flat.run(f"location.hash = '{link}'")
+        flat.wait(f"document.querySelector('.said').textContent.startsWith('{said}')")
+    assert start < 2 and float(flat.run(NOW)) == pytest.approx(2.0, abs=0.01)
+    flat.key("ArrowRight")  # whatever is done next takes the place of it
+    assert text(flat, ".said").startswith("loop measures 1 to ")
+    assert flat.problems == []
+
+
 def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.open(page_file)
     flat.key("Home")
@@ -59,8 +100,9 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.turn(9)
     assert text(flat, ".said").startswith("waiting")
     x, y, w, h = flat.box(".lanes")
-    lane = min(72, (w - 2 * min(46, 0.14 * w)) / 4)
-    left = x + 0.28 * (w - 4 * lane)
+    numbers, words = 8 + 7 * 2, min(max(0.2 * w, 36), 66)  # room at both sides: as `Highway.measure`
+    lane = min(72, (w - numbers - words) / 4)
+    left = x + numbers + 0.28 * (w - numbers - words - 4 * lane)
     for column in (3, 0):  # right does nothing, left is the row
         for kind in ("mousePressed", "mouseReleased"):
             flat.mouse(kind, left + (column + 0.5) * lane, y + h / 2)
@@ -73,6 +115,8 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
 def test_the_other_dancer_is_named_with_the_rows_that_differ(flat: Browser, page_file: Path) -> None:
     flat.open(page_file)
     flat.key("2", "Digit2")
-    assert re.search(r"next best feet \(other feet in [1-9]", text(flat, ".said"))
+    shown = "[...document.querySelectorAll('.caption')].map(e => e.offsetParent !== null)"
+    assert text(flat, ".caption.left") == "these feet" and flat.run(shown) == [True, True]
+    assert re.search(r"next best feet \(other feet in [1-9]", text(flat, ".caption.right"))
     flat.key("2", "Digit2")
-    assert "next best" not in text(flat, ".said")
+    assert flat.run(shown) == [False, False] and "next best" not in text(flat, ".said")

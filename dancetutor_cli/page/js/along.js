@@ -2,9 +2,10 @@
 
 import { el, toggle } from "./dom.js";
 import { keyName } from "./input.js";
-import { latencyOf } from "./judge.js";
+import { GOOD, WINDOW, latencyOf } from "./judge.js";
 import { HELPS } from "./practice.js";
-import { scoreText } from "./said.js";
+import { panelName } from "./labels.js";
+import { meanText, scoreText } from "./said.js";
 
 const TAPS = 12; // clicks of a calibration
 const BETWEEN = 0.6; // seconds between them
@@ -23,7 +24,8 @@ export function alongPanel(app) {
   const calibrate = el("button", { type: "button", onclick: () => calibrateDialog(app) }, t("calibrate"));
   const show = () => {
     keys.replaceChildren(...app.doc.pad.names.map((/** @type {string} */ name, /** @type {number} */ k) =>
-      el("span", {}, `${panelName(app, name)} `, el("kbd", {}, keyName(app.input.keys[k])))));
+      el("span", {}, `${panelName(app.t, name)} `, el("kbd", {}, keyName(app.input.keys[k])),
+        ...(app.input.arrows[k] ? [" ", el("kbd", {}, keyName(app.input.arrows[k]))] : []))));
   };
   const refresh = () => {
     along.setAttribute("aria-pressed", String(app.practice.along));
@@ -32,23 +34,16 @@ export function alongPanel(app) {
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
     pads.textContent = plugged.length ? t("padIs", { name: plugged.join(", ") }) : t("noPad");
     const tally = app.practice.tally();
-    const { sum, count } = tally;
-    const mean = count ? Math.round((1000 * sum) / count) : 0;
-    score.textContent = app.practice.along ? `${scoreText(app, tally)} ${count ? t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : ""}` : "";
+    score.textContent = app.practice.along ? `${scoreText(app, tally)} ${meanText(app, tally)}` : "";
   };
   app.listeners.add((what) => { if (what !== "frame") refresh(); });
   show();
   refresh();
   return el("div", {},
     el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait), score,
+    el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
     keys, pads, el("p", { class: "group" }, assign, calibrate), el("p", { class: "hint" }, t("padHint")));
-}
-
-/** @param {import("./app.js").App} app @param {string} name */
-function panelName(app, name) {
-  const label = app.t(`panel-${name}`);
-  return label === `panel-${name}` ? name : label;
 }
 
 /** Press a key or button for each panel in turn. @param {import("./app.js").App} app @param {() => void} done */
@@ -58,7 +53,7 @@ function assignDialog(app, done) {
   const dialog = el("dialog", { class: "assign", "aria-label": t("assign") }, el("h2", {}, t("assign")), text,
     el("button", { type: "button", onclick: () => dialog.close() }, t("cancel")));
   let column = 0;
-  const ask = () => { text.textContent = t("pressFor", { panel: panelName(app, app.doc.pad.names[column]) }); };
+  const ask = () => { text.textContent = t("pressFor", { panel: panelName(app.t, app.doc.pad.names[column]) }); };
   app.input.learning = (name) => {
     if (name === "Escape") return dialog.close();
     app.input.assign(column, name);

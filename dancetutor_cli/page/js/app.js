@@ -9,7 +9,7 @@ import { Motion } from "./motion.js";
 import { CAMERAS } from "./picture.js";
 import { HELPS, Practice } from "./practice.js";
 import { Redance } from "./redance.js";
-import { loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
+import { FIRST_VIEW, loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";
 
@@ -36,6 +36,7 @@ export class App {
     this.transport.onChange = () => this.changed();
     this.practice = new Practice(this);
     this.transport.onPass = () => this.practice.pass();
+    this.transport.onEnd = () => this.practice.finish();
     this.sound.clicks = clicksOf(this.chart, () => ({
       claps: this.claps, metronome: this.settings.metronome,
     }));
@@ -44,6 +45,7 @@ export class App {
       this.fresh = true;
       this.practice.press(press.column, press.ago);
     };
+    this.pace = scrollSpeed(this.chart.rowSeconds);
     this.redance = new Redance(doc, this.chart, this.notes.feet);
     this.both = false; // the second dancer is shown
     this.chosen = -1; // note that the author looks at
@@ -51,7 +53,9 @@ export class App {
     this.fresh = true; // something is to be drawn
     this.drawn = NaN; // the second that was drawn last
     this.played = false; // whether anybody has pressed play yet
-    this.message = ""; // what went wrong with the music
+    this.notice = ""; // what is to be known of a link; until something else is done
+    this.musicName = ""; // the file that the music comes from
+    this.musicBad = ""; // the file that is no music
     /** @type {import("./picture.js").Picture | null} */
     this.picture = null;
     /** @type {import("./highway.js").Highway | null} */
@@ -122,14 +126,16 @@ export class App {
   async play() {
     if (this.transport.playing) return this.transport.pause();
     this.played = true;
+    this.notice = "";
     await this.sound.start();
-    if (this.practice.along) this.practice.restart(this.transport.at);
     this.transport.play();
+    if (this.practice.along) this.practice.restart(this.transport.second()); // from the start again after the end
     this.practice.updateHold();
   }
 
   /** @param {number} second */
   seek(second) {
+    this.notice = "";
     if (this.practice.along) this.practice.restart(second);
     this.transport.seek(second);
     this.practice.updateHold();
@@ -169,6 +175,7 @@ export class App {
   /** @param {number | null} a @param {number | null} b seconds; null: no loop */
   setLoop(a, b, passage = -1) {
     this.passage = passage;
+    this.notice = "";
     this.practice.endRamp();
     if (a === null || b === null) this.transport.setLoop(null);
     else this.transport.setLoop({ a: Math.min(a, b), b: Math.max(a, b) });
@@ -199,6 +206,12 @@ export class App {
 
   nextHelp() {
     this.set("help", HELPS[(HELPS.indexOf(this.settings.help) + 1) % HELPS.length]);
+  }
+
+  /** The free camera stands as at first. */
+  resetView() {
+    Object.assign(this.settings, FIRST_VIEW);
+    this.setCamera("free");
   }
 
   /** @param {string} name of `CAMERAS` */
@@ -245,7 +258,8 @@ export class App {
     const second = this.second();
     this.practice.advance(second);
     // While she waits, or nothing plays, the picture stays: nothing is drawn again.
-    if (!this.fresh && second === this.drawn && !timeline.grip && !this.input.changed) return;
+    const shown = this.practice.feedback !== null; // and once more when it has to go
+    if (!this.fresh && !shown && second === this.drawn && !timeline.grip && !this.input.changed) return;
     this.drawn = second;
     this.input.changed = false;
     this.fresh = false;
@@ -260,10 +274,11 @@ export class App {
   highwayScene(second) {
     const { practice } = this;
     return {
-      second, speed: scrollSpeed(this.settings.speed), mirror: this.mirrored,
+      second, speed: this.pace * this.settings.speed, mirror: this.mirrored,
       marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
       keys: practice.along ? this.input.keys.map(keyName) : [], held: practice.along ? this.input.held : [],
+      feedback: practice.along ? practice.shown() : null,
     };
   }
 }

@@ -1,7 +1,7 @@
 // The author's panel: another foot for a note, what it costs, and files to take home.
 
 import { download, el } from "./dom.js";
-import { moveName } from "./labels.js";
+import { moveName, panelName } from "./labels.js";
 import { placeOf } from "./places.js";
 
 const LETTERS = ["L", "R", "<", ">"];
@@ -49,19 +49,19 @@ export function authorPanel(app) {
   });
   show();
   return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list,
-    el("p", { class: "hint" }, t("approximate")), el("p", { class: "group column" }, ...files), saved);
+    el("p", { class: "hint" }, t("approximate")), saved, el("p", { class: "group column" }, ...files));
 }
 
 /** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */
 function describe(app, row) {
   const { t, redance } = app;
-  const who = row.steps.map((step) => `${app.doc.pad.names[step.column]} ${LETTERS[redance.limbOf(step)] ?? "?"}`).join(", ");
+  const who = row.steps.map((step) => `${panelName(t, app.doc.pad.names[step.column])} ${LETTERS[redance.limbOf(step)] ?? "?"}`).join(", ");
   const given = row.steps.some((step) => redance.given.has(step.note));
   const moves = row.moves.map((name) => moveName(t, name)).join(", ");
   return [
     el("p", {}, el("strong", {}, placeOf(t, row.beat)), ` ${who}`),
     el("p", {}, moves ? t(given ? "movesBefore" : "moves", { moves }) : ""),
-    el("p", {}, given ? "" : `${t("rowCost", { cost: row.cost })} `, costText(app, row, given)),
+    el("p", {}, given ? "" : `${t("rowCost", { cost: row.cost, word: t(`row-${rowWord(app, row.cost)}`) })} `, costText(app, row, given)),
   ];
 }
 
@@ -74,7 +74,26 @@ function costText(app, row, given) {
   if (!flip || flip.extra < 0) return app.t(given ? "givenUnknown" : "noOther");
   const rows = new Set(flip.changes.map(([number]) => number)).size;
   const name = flip.extra === 0 ? "Nothing" : rows > 1 ? "Rows" : "One";
-  return app.t(`${given ? "given" : "cost"}${name}`, { extra: flip.extra, rows: rows - 1 });
+  const word = app.t(`extra-${extraWord(app, flip.extra)}`);
+  return app.t(`${given ? "given" : "cost"}${name}`, { word, extra: flip.extra, rows: rows - 1 });
+}
+
+/** What an ordinary row of the chart costs: the middle one of those that cost anything. @param {import("./app.js").App} app */
+function ordinary(app) {
+  const costs = app.chart.rows.map((row) => row.cost).filter((cost) => cost > 0).sort((a, b) => a - b);
+  return Math.max(1, costs[costs.length >> 1] ?? 1);
+}
+
+/** How awkward other feet are, beside an ordinary row. @param {import("./app.js").App} app @param {number} extra */
+function extraWord(app, extra) {
+  const rows = extra / ordinary(app);
+  return rows <= 2 ? "hardly" : rows <= 12 ? "more" : rows <= 1000 ? "much" : "never";
+}
+
+/** How awkward a row is, beside an ordinary one. @param {import("./app.js").App} app @param {number} cost */
+function rowWord(app, cost) {
+  const rows = cost / ordinary(app);
+  return rows <= 0.5 ? "easy" : rows <= 2 ? "ordinary" : rows <= 8 ? "awkward" : "very";
 }
 
 /** Lines of `feet` in dancetutor.yaml. @param {import("./app.js").App} app */

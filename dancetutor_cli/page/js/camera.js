@@ -4,6 +4,7 @@ import { clamp, cross, dot, minus, plus } from "./maths.js";
 
 const NEAR = 0.05;
 const FAR = 100;
+const WAIST = 0.85; // metres; where the free camera looks from afar
 const ARM = 0.42; // metres beside her middle that are to be seen of her
 
 /**
@@ -84,20 +85,43 @@ export function preset(doc, name, width, height) {
 }
 
 /**
- * A camera turned round the dancer by hand.
+ * A camera turned round the dancer by hand. Nearer it looks down to the pad, and never so near that the pad, where her
+ * feet are, leaves the picture.
  * @param {any} doc @param {{yaw: number, pitch: number, zoom: number}} free degrees, degrees, 1 = as near as "back"
  * @param {number} width @param {number} height
- * @returns {Camera}
+ * @returns {Camera & {zoom: number}} zoom: as near as it has come
  */
 export function orbit(doc, free, width, height) {
   const base = preset(doc, "back", width, height);
-  /** @type {[number, number, number]} */
-  const target = [base.target[0], 0.85, base.target[2]];
-  const distance = Math.hypot(...minus(base.position, base.target)) / clamp(free.zoom, 0.4, 4);
+  const distance = Math.hypot(...minus(base.position, base.target));
   const yaw = (free.yaw * Math.PI) / 180;
   const pitch = (clamp(free.pitch, 1, 89) * Math.PI) / 180;
   const away = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
-  return { ...base, target, position: plus(target, away, distance), centre: [0.5, 0.5], feetOnly: false };
+  const { low, high } = doc.stage;
+  const pad = [low[0], high[0]].flatMap((x) => [low[2], high[2]].map((z) => [x, 0, z]));
+  /** @param {number} zoom @param {number} height of the target @returns {Camera} */
+  const at = (zoom, height) => {
+    /** @type {[number, number, number]} */
+    const target = [base.target[0], height, base.target[2]];
+    return { ...base, target, position: plus(target, away, distance / zoom), centre: [0.5, 0.5], feetOnly: false };
+  };
+  for (let zoom = clamp(free.zoom, 0.4, 4); ; zoom *= 0.97) {
+    for (let high = WAIST; high >= 0; high -= 0.02) {
+      const camera = at(zoom, high);
+      if (zoom < 0.3 || holds(camera, pad, width / height)) return { ...camera, zoom };
+    }
+  }
+}
+
+/** Whether points are in the picture. @param {Camera} camera @param {number[][]} points @param {number} aspect */
+function holds(camera, points, aspect) {
+  const { right, up, forward } = axes(camera);
+  return points.every((point) => {
+    const way = minus(point, camera.position);
+    const depth = dot(way, forward);
+    const [x, y] = [(camera.focal * dot(way, right)) / depth / aspect, (camera.focal * dot(way, up)) / depth];
+    return depth > NEAR && Math.abs(x) <= 0.49 && Math.abs(y) <= 0.49;
+  });
 }
 
 /**

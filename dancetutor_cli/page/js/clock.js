@@ -37,6 +37,8 @@ export class Transport {
     this.onChange = () => {};
     /** @type {() => void} called at the end of each pass of a loop; may change the rate */
     this.onPass = () => {};
+    /** @type {() => void} called when the last second has been played */
+    this.onEnd = () => {};
   }
 
   get playing() {
@@ -123,6 +125,7 @@ export class Transport {
     } else {
       this.at = run.to;
       this.run = null;
+      this.onEnd();
       this.onChange();
     }
   }

@@ -12,7 +12,7 @@ import { CAMERAS } from "./picture.js";
 
 /**
  * Everything that a key does.
- * @param {import("./app.js").App} app @param {{help: () => void, tab: (name: string) => void}} ui @returns {Action[]}
+ * @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui @returns {Action[]}
  */
 export function actionsOf(app, ui) {
   const { settings } = app;
@@ -38,6 +38,7 @@ export function actionsOf(app, ui) {
     { name: "wait", keys: ["w"], run: () => app.practice.setWait(!app.practice.wait) },
     { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
     { name: "camera", keys: ["v"], run: () => app.setCamera(CAMERAS[(CAMERAS.indexOf(settings.camera) + 1) % CAMERAS.length]) },
+    { name: "resetView", keys: ["0"], run: () => app.resetView() },
     { name: "turnLeft", keys: ["Shift+A"], run: () => turn(app, -10, 0) },
     { name: "turnRight", keys: ["Shift+D"], run: () => turn(app, 10, 0) },
     { name: "turnUp", keys: ["Shift+W"], run: () => turn(app, 0, 8) },
@@ -71,6 +72,7 @@ function otherFoot(app, ui) {
  * @param {import("./app.js").App} app @param {Action[]} actions
  */
 export function listenToKeys(app, actions) {
+  const arrows = (/** @type {KeyboardEvent} */ event) => /^Arrow/.test(event.key) && !event.shiftKey;
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]:not(.assign)")) return;
     const target = /** @type {HTMLElement} */ (event.target);
@@ -78,9 +80,14 @@ export function listenToKeys(app, actions) {
     if ((app.practice.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
     if (target.matches("button, summary, a, input, [role=tab]") && [" ", "Enter"].includes(event.key)) return;
     if (target.matches("input[type=range], [role=tab]") && /^(Arrow|Home|End|Page)/.test(event.key)) return;
+    // Whoever plays along looks for panels under the arrows: they neither seek nor change the speed then.
+    if (app.practice.along && arrows(event)) {
+      event.preventDefault();
+      return app.practice.strayKey();
+    }
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
-    if (!action) return;
+    if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
     event.preventDefault();
     action.run();
   });
@@ -94,7 +101,7 @@ export function listenToKeys(app, actions) {
 
 /**
  * The bar of buttons.
- * @param {import("./app.js").App} app @param {{help: () => void}} ui
+ * @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui
  */
 export function makeBar(app, ui) {
   const { t, settings, transport } = app;
@@ -114,10 +121,16 @@ export function makeBar(app, ui) {
   ]).map(([name, key, is, change]) => ({ is, button: toggle(t(name), is(), change, key) }));
   const clear = button("noLoop", "✕", () => app.setLoop(null, null), "x");
   const more = el("button", { type: "button", class: "sign more", "aria-label": t("moreControls"), title: t("moreControls"), "aria-expanded": false }, "⋯");
-  more.addEventListener("click", () => {
-    more.setAttribute("aria-expanded", String(bar.classList.toggle("open")));
+  const unfold = (/** @type {boolean} */ open) => {
+    more.setAttribute("aria-expanded", String(bar.classList.toggle("open", open)));
     app.fresh = true;
-  });
+  };
+  more.addEventListener("click", () => unfold(!bar.classList.contains("open")));
+  ui.fewer = () => {
+    const open = bar.classList.contains("open");
+    if (open) unfold(false);
+    return open;
+  };
   const bar = el("div", { class: "bar", role: "toolbar", "aria-label": t("controls") },
     el("div", { class: "group" },
       button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), "←"), play,
@@ -132,8 +145,9 @@ export function makeBar(app, ui) {
   app.listeners.add((what) => {
     if (what === "frame") {
       const second = app.second();
-      const beat = Math.max(0, app.chart.beatAt(second));
-      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: (Math.floor(beat) % 4) + 1, time: clock(second) });
+      const exact = Math.max(0, Math.round(100 * app.chart.beatAt(second)) / 100);
+      const beat = transport.playing && !transport.waiting ? Math.floor(exact) : exact; // what stands has a place between the beats too
+      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * ((beat % 4) + 1)) / 100, time: clock(second) });
       play.textContent = transport.playing ? "❚❚" : "▶";
       return;
     }

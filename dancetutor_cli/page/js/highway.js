@@ -4,7 +4,7 @@ import { KIND } from "./chart.js";
 import { lightOf } from "./feet.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-import { INK, drawBody, drawMarker, drawMine, drawVerdict, notePath } from "./noteart.js";
+import { INK, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, notePath } from "./noteart.js";
 
 /**
  * @typedef {object} Scene
@@ -18,6 +18,7 @@ import { INK, drawBody, drawMarker, drawMine, drawVerdict, notePath } from "./no
  * @property {number} chosen note that is chosen, or -1
  * @property {string[]} keys of the panels, to be shown while somebody plays along; else none
  * @property {boolean[]} held panels that are pressed by who plays along
+ * @property {import("./practice.js").Feedback | null} feedback the verdict of the last press
  */
 
 export class Highway {
@@ -36,11 +37,13 @@ export class Highway {
     this.rowOf = new Map();
     for (const row of chart.rows) for (const step of row.steps) this.rowOf.set(step.note, row);
     this.labels = labelsOf(doc, chart, t);
+    this.words = verdictWords(t);
   }
 
   /** Words of another language. @param {import("./words.js").Translate} t */
   speak(t) {
     this.labels = labelsOf(this.doc, this.chart, t);
+    this.words = verdictWords(t);
   }
 
   /** Where a column's arrow points, as her panels are seen; null for a square. @param {number} column @param {boolean} mirror */
@@ -57,9 +60,11 @@ export class Highway {
     const height = Math.max(1, Math.round(box.height * ratio));
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
-    const margin = Math.min(46 * ratio, width * (this.chart.columns > 5 ? 0.08 : 0.14));
-    const lane = Math.min((width - 2 * margin) / this.chart.columns, 72 * ratio);
-    const left = 0.28 * (width - lane * this.chart.columns); // words need more room than numbers
+    const { columns, beats } = this.chart;
+    const numbers = (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
+    const words = clamp((columns > 5 ? 0.12 : 0.2) * width, 36 * ratio, 66 * ratio); // and right of them
+    const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
+    const left = numbers + 0.28 * (width - numbers - words - lane * columns);
     return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
   }
 
@@ -90,11 +95,14 @@ export class Highway {
       const { level, limb } = lightOf(chart, column, scene.second, style.flash);
       this.drawReceptor(column, m, scene, level, limb);
     }
+    const { feedback } = scene;
+    if (feedback && feedback.column >= 0) drawPress(c, feedback.verdict, this.laneX(feedback.column, m, scene.mirror), m.receptor, m.size);
     for (let n = chart.second.length - 1; n >= 0; --n) {
       if (chart.second[n] > until || chart.end[n] < from) continue;
       this.drawNote(n, m, scene, y);
     }
     this.drawLabels(m, y, from, until);
+    if (feedback) drawWord(c, feedback.verdict, this.words[feedback.verdict], m.left + 0.5 * m.lane * chart.columns, m.receptor + 1.1 * m.lane, m.ratio);
   }
 
   /** @param {ReturnType<Highway["measure"]>} m */
@@ -209,12 +217,13 @@ export class Highway {
     if (room < 26 * m.ratio) return;
     c.textAlign = "left";
     c.textBaseline = "middle";
-    for (const { second, text, severity } of this.labels) {
+    for (const { second, text, short, severity } of this.labels) {
       if (second < from || second > until) continue;
       c.fillStyle = this.style.callout[severity];
       let shown = text;
-      for (let size = 11; size >= 8; --size) { // smaller before it is cut
-        c.font = `600 ${Math.round(size * m.ratio)}px system-ui, sans-serif`;
+      for (const size of [11, 10, 9, -11, -10, -9, -8]) { // smaller, then shorter, before it is cut
+        shown = size > 0 ? text : short;
+        c.font = `600 ${Math.round(Math.abs(size) * m.ratio)}px system-ui, sans-serif`;
         if (c.measureText(shown).width <= room) break;
       }
       while (shown.length > 3 && c.measureText(shown).width > room) shown = `${shown.slice(0, -2)}…`;
@@ -248,7 +257,21 @@ export class Highway {
   }
 }
 
-/** Speed of the notes in canvas heights a second: quicker for quick charts. @param {number} setting 0.5..3 */
-export function scrollSpeed(setting) {
-  return clamp(setting, 0.3, 4) * 0.42;
+const SLOWEST = 0.42; // canvas heights a second
+const FASTEST = 1.2; // what comes quicker cannot be read
+const APART = 0.085; // heights between the rows of a chart's quick parts: about a note's
+
+/**
+ * Speed of a chart's notes in canvas heights a second: quicker for quick ones, whose notes would lie over one another.
+ * @param {number[]} rows their seconds, ascending
+ */
+export function scrollSpeed(rows) {
+  const gaps = rows.slice(1).map((second, k) => second - rows[k]).filter((gap) => gap > 0.02).sort((a, b) => a - b);
+  const quick = gaps[Math.floor(gaps.length / 5)] ?? Infinity;
+  return clamp(APART / quick, SLOWEST, FASTEST);
+}
+
+/** @param {import("./words.js").Translate} t @returns {Record<string, string>} */
+function verdictWords(t) {
+  return Object.fromEntries(VERDICTS.map((name) => [name, t(`verdict-${name}`)]));
 }

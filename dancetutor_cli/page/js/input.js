@@ -9,6 +9,8 @@ const KEYS = {
   8: ["KeyA", "KeyS", "KeyD", "KeyF", "KeyJ", "KeyK", "KeyL", "Semicolon"],
   10: ["KeyZ", "KeyQ", "KeyS", "KeyE", "KeyC", "KeyB", "KeyT", "KeyH", "KeyU", "Comma"],
 };
+/** Keys that are panels too, by number of panels: what players of the games on a computer know. */
+const ARROWS = { 4: ["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight"] };
 const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the standard mapping
 
 const LONGEST = 0.5; // seconds that a press may be old; a browser that counts otherwise is not believed
@@ -40,6 +42,17 @@ export class Input {
     return /** @type {Record<number, string[]>} */ (KEYS)[this.panels.length] ?? this.panels.map((_, k) => `Digit${(k + 1) % 10}`);
   }
 
+  /** Keys that are panels besides. */
+  get arrows() {
+    return /** @type {Record<number, string[]>} */ (ARROWS)[this.panels.length] ?? [];
+  }
+
+  /** The panel of a key, -1 for none; shifted arrows still go from measure to measure. @param {string} code */
+  columnOf(code) {
+    const own = this.keys.indexOf(code);
+    return own >= 0 ? own : this.arrows.indexOf(code);
+  }
+
   /** Button of each panel on a pad. @param {Gamepad} pad @returns {(number | null)[]} */
   buttons(pad) {
     const own = this.settings.pads[this.padName(pad)];
@@ -69,7 +82,7 @@ export class Input {
       this.learning(event.code);
       return true;
     }
-    const column = this.keys.indexOf(event.code);
+    const column = this.columnOf(event.code);
     if (column < 0) return false;
     if (!event.repeat) this.press(column, "keys", event.timeStamp);
     return true;
@@ -77,7 +90,7 @@ export class Input {
 
   /** @param {KeyboardEvent} event */
   keyUp(event) {
-    const column = this.keys.indexOf(event.code);
+    const column = this.columnOf(event.code);
     if (column >= 0) this.release(column);
   }
 

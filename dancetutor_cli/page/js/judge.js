@@ -2,7 +2,7 @@
 
 /** Seconds of real time around a note in which a press counts. */
 export const WINDOW = 0.135;
-const GOOD = 0.045; // within: a hit; beyond: early or late
+export const GOOD = 0.045; // within: a hit; beyond: early or late
 
 /** @typedef {"hit" | "early" | "late" | "miss"} Verdict */
 /** @typedef {{hit: number, early: number, late: number, miss: number, wrong: number, sum: number, count: number}} Tally */

@@ -1,11 +1,23 @@
 // Words for moves and findings: in the page's language where its file has them, else as the solver and the linter say.
 
-/** @typedef {{second: number, text: string, severity: string}} Label */
+/** @typedef {{second: number, text: string, short: string, severity: string}} Label short: where there is little room */
+
+/** A panel's name. @param {import("./words.js").Translate} t @param {string} name */
+export function panelName(t, name) {
+  const label = t(`panel-${name}`);
+  return label === `panel-${name}` ? name : label;
+}
 
 /** A move's name. @param {import("./words.js").Translate} t @param {string} name */
 export function moveName(t, name) {
   const label = t(`move-${name}`);
   return label === `move-${name}` ? name.replaceAll("-", " ") : label;
+}
+
+/** A move's or a rule's shortest name; its sign for a rule without one. @param {import("./words.js").Translate} t @param {string} name */
+function shortName(t, name) {
+  const label = t(`short-${name}`);
+  return label === `short-${name}` ? (/^DT/.test(name) ? name : moveName(t, name)) : label;
 }
 
 /**
@@ -30,11 +42,11 @@ export function labelsOf(doc, chart, t) {
   /** @type {string[]} */
   let before = [];
   for (const row of chart.rows) {
-    const now = [...new Set(row.moves.filter((name) => doc.style.callouts[name]).map((name) => moveName(t, name)))];
-    const fresh = now.filter((word) => !before.includes(word));
-    before = now;
+    const now = new Map(row.moves.filter((name) => doc.style.callouts[name]).map((name) => [moveName(t, name), shortName(t, name)]));
+    const fresh = [...now].filter(([word]) => !before.includes(word));
+    before = [...now.keys()];
     if (!fresh.length) continue;
-    const label = { second: row.second, text: fresh.join(", "), severity: "move" };
+    const label = { second: row.second, text: fresh.map(([word]) => word).join(", "), short: fresh[0][1], severity: "move" };
     out.push(label);
     at.set(Math.round(1000 * row.second), label);
   }
@@ -42,7 +54,7 @@ export function labelsOf(doc, chart, t) {
     if (one.second === null || one.column === null) continue;
     const same = at.get(Math.round(1000 * one.second));
     if (same) same.severity = one.severity;
-    else out.push({ second: one.second, text: findingWords(t, one)[0], severity: one.severity });
+    else out.push({ second: one.second, text: findingWords(t, one)[0], short: shortName(t, one.rule), severity: one.severity });
   }
   return out;
 }

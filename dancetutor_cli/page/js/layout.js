@@ -6,7 +6,8 @@ import { makeBar } from "./controls.js";
 import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { CAMERAS } from "./picture.js";
-import { besideText, countOf, saidOf } from "./said.js";
+import { FIRST_VIEW } from "./settings.js";
+import { besideCaption, besideText, countOf, musicText, saidOf } from "./said.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -15,7 +16,12 @@ import { besideText, countOf, saidOf } from "./said.js";
  * @property {HTMLCanvasElement} strip
  */
 
-/** @typedef {{help: () => void, tab: (name: string) => void}} Ui */
+/**
+ * @typedef {object} Ui what the parts of the page ask of each other
+ * @property {() => void} help opens the help sheet
+ * @property {(name: string) => void} tab opens a tab
+ * @property {() => boolean} fewer closes "more controls", which on a phone lie over the panels; whether they were open
+ */
 
 /**
  * Make the page, or make it anew in another language.
@@ -31,7 +37,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notes"], [strip, "timeline"]])) {
     element.setAttribute("aria-label", t(name));
   }
-  const tabs = makeTabs(app, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["findings", findingsPanel(app)],
+  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["findings", findingsPanel(app)],
     ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
   const sheet = helpSheet(app, actions);
   ui.help = () => sheet.showModal();
@@ -40,20 +46,31 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   badge.style.borderColor = style.difficulty[words.difficulty] ?? "#b9bdc9";
   const about = [words.artist, words.steps, `${words.bpm} BPM`, words.credit && t("stepsBy", { name: words.credit })];
   const said = el("p", { class: "said", role: "status" });
+  const pick = el("button", { type: "button", class: "pick", onclick: () => document.getElementById("music-file")?.click() },
+    "♪ ", el("span", {}, t("pickMusic", { name: words.music || t("pickFile") })));
+  pick.setAttribute("aria-label", pick.textContent ?? "");
+  const captions = [[t("theseFeet"), ""], besideCaption(app)].map(([who, rows], k) =>
+    el("p", { class: `caption ${k ? "right" : "left"}` }, who, el("span", {}, rows && ` (${rows})`)));
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), said, count);
+  stage.append(cameraButtons(app), count, ...captions);
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
+  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes), tabs.side);
   root.replaceChildren(
     el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · "))),
-    el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes), tabs.side),
-    el("footer", {}, strip, makeBar(app, ui)));
+    el("div", { class: "status" }, said, pick),
+    main, el("footer", {}, strip, makeBar(app, ui)));
   if (open) tabs.choose(open);
   app.highway?.speak(t);
   app.listeners.add((what) => {
     if (what !== "frame") return;
-    said.textContent = saidOf(app);
+    said.textContent = said.title = saidOf(app);
     count.textContent = countOf(app);
+    pick.hidden = app.sound.music !== null;
+    pick.title = musicText(app);
+    pick.classList.toggle("small", app.played); // on a phone only its sign is left then
+    for (const caption of captions) caption.hidden = !app.both;
+    main.classList.toggle("along", app.practice.along);
   });
 }
 
@@ -75,12 +92,13 @@ function helpSheet(app, actions) {
 
 /** @param {import("./app.js").App} app @param {string} key */
 function keyText(app, key) {
-  const names = { " ": app.t("space"), ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
+  const named = ["PageUp", "PageDown", "Home", "End", "Escape"].map((name) => [name, app.t(`key-${name}`)]);
+  const names = { " ": app.t("space"), ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", ...Object.fromEntries(named) };
   return key.split(/(?<=Shift)\+/).map((part) => names[/** @type {keyof typeof names} */ (part)] ?? part).join(" ").replace("Shift", "⇧");
 }
 
-/** Tabs of the panels. @param {import("./app.js").App} app @param {[string, HTMLElement][]} panels */
-function makeTabs(app, panels) {
+/** Tabs of the panels. @param {import("./app.js").App} app @param {Ui} ui @param {[string, HTMLElement][]} panels */
+function makeTabs(app, ui, panels) {
   const tabs = panels.map(([name], k) => el("button", {
     type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, "aria-selected": k === 0, tabindex: k === 0 ? 0 : -1,
     onclick: () => press(name),
@@ -88,6 +106,7 @@ function makeTabs(app, panels) {
   const bodies = panels.map(([name, body], k) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 }, body));
   /** @param {string} name */
   function choose(name) {
+    ui.fewer();
     side.classList.remove("folded");
     panels.forEach(([other], k) => {
       tabs[k].setAttribute("aria-selected", String(other === name));
@@ -98,7 +117,7 @@ function makeTabs(app, panels) {
   /** On a phone the tab that is open folds its panel away, for a larger picture. @param {string} name */
   function press(name) {
     const again = tabs[panels.findIndex(([other]) => other === name)].getAttribute("aria-selected") === "true";
-    const fold = again && !side.classList.contains("folded");
+    const fold = !ui.fewer() && again && !side.classList.contains("folded");
     choose(name);
     side.classList.toggle("folded", fold);
     app.fresh = true;
@@ -122,6 +141,8 @@ function cameraButtons(app) {
     type: "button", class: "toggle camera", title: t(`camera-${name}-long`),
     onclick: () => { // on a phone only the chosen one is there: a tap goes on to the next
       const alone = buttons.filter((button) => button.offsetParent !== null).length === 1;
+      const turned = Object.entries(FIRST_VIEW).some(([what, value]) => settings[/** @type {"yaw"} */ (what)] !== value);
+      if (name === "free" && settings.camera === "free" && (turned || !alone)) return app.resetView();
       app.setCamera(CAMERAS[alone ? (k + 1) % CAMERAS.length : k]);
     },
   }, t(`camera-${name}`)));

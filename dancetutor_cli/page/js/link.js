@@ -2,7 +2,13 @@
 
 import { endOf, named, short } from "./places.js";
 
-/** @typedef {{from: number | null, to: number | null, rate: number | null}} Link measures; to: where the loop ends */
+/**
+ * @typedef {object} Link
+ * @property {number | null} from measures
+ * @property {number | null} to where the loop ends
+ * @property {number | null} rate
+ * @property {boolean} backwards whether the end that it names comes before its beginning
+ */
 
 const MEASURE = "(\\d+(?:\\.\\d+)?)";
 const LINK = new RegExp(`^#?(?:m${MEASURE}(?:-${MEASURE})?)?(?:@${MEASURE})?$`);
@@ -13,8 +19,8 @@ export function parseLink(hash) {
   if (!found || !(found[1] || found[3])) return null;
   const [from, rate] = [found[1], found[3]].map((text) => (text === undefined ? null : Number(text)));
   const to = found[2] === undefined ? null : endOf(found[2]);
-  if (from !== null && to !== null && to <= from) return { from, to: null, rate };
-  return { from, to, rate };
+  const backwards = from !== null && to !== null && to <= from;
+  return { from, to: backwards ? null : to, rate, backwards };
 }
 
 /** @param {number | null} from @param {number | null} to measures; where the loop ends @param {number} rate */
@@ -38,10 +44,20 @@ export function writeLink(app) {
 /** Do what the address says. @param {import("./app.js").App} app @param {string} hash */
 export function readLink(app, hash) {
   const link = parseLink(hash);
-  if (!link) return;
-  const place = (/** @type {number} */ measure) => app.chart.secondAt(4 * measure);
+  const { t, chart } = app;
+  if (!link) {
+    if (hash.length > 1) app.notice = t("linkUnknown", { link: hash.slice(0, 40) });
+    return app.tell("rate");
+  }
+  const place = (/** @type {number} */ measure) => chart.secondAt(4 * measure);
+  const last = Math.max(0, Math.ceil(chart.beatAt(chart.last) / 4 - 1e-6) - 1); // measure in which the last step ends
   if (link.rate !== null) app.takeRate(link.rate);
-  if (link.from !== null && link.to !== null) app.setLoop(place(link.from), place(link.to));
-  if (link.from !== null) app.seek(place(link.from));
+  if (link.from !== null && link.from < last + 1) {
+    if (link.to !== null) app.setLoop(place(link.from), place(Math.min(link.to, last + 1)));
+    app.seek(place(link.from));
+  }
+  if (link.from !== null && link.from >= last + 1) app.notice = t("linkBeyond", { from: link.from, last });
+  else if (link.to !== null && link.to > last + 1) app.notice = t("linkCut", { last });
+  else if (link.backwards) app.notice = t("linkBackwards", { from: /** @type {number} */ (link.from) });
   app.tell("rate");
 }

@@ -9,6 +9,7 @@ import { Highway } from "./highway.js";
 import { layOut } from "./layout.js";
 import { readLink } from "./link.js";
 import { Picture, decodeSkins } from "./picture.js";
+import { musicText } from "./said.js";
 import { Timeline } from "./timeline.js";
 
 /** @param {string} id */
@@ -24,7 +25,7 @@ async function main() {
   const strip = el("canvas", {
     class: "strip", role: "slider", tabindex: 0, "aria-valuemin": app.start.toFixed(1), "aria-valuemax": app.end.toFixed(1), "aria-valuenow": "0",
   });
-  const ui = { help: () => {}, tab: (/** @type {string} */ _name) => {} };
+  const ui = { help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false };
   const actions = actionsOf(app, ui);
   const show = () => layOut(app, { stage, lanes, strip }, ui, { actions, load: loadFile });
   app.onLanguage = () => {
@@ -61,15 +62,18 @@ async function main() {
   document.documentElement.dataset.ready = performance.now().toFixed(0);
   if (text("music").length > 0) await loadMusic(/** @type {ArrayBuffer} */ (fromBase64(text("music")).buffer));
 
-  /** @param {ArrayBuffer} data */
-  async function loadMusic(data) {
+  /** @param {ArrayBuffer} data @param {string} [name] the file's */
+  async function loadMusic(data, name = "") {
     try {
       await app.sound.load(data);
     } catch {
-      app.message = app.t("musicBad");
+      app.musicBad = name || doc.words.music;
+      app.notice = musicText(app);
       return app.tell("music");
     }
-    app.message = "";
+    app.musicName = name;
+    app.musicBad = "";
+    app.notice = "";
     app.tell("music");
     app.tell("settings");
     if (app.transport.playing) app.seek(app.transport.second());
@@ -77,7 +81,7 @@ async function main() {
 
   /** @param {File} file */
   async function loadFile(file) {
-    await loadMusic(await file.arrayBuffer());
+    await loadMusic(await file.arrayBuffer(), file.name);
   }
 }
 

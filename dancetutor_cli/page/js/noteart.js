@@ -103,6 +103,9 @@ export function drawMarker(c, { limb, colour, changed }, x, y, size) {
   c.fillText(right ? "R" : "L", x, y + 0.04 * size);
 }
 
+const COLOURS = /** @type {Record<string, string>} */ ({ hit: "#6fe38a", early: "#ffc857", late: "#ffa14a", miss: "#ff6b6b", wrong: "#ff6b6b" });
+export const VERDICTS = Object.keys(COLOURS);
+
 /**
  * A sign at a note that was missed, or pressed early or late.
  * @param {Context} c @param {string} verdict @param {number} x @param {number} y @param {number} size @param {number} ratio
@@ -113,8 +116,42 @@ export function drawVerdict(c, verdict, x, y, size, ratio) {
   c.textBaseline = "middle";
   c.lineWidth = 3 * ratio;
   c.strokeStyle = INK;
-  c.fillStyle = verdict === "miss" ? "#ff6b6b" : "#ffc857";
+  c.fillStyle = COLOURS[verdict];
   const sign = verdict === "miss" ? "✕" : verdict === "early" ? "−" : "+";
   c.strokeText(sign, x + 0.42 * size, y - 0.3 * size);
   c.fillText(sign, x + 0.42 * size, y - 0.3 * size);
+}
+
+/**
+ * What a press at a receptor was: a ring, for a wrong one a cross.
+ * @param {Context} c @param {string} verdict @param {number} x @param {number} y @param {number} size
+ */
+export function drawPress(c, verdict, x, y, size) {
+  c.strokeStyle = COLOURS[verdict];
+  c.lineWidth = 0.1 * size;
+  c.beginPath();
+  if (verdict === "wrong") {
+    for (const way of [1, -1]) {
+      c.moveTo(x - 0.4 * size, y - 0.4 * way * size);
+      c.lineTo(x + 0.4 * size, y + 0.4 * way * size);
+    }
+  } else c.arc(x, y, 0.56 * size, 0, 2 * Math.PI);
+  c.stroke();
+}
+
+/**
+ * A verdict in a word, below the receptors.
+ * @param {Context} c @param {string} verdict @param {string} word @param {number} x its middle @param {number} y
+ * @param {number} ratio pixels of the canvas for one of CSS
+ */
+export function drawWord(c, verdict, word, x, y, ratio) {
+  c.font = `800 ${Math.round(20 * ratio)}px system-ui, sans-serif`;
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.lineJoin = "round";
+  c.lineWidth = 5 * ratio;
+  c.strokeStyle = INK;
+  c.strokeText(word, x, y);
+  c.fillStyle = COLOURS[verdict];
+  c.fillText(word, x, y);
 }

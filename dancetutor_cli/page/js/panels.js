@@ -3,7 +3,7 @@
 import { el } from "./dom.js";
 import { findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
-import { scoreText } from "./said.js";
+import { musicText, scoreText } from "./said.js";
 
 /** The hardest passages; a click loops one. @param {import("./app.js").App} app */
 export function passagesPanel(app) {
@@ -12,7 +12,7 @@ export function passagesPanel(app) {
   const buttons = doc.passages.map((/** @type {any} */ passage, /** @type {number} */ k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
       el("strong", {}, `${k + 1}. ${stretch(t, passage.from, passage.to)}`),
-      el("span", { class: "figure" }, t("rate", { rate: passage.rate.toFixed(1) })),
+      el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
       el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
       el("span", { class: "hits" }));
     list.append(el("li", {}, button));
@@ -34,7 +34,7 @@ export function passagesPanel(app) {
 }
 
 /**
- * What the linter found; can be ticked off. It speaks English: in another language the rule's meaning stands before it.
+ * What the linter found; can be ticked off. It speaks English: in another language the rule's meaning stands in its place.
  * @param {import("./app.js").App} app
  */
 export function findingsPanel(app) {
@@ -52,8 +52,7 @@ export function findingsPanel(app) {
     },
       el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${name}`),
       el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
-      language === "en" || !about ? null : el("span", { class: "text" }, about),
-      el("span", { class: "text", lang: "en" }, one.message));
+      language !== "en" && about ? el("span", { class: "text" }, about) : el("span", { class: "text", lang: "en" }, one.message));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);
     box.addEventListener("change", () => { app.tick(key, box.checked); show(); });
@@ -68,8 +67,12 @@ const SIGNS = { error: "■", warning: "▲", info: "●" };
 /** Music, cameras of this visit, language. @param {import("./app.js").App} app @param {(file: File) => Promise<void>} load */
 export function settingsPanel(app, load) {
   const { t, settings, doc } = app;
-  const file = el("input", { type: "file", accept: "audio/*,.ogg,.mp3,.wav,.flac,.opus", id: "music-file" });
-  file.addEventListener("change", () => { if (file.files?.[0]) void load(file.files[0]); });
+  const file = el("input", { type: "file", accept: "audio/*,.ogg,.mp3,.wav,.flac,.opus", id: "music-file", hidden: true, "aria-label": t("musicFile") });
+  file.addEventListener("change", () => {
+    if (file.files?.[0]) void load(file.files[0]);
+    file.value = ""; // the same file may be chosen again
+  });
+  const choose = el("button", { type: "button", id: "choose-music", onclick: () => file.click() }, t("chooseMusic"));
   const language = el("select", { id: "language" }, el("option", { value: "" }, t("languageOfBrowser")),
     ...Object.keys(doc.languages).map((name) => el("option", { value: name }, doc.languages[name].language ?? name)));
   language.value = settings.language;
@@ -77,18 +80,18 @@ export function settingsPanel(app, load) {
   const slider = (/** @type {"volume" | "speed" | "leadBeats" | "latency"} */ name, /** @type {number} */ min, /** @type {number} */ max, /** @type {number} */ step) => {
     const input = el("input", { type: "range", id: name, min, max, step, value: settings[name] });
     const shown = el("output", { for: name });
-    const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" ? `${Math.round(1000 * settings[name])} ms` : String(Math.round(100 * settings[name]) / 100); };
+    const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" ? `${Math.round(1000 * settings[name])} ms` : t("number", { number: Math.round(100 * settings[name]) / 100 }); };
     input.addEventListener("input", () => { app.set(name, Number(input.value)); show(); });
     app.listeners.add((what) => { if (what === "settings") show(); });
     show();
     return el("p", { class: "field" }, el("label", { for: name }, t(`setting-${name}`)), input, shown);
   };
   const music = el("p", { class: "hint", id: "music-state", role: "status" });
-  const tell = () => { music.textContent = app.sound.music ? t("musicIs") : t("musicMissing", { name: doc.words.music || "…" }); };
+  const tell = () => { music.textContent = musicText(app); };
   app.listeners.add((what) => { if (what === "music") tell(); });
   tell();
   return el("div", {},
-    el("p", { class: "field whole" }, el("label", { for: "music-file" }, t("musicFile")), file), music,
+    el("p", { class: "field whole" }, el("span", {}, t("musicFile")), choose), file, music,
     slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005),
     el("p", { class: "field whole" }, el("label", { for: "language" }, t("languageLabel")), language),
     el("p", { class: "hint" }, t("storedHint")));

@@ -103,7 +103,7 @@ export class Picture {
       const before = apart();
       const [dx, dy] = [event.clientX - finger.x, event.clientY - finger.y];
       fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-      if (before > 0) this.settings.zoom = Math.min(Math.max((this.settings.zoom * apart()) / before, 0.5), 3);
+      if (before > 0) this.nearer(apart() / before);
       else this.turn(0.4 * dx, 0.3 * dy);
       this.onTurn();
     });
@@ -113,9 +113,16 @@ export class Picture {
     canvas.addEventListener("wheel", (event) => {
       if (this.settings.camera !== "free") return;
       event.preventDefault();
-      this.settings.zoom = Math.min(Math.max(this.settings.zoom * Math.exp(-event.deltaY / 800), 0.5), 3);
+      this.nearer(Math.exp(-event.deltaY / 800));
       this.onTurn();
     }, { passive: false });
+  }
+
+  /** The free camera comes nearer, as far as it may. @param {number} times */
+  nearer(times) {
+    const { width, height } = this.place.getBoundingClientRect();
+    this.settings.zoom = Math.min(Math.max(this.settings.zoom * times, 0.5), 3);
+    this.settings.zoom = Math.max(orbit(this.doc, this.settings, width, height).zoom, 0.5);
   }
 
   /** Turn the free camera. @param {number} yaw @param {number} pitch degrees */

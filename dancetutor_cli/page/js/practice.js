@@ -3,6 +3,10 @@
 import { Judge, ramp } from "./judge.js";
 
 export const HELPS = ["all", "tricky", "none", "auto"];
+const SHOWN = 700; // milliseconds that a verdict stands beside the receptors
+
+/** @typedef {{verdict: string, column: number, at: number}} Feedback of the last press, or of a miss (column -1); at: ms */
+
 const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
 
 export class Practice {
@@ -17,6 +21,12 @@ export class Practice {
     this.chosenRate = 1; // the speed that was asked for; the ramp only goes on from it
     /** @type {import("./judge.js").Tally | null} of the pass before */
     this.before = null;
+    /** @type {import("./judge.js").Tally | null} of a song that has come to its end */
+    this.over = null;
+    /** @type {"" | "now" | "said"} whether a key was pressed that is no panel: once, the keys are said then */
+    this.stray = "";
+    /** @type {Feedback | null} */
+    this.feedback = null;
   }
 
   /** What was hit in the loop, or in all. */
@@ -57,6 +67,8 @@ export class Practice {
   setAlong(on) {
     this.along = on;
     this.before = null;
+    this.stray = "";
+    this.feedback = null;
     if (!on) this.wait = false;
     this.judge.restart(on ? this.app.transport.second() : -Infinity);
     if (!on) this.judge.verdicts.clear();
@@ -76,6 +88,7 @@ export class Practice {
   /** Rows from a second on are asked for anew, in a loop not those before it. @param {number} second */
   restart(second) {
     const { loop } = this.app.transport;
+    this.over = null;
     this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
     this.app.tell("hits");
   }
@@ -93,13 +106,14 @@ export class Practice {
     if (!this.along) return;
     const { transport, sound, settings } = this.app;
     const { rate } = transport;
+    if (this.stray === "now") this.stray = "said";
     if (this.wait) {
       const row = this.judge.open(-Infinity);
       if (!row || row.second - transport.second() > EARLY * rate) return;
-      this.judge.press(column, row.second, rate, true);
+      this.show(this.judge.press(column, row.second, rate, true), column);
       this.updateHold();
     } else if (transport.playing) {
-      this.judge.press(column, transport.second() - (ago + sound.latency + settings.latency) * rate, rate);
+      this.show(this.judge.press(column, transport.second() - (ago + sound.latency + settings.latency) * rate, rate), column);
     }
     this.app.tell("hits");
   }
@@ -108,7 +122,35 @@ export class Practice {
   advance(second) {
     const { transport, settings } = this.app;
     if (!transport.playing || !this.along || this.wait) return;
-    if (this.judge.advance(second - settings.latency * transport.rate, transport.rate)) this.app.tell("hits");
+    if (!this.judge.advance(second - settings.latency * transport.rate, transport.rate)) return;
+    this.show("miss", -1);
+    this.app.tell("hits");
+  }
+
+  /** A verdict is shown for a moment. @param {string | null} verdict null: neither here nor there @param {number} column */
+  show(verdict, column) {
+    if (verdict) this.feedback = { verdict, column, at: performance.now() };
+  }
+
+  /** The verdict that is shown now; what is no longer is forgotten. */
+  shown() {
+    if (this.feedback && performance.now() - this.feedback.at > SHOWN) this.feedback = null;
+    return this.feedback;
+  }
+
+  /** A key was pressed that is no panel. */
+  strayKey() {
+    if (this.stray) return;
+    this.stray = "now";
+    this.app.tell("along");
+  }
+
+  /** The song is over: how it went is said until somebody goes on. */
+  finish() {
+    if (!this.along) return;
+    this.judge.advance(Infinity, this.app.transport.rate);
+    this.over = this.judge.tally(-Infinity, Infinity);
+    this.app.tell("hits");
   }
 
   /** The level of help that holds now: "all", "tricky" or "none". */

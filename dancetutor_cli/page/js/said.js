@@ -1,16 +1,43 @@
 // What is said over the picture: what she waits for, what is looped, how it goes, who dances; and the count-in's number.
 
+import { keyName } from "./input.js";
 import { placeOf, stretch } from "./places.js";
 
 /** @param {import("./app.js").App} app */
 export function saidOf(app) {
   const { t, transport, practice, sound } = app;
-  if (app.message) return app.message;
+  if (app.notice) return app.notice;
+  if (practice.stray === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
-  const parts = [app.both ? besideText(app) : "", loopText(app), practice.along ? scoreText(app, practice.tally()) : ""];
-  const told = parts.filter(Boolean).join(" · ");
-  const silent = !app.played && !sound.music;
-  return told || (silent ? t("musicMissing", { name: app.doc.words.music || "…" }) : "");
+  const score = practice.along ? practice.over ? overText(app, practice.over) : scoreText(app, practice.tally()) : "";
+  const told = [score, loopText(app)].filter(Boolean).join(" · ");
+  return told || (!app.played && !sound.music ? musicText(app) : "");
+}
+
+/** Whether there is music, and whose; told in the same words wherever it is asked. @param {import("./app.js").App} app */
+export function musicText(app) {
+  const { t, sound, musicName, musicBad } = app;
+  const now = sound.music ? t("musicIs", { name: musicName || app.doc.words.music || "…" }) : t("musicMissing");
+  return musicBad ? `${t("musicBad", { name: musicBad })} ${now}` : now;
+}
+
+/** Which keys are the panels. @param {import("./app.js").App} app */
+export function keysText(app) {
+  const { keys, arrows } = app.input;
+  const names = [keys, arrows].filter((one) => one.length).map((one) => one.map(keyName).join(" "));
+  return names.length > 1 ? app.t("keysOrArrows", { keys: names[0], arrows: names[1] }) : app.t("keysAre", { keys: names[0] });
+}
+
+/** How a song went that is over. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
+function overText(app, tally) {
+  const all = tally.hit + tally.early + tally.late + tally.miss;
+  return app.t("songOver", { percent: Math.round((100 * tally.hit) / Math.max(all, 1)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
+}
+
+/** How late presses came on average; "" without any. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
+export function meanText(app, { sum, count }) {
+  const mean = count ? Math.round((1000 * sum) / count) : 0;
+  return count ? app.t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : "";
 }
 
 /** @param {import("./app.js").App} app */
@@ -31,13 +58,18 @@ export function scoreText(app, tally) {
   return app.t("counts", { hit, early, late, miss, wrong });
 }
 
-/** Who dances beside her, and where her feet differ. @param {import("./app.js").App} app */
-export function besideText(app) {
+/** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */
+export function besideCaption(app) {
   const { name, rows } = app.doc.beside;
   const found = rows.slice(0, 3).map((/** @type {number} */ row) => app.redance.rows.get(row));
   const where = found.filter(Boolean).map((/** @type {import("./chart.js").Row} */ row) => placeOf(app.t, row.beat)).join("; ");
   const what = name === "next" ? app.t("nextBest") : name;
-  return app.t("bothLong", { name: what, rows: rows.length, where: rows.length > 3 ? `${where} …` : where });
+  return [what, app.t("besideRows", { rows: rows.length, where: rows.length > 3 ? `${where} …` : where })];
+}
+
+/** The same for both. @param {import("./app.js").App} app */
+export function besideText(app) {
+  return app.t("bothLong", { left: app.t("theseFeet"), right: besideCaption(app).join(": ") });
 }
 
 /** Beats that are still counted in, as they are said: 4, 3, 2, 1; "" while none are. @param {import("./app.js").App} app */

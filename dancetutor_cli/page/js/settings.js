@@ -1,13 +1,22 @@
 // What the page remembers between visits: its own settings, and per chart what was ticked off and changed. Nothing else.
 
+import { clamp } from "./maths.js";
+
 const KEY = "dancetutor";
+
+/** The free camera's: degrees, degrees, times nearer. */
+export const FIRST_VIEW = { yaw: 30, pitch: 20, zoom: 0.9 };
 
 const DEFAULTS = {
   language: "", camera: "back", speed: 1, /** "auto": where there is no music */ claps: "auto", metronome: false, countIn: true, leadBeats: 4, ramp: false,
-  help: "all", latency: 0, volume: 0.9, yaw: 30, pitch: 20, zoom: 1,
+  help: "all", latency: 0, volume: 0.9, ...FIRST_VIEW,
   /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
   /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
 };
+
+/** Lowest and highest value of settings that an old page, or a hand, may have stored otherwise. */
+const LIMITS = /** @type {["yaw" | "pitch" | "zoom" | "speed" | "volume" | "latency" | "leadBeats", number, number][]} */ (
+  [["yaw", -360, 360], ["pitch", 2, 88], ["zoom", 0.5, 3], ["speed", 0.3, 4], ["volume", 0, 1], ["latency", -0.2, 0.4], ["leadBeats", 1, 16]]);
 
 /** @typedef {typeof DEFAULTS} Settings */
 
@@ -18,6 +27,7 @@ export function loadSettings() {
   for (const [name, value] of Object.entries(DEFAULTS)) {
     if (typeof stored[name] === typeof value && stored[name] !== null) Object.assign(out, { [name]: stored[name] });
   }
+  for (const [name, low, high] of LIMITS) out[name] = clamp(out[name], low, high);
   return out;
 }
 

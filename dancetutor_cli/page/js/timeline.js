@@ -56,8 +56,9 @@ export class Timeline {
   /** @param {PointerEvent} event */
   move(event) {
     if (!this.grip || Math.abs(event.clientX - this.grip.x) < DRAG) return;
-    const [one, two] = [this.grip.other ?? this.grip.from, this.secondOf(event)].map((s) => this.snap(s));
-    this.drag = { a: Math.min(one, two), b: Math.max(one, two) };
+    const [from, to] = [this.grip.other ?? this.grip.from, this.secondOf(event)].sort((one, two) => one - two);
+    const first = this.measure(from);
+    this.drag = { a: this.chart.secondAt(4 * first), b: this.chart.secondAt(4 * Math.max(this.measure(to), first + 1)) };
   }
 
   /** @param {PointerEvent} event */
@@ -67,9 +68,9 @@ export class Timeline {
     this.grip = this.drag = null;
   }
 
-  /** The nearest beat: loops begin and end on beats. @param {number} second */
-  snap(second) {
-    return this.chart.secondAt(Math.max(0, Math.round(this.chart.beatAt(second))));
+  /** The nearest measure: loops that are drawn are of whole measures, as they are named. @param {number} second */
+  measure(second) {
+    return Math.max(0, Math.round(this.chart.beatAt(second) / 4));
   }
 
   /** @param {number} second @param {{a: number, b: number} | null} loop @param {(passage: number) => boolean} chosen */

@@ -12,11 +12,15 @@ export function speak(languages, wanted) {
   const labels = { ...languages.en, ...languages[language] };
   return {
     language,
-    t: (name, values = {}) => fillIn(labels[name] ?? name, values),
+    t: (name, values = {}) => fillIn(labels[name] ?? name, values, labels.decimal),
   };
 }
 
-/** @param {string} text @param {Record<string, string | number>} values */
-export function fillIn(text, values) {
-  return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));
+/**
+ * Numbers, not texts, get the language's decimal sign.
+ * @param {string} text @param {Record<string, string | number>} values @param {string} [decimal]
+ */
+export function fillIn(text, values, decimal = ".") {
+  const said = (/** @type {string | number} */ value) => (typeof value === "number" ? String(value).replace(".", decimal) : value);
+  return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? said(values[name]) : whole));
 }

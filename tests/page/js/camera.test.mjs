@@ -1,7 +1,7 @@
 // Cameras: who walks on from beside the pad is seen in a narrow picture too.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { beside, matrix } from "../../../dancetutor_cli/page/js/camera.js";
+import { beside, matrix, orbit } from "../../../dancetutor_cli/page/js/camera.js";
 
 const camera = { position: [0, 1.5, -4], target: [0, 0.9, 0], focal: 1.2, centre: [0.5, 0.5], feetOnly: false, mirror: false };
 
@@ -26,4 +26,27 @@ test("she is never cut off at the sides, wherever she walks", () => {
 
 test("the camera stands still while she is in the picture", () => {
   assert.equal(beside(camera, [0.3, 0.9, 0.1], 16 / 9), camera);
+});
+
+/** The presets' box round a pad of three panels, as the pages have it. */
+const doc = {
+  stage: { low: [-0.45, 0, -0.45], high: [0.45, 0, 0.45], tall: 1.7 },
+  look: { stage: { pad_height: 0.05 }, cameras: { back: { margin: 0.1, height: 1.9, arms: 0.2, feet_only: false, azimuth: 0, elevation: 20, field: 34 } } },
+};
+
+test("the free camera never loses the pad, however near and from wherever it looks", () => {
+  for (const [width, height] of [[610, 530], [214, 320], [300, 200]]) {
+    for (const zoom of [0.5, 1, 2, 3, 40]) for (const pitch of [-5, 2, 20, 60, 88]) for (const yaw of [0, 30, 140, -75]) {
+      const one = orbit(doc, { yaw, pitch, zoom }, width, height);
+      const m = matrix(one, width, height);
+      for (const x of [-0.45, 0.45]) for (const z of [-0.45, 0.45]) {
+        const row = (k) => m[4 * k] * x + m[4 * k + 2] * z + m[4 * k + 3];
+        for (const k of [0, 1]) assert.ok(Math.abs(row(k) / row(3)) <= 1, `${[width, height, zoom, pitch, yaw]}`);
+      }
+      assert.ok(one.zoom <= zoom && one.target[1] >= -0.01);
+      if (zoom <= 1 && width > 300) assert.equal(one.zoom, zoom, "it comes as near as is asked where there is room");
+    }
+  }
+  const [far, near] = [1, 1.5].map((zoom) => orbit(doc, { yaw: 30, pitch: 20, zoom }, 610, 530));
+  assert.ok(near.zoom > 1.4 && near.target[1] < far.target[1], "nearer it looks down to the feet");
 });

@@ -1,6 +1,10 @@
 // Presses, misses, wrong panels, rows that wait, delays, the ramp; and links.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
+import { labelsOf } from "../../../dancetutor_cli/page/js/labels.js";
+import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
 import { stretch } from "../../../dancetutor_cli/page/js/places.js";
@@ -91,12 +95,12 @@ test("the ramp goes up after clean passes, back after misses, and ends at full s
 });
 
 test("links say measures and speed", () => {
-  assert.deepEqual(parseLink("#m8-16@0.75"), { from: 8, to: 17, rate: 0.75 }); // 16 is part of it
-  assert.deepEqual(parseLink("#m8-8"), { from: 8, to: 9, rate: null });
-  assert.deepEqual(parseLink("#m8-16.5"), { from: 8, to: 16.5, rate: null });
-  assert.deepEqual(parseLink("#m8"), { from: 8, to: null, rate: null });
-  assert.deepEqual(parseLink("#@1.5"), { from: null, to: null, rate: 1.5 });
-  assert.deepEqual(parseLink("#m9-3"), { from: 9, to: null, rate: null });
+  assert.deepEqual(parseLink("#m8-16@0.75"), { from: 8, to: 17, rate: 0.75, backwards: false }); // 16 is part of it
+  assert.deepEqual(parseLink("#m8-8"), { from: 8, to: 9, rate: null, backwards: false });
+  assert.deepEqual(parseLink("#m8-16.5"), { from: 8, to: 16.5, rate: null, backwards: false });
+  assert.deepEqual(parseLink("#m8"), { from: 8, to: null, rate: null, backwards: false });
+  assert.deepEqual(parseLink("#@1.5"), { from: null, to: null, rate: 1.5, backwards: false });
+  assert.deepEqual(parseLink("#m9-3"), { from: 9, to: null, rate: null, backwards: true });
   for (const bad of ["", "#", "#m", "#x8", "#m8-16@fast", "#m8<script>"]) assert.equal(parseLink(bad), null);
   assert.equal(makeLink(8, 17, 0.75), "#m8-16@0.75");
   assert.equal(makeLink(8, 16.333, 1), "#m8-16.33");
@@ -107,9 +111,32 @@ test("a stretch has one name everywhere: whole measures are part of it, a fracti
   const t = (name, values) => `${name} ${Object.values(values).join(" ")}`;
   assert.equal(stretch(t, 7, 11), "measures 7 10");
   assert.equal(stretch(t, 7, 8), "oneMeasure 7");
-  assert.equal(stretch(t, 7.5, 8.25), "measures 7.5 8.25");
+  assert.equal(stretch(t, 7.5, 8.25), "fromTo measureAt 7 3 measureAt 8 1"); // the last beat is part of it as well
+  assert.equal(stretch(t, 0.33, 1.2), "points 0.33 1.2");
   for (const [from, to] of [[7, 11], [7, 8], [7.5, 8], [0, 0.25]]) {
     const link = parseLink(makeLink(from, to, 1));
     assert.deepEqual([link.from, link.to], [from, to]);
   }
+});
+
+test("quick charts have their rows farther apart, so that notes do not lie over one another", () => {
+  const rows = (gap) => Array.from({ length: 50 }, (_, k) => gap * k);
+  assert.equal(scrollSpeed(rows(0.5)), 0.42);
+  const quick = scrollSpeed(rows(1 / 12)); // sixteenths at 180 BPM
+  assert.ok(quick / 12 > 0.08 && quick < 1.1, String(quick));
+  assert.equal(scrollSpeed(rows(1 / 30)), 1.2);
+  assert.equal(scrollSpeed([]), 0.42);
+});
+
+test("words beside the notes have short forms for narrow lanes", () => {
+  const doc = { style: { callouts: { spin: "spin", doublestep: "doublestep" } }, findings: [{ rule: "DT213", name: "unsure-feet", severity: "info", second: 2, column: 0 }] };
+  const rows = [{ second: 1, moves: ["doublestep", "spin"] }, { second: 1.5, moves: ["spin"] }];
+  for (const file of ["en", "de"]) {
+    const words = JSON.parse(readFileSync(new URL(`../../../dancetutor_cli/page/words/${file}.json`, import.meta.url), "utf8"));
+    const labels = labelsOf(doc, { rows }, (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal));
+    assert.deepEqual(labels.map((one) => one.short), [words["short-doublestep"], "L/R ?"]);
+    assert.ok(labels[0].text.length > 15 && labels[0].short.length <= 6);
+    for (const [name, word] of Object.entries(words)) if (name.startsWith("short-")) assert.ok(word.length <= 6, name);
+  }
+  assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
 });

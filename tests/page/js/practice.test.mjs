@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Transport } from "../../../dancetutor_cli/page/js/clock.js";
+import { Input } from "../../../dancetutor_cli/page/js/input.js";
 import { Practice } from "../../../dancetutor_cli/page/js/practice.js";
 import { countOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
 
@@ -18,7 +19,7 @@ function make() {
   transport.lead = (a) => a - 4;
   transport.countIn = true;
   const app = {
-    chart, transport, settings: { ramp: true, help: "all", latency: 0 }, sound: { latency: 0 }, both: false, message: "",
+    chart, transport, settings: { ramp: true, help: "all", latency: 0 }, sound: { latency: 0 }, both: false, notice: "",
     played: true, tell: () => {}, t: (name, values = {}) => [name, ...Object.values(values)].join(" "),
   };
   app.practice = new Practice(app);
@@ -75,4 +76,39 @@ test("the count-in shows the beats that are left, and nothing once the loop has 
   assert.equal(countOf(app), "4");
   transport.pause();
   assert.equal(countOf(app), "");
+});
+
+test("each press is judged in sight, for a moment; the end of the song says how it went", () => {
+  const { at, app, transport } = make();
+  app.practice.setAlong(true);
+  transport.onEnd = () => app.practice.finish();
+  transport.play();
+  for (const [second, verdict] of [[1, "hit"], [1.4, "wrong"], [2.1, "late"], [2.9, "early"]]) {
+    go(at, transport, second);
+    app.practice.press(0, 0);
+    assert.deepEqual([app.practice.shown().verdict, app.practice.shown().column], [verdict, 0]);
+  }
+  go(at, transport, 4.5);
+  app.practice.advance(4.5);
+  assert.deepEqual([app.practice.shown().verdict, app.practice.shown().column], ["miss", -1]);
+  app.practice.feedback.at -= 800;
+  assert.equal(app.practice.shown(), null);
+  go(at, transport, 40.5);
+  assert.equal(transport.playing, false);
+  assert.match(saidOf(app), /^songOver 3 counts 1 1 1 37 1/); // one of 40 is 2.5 %
+  app.practice.restart(0);
+  assert.match(saidOf(app), /^counts 0 0 0 0/);
+});
+
+test("the first key that is no panel has the keys said, until a panel is pressed", () => {
+  const { app } = make();
+  app.input = new Input(["left", "down", "up", "right"], { keys: {}, pads: {} });
+  app.practice.setAlong(true);
+  app.practice.strayKey();
+  assert.equal(saidOf(app), "keysOrArrows D F J K ← ↓ ↑ →");
+  app.practice.press(0, 0);
+  app.practice.strayKey();
+  assert.doesNotMatch(saidOf(app), /keys/);
+  assert.equal(new Input(["a", "b", "c", "d", "e"], { keys: {}, pads: {} }).columnOf("ArrowLeft"), -1); // Pump keeps its keys
+  assert.deepEqual(["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight", "KeyK"].map((code) => app.input.columnOf(code)), [0, 1, 2, 3, 3]);
 });
