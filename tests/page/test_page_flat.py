@@ -92,6 +92,35 @@ def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) 
     assert flat.problems == []
 
 
+def test_the_free_camera_begins_anew(flat: Browser, page_file: Path) -> None:
+    """What is stored is within bounds; chosen again, the free camera stands as at first."""
+    flat.run("localStorage.setItem('dancetutor', JSON.stringify({camera: 'free', zoom: 99, pitch: -50, yaw: 1e9}))")
+    flat.open(page_file)
+    stored = "(s => [s.yaw, s.pitch, s.zoom])(JSON.parse(localStorage.dancetutor))"
+    flat.run("document.querySelector('.view').dispatchEvent(new WheelEvent('wheel', {deltaY: 8, cancelable: true}))")
+    yaw, pitch, zoom = flat.run(stored)
+    assert (yaw, pitch) == (360, 2) and 0.5 <= zoom <= 3
+    flat.click(".camera[aria-pressed=true]")
+    assert flat.run(stored) == [30, 20, 0.9]
+    flat.key("D", "KeyD", 8)
+    assert flat.run(stored) != [30, 20, 0.9]
+    flat.key("0", "Digit0")
+    assert flat.run(stored) == [30, 20, 0.9]
+    flat.run("localStorage.clear()")
+    assert flat.problems == []
+
+
+def test_the_buttons_for_music_ask_for_a_file(flat: Browser, page_file: Path) -> None:
+    flat.open(page_file)
+    flat.run("window.asked = 0; document.querySelector('#music-file')"
+             ".addEventListener('click', e => { ++window.asked; e.preventDefault(); })")  # fmt: skip
+    assert text(flat, ".pick") == "♪ Choose x.wav"
+    flat.click(".pick")
+    flat.click("#tab-settings")
+    flat.click("#choose-music")
+    assert flat.run("window.asked") == 2
+
+
 def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.open(page_file)
     flat.key("Home")

@@ -133,7 +133,10 @@ export class Picture {
 
   /** @param {string} name @param {number} width @param {number} height @param {[number, number, number]} root where she is */
   camera(name, width, height, root) {
-    if (name === "free") return orbit(this.doc, this.settings, width, height);
+    if (name === "free") { // from near, the pad is what is looked at; else she is, when she walks on too
+      const free = orbit(this.doc, this.settings, width, height);
+      return free.zoom > 1 ? free : beside(free, root, width / height);
+    }
     const key = `${name} ${width} ${height}`;
     let camera = this.cameras.get(key);
     if (!camera) {
