@@ -30,6 +30,26 @@ export function findingWords(t, { rule, name }) {
   return at < 0 ? [name.replaceAll("-", " "), ""] : [label.slice(0, at), label.slice(at + 2)];
 }
 
+/** Figures in the linter's English messages, by the label that tells them. */
+const FIGURES = /** @type {[string, RegExp][]} */ ([
+  ["rows", /stay crossed for (\d+) rows/], ["sure", /only (\d+) %/], ["steps", /change in (\d+) quick steps/],
+  ["way", /([\d.]+) panels in (\d+) ms/], ["after", /comes (\d+) ms after/], ["apart", /(\d+) rows (\d+) ms apart/],
+  ["before", /(\d+) ms before the foot/], ["lasts", /lasts ([\d.]+) s, not ([\d.]+) to ([\d.]+) s/],
+  ["tempo", /([\d.]+) BPM, not ([\d.]+) to ([\d.]+)/],
+]);
+
+/**
+ * The figures of a finding's English message in the page's language: "(1,5 Felder in 120 ms)"; "" where none are known.
+ * @param {import("./words.js").Translate} t @param {{message: string}} finding
+ */
+export function findingFigures(t, { message }) {
+  for (const [name, pattern] of FIGURES) {
+    const found = pattern.exec(message);
+    if (found) return `(${t(`figures-${name}`, Object.fromEntries(found.slice(1).map((text, k) => [`n${k + 1}`, Number(text)])))})`;
+  }
+  return "";
+}
+
 /**
  * Words beside the notes: moves where they begin, and findings.
  * @param {any} doc @param {import("./chart.js").Chart} chart @param {import("./words.js").Translate} t @returns {Label[]}

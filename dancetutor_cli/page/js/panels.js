@@ -1,7 +1,7 @@
 // The panels beside the picture: passages, findings, and what is set.
 
 import { el } from "./dom.js";
-import { findingWords } from "./labels.js";
+import { findingFigures, findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
 import { musicText, scoreText } from "./said.js";
 
@@ -52,7 +52,7 @@ export function findingsPanel(app) {
     },
       el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${name}`),
       el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
-      language !== "en" && about ? el("span", { class: "text" }, about) : el("span", { class: "text", lang: "en" }, one.message));
+      language !== "en" && about ? el("span", { class: "text" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "text", lang: "en" }, one.message));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);
     box.addEventListener("change", () => { app.tick(key, box.checked); show(); });

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
-import { labelsOf } from "../../../dancetutor_cli/page/js/labels.js";
+import { findingFigures, labelsOf } from "../../../dancetutor_cli/page/js/labels.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
@@ -139,4 +139,17 @@ test("words beside the notes have short forms for narrow lanes", () => {
     for (const [name, word] of Object.entries(words)) if (name.startsWith("short-")) assert.ok(word.length <= 6, name);
   }
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
+});
+
+test("the figures of a finding are told in another language too", () => {
+  const words = JSON.parse(readFileSync(new URL("../../../dancetutor_cli/page/words/de.json", import.meta.url), "utf8"));
+  const t = (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal);
+  const figures = (message) => findingFigures(t, { message });
+  assert.equal(figures("the feet of 2 rows up to beat 49.5 are unsure, on beat 49 only 50 %"), "(50 % sicher)");
+  assert.equal(figures("the feet of this row are only 55 % sure"), "(55 % sicher)");
+  assert.equal(figures("the left foot moves 1.5 panels in 120 ms"), "(1,5 Felder in 120 ms)");
+  assert.equal(figures("the chart lasts 95.3 s, not 100 to 150 s"), "(95,3 s statt 100 bis 150 s)");
+  assert.equal(figures("8 rows 45 ms apart: quicker than feet step"), "(8 Reihen, 45 ms auseinander)");
+  assert.equal(figures("something else"), "");
+  assert.equal(figures("the body turns by 180 degrees"), "");
 });
