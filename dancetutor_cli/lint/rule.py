@@ -140,7 +140,7 @@ class TimedRule(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each that is quick enough, or for each passage of them."""
         longest = self.longest(subject) + EPSILON
-        for passage in self._passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
+        for passage in self.passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
             rows = [one.row for one in passage]
             row, _, said, column = passage[subject.surest(rows) if self.about_feet else 0]
             if len(rows) > 1:
@@ -152,7 +152,8 @@ class TimedRule(ChartRule):
         """Whether who plays this chart expects what happens in these rows: never more than an info."""
         return False
 
-    def _passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+    def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+        """What is told in one finding each."""
         passage: list[Happening] = []
         for one in found:
             if passage and subject.beat(one.row) - subject.beat(passage[-1].row) > self.passage_beats - EPSILON:

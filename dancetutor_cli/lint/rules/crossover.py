@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.lint.subject import ChartSubject
 
+_SLOW = 0.3  # seconds in which a beginner steps again with whichever foot she likes
 _WALKED = 4  # panels
 _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 
@@ -25,9 +26,10 @@ class Crossover(TimedRule):
 
     `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
     but begins anew; nor where the steps from one rest or jump to the next can be danced uncrossed on the other foot,
-    nor in a walk from one pad to the other. by-meter: what at most `share` per cent of the charts of a meter have, and
-    0.4 s at most: who has more moves both feet; on two pads, where walking from one to the other crosses the feet, few
-    crossings are so quick.
+    nor in a walk from one pad to the other; nor where at 0.3 s and slower the feet may change on a panel that is
+    stepped on twice, or one foot step twice in a row, once, out of such steps or to the other pad.
+    by-meter: what at most `share` per cent of the charts of a meter have, and 0.4 s at most: who has more moves
+    both feet; on two pads, where walking from one to the other crosses the feet, few crossings are so quick.
 
     Bad (max_seconds = 0.6):
 
@@ -51,9 +53,13 @@ class Crossover(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each step after which the feet are newly crossed."""
+        from dancetutor_cli.lint.freely import Freedom, fewest_crossed
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
 
+        slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW)
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
+            if fewest_crossed(subject, first, slow) == 0:
+                continue
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
                 continue
             said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dancetutor_cli.lint.freely import Freedom, fewest_crossed, in_groups, led_by_a_jack
 from dancetutor_cli.lint.rule import EPSILON, MoveRule
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ _BEFORE, _AFTER = 3, 1  # steps
 _CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; so quickly a short crossover is nearer than a doublestep
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 _SHORT = 2  # crossed rows of such a crossover
+_LED = 3  # the same, between two pads
 
 
 class Doublestep(MoveRule):
@@ -28,7 +30,9 @@ class Doublestep(MoveRule):
     takes the panel on her side with the foot of that side. Doublesteps that a hold forces or a mine asks for are not
     reported, nor brackets: both panels at once are no step after the other. Nor those beside two panels that can be
     jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there. Nor those that cross
-    the feet, nor 16ths that a short crossover solves.
+    the feet, nor 16ths that a short crossover solves, nor groups of steps that go uncrossed if each begins, about twice
+    the time of its steps after the one before, with a foot of its own. Between two pads, to where a panel that is
+    stepped on twice leads the feet across the middle in turn, it is an info.
 
     `max_seconds`: only steps at most this long after the step before count; after a longer rest players put down
     whichever foot they like. by-meter: what at most `share` per cent of the charts of a meter have, 0.32 s at
@@ -63,7 +67,15 @@ class Doublestep(MoveRule):
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
             and not subject.feet.crossed(row) and not any_foot_near(subject, row)
             and not _danced_otherwise(subject, row, self.longest(subject))
+            and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(self.longest(subject))) == 0)
         ]  # fmt: skip
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """Whether the feet go in turn between two pads, led there by a panel in the middle that is stepped on twice."""
+        if subject.pad is None or not _two(subject.pad.panels):
+            return False
+        changing = Freedom(self.longest(subject), switch=0.0)
+        return all(led_by_a_jack(subject, row) and fewest_crossed(subject, row, changing) <= _LED for row in rows)
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """Which foot."""
@@ -107,7 +119,13 @@ def _danced_otherwise(subject: ChartSubject, row: int, quick: float) -> bool:
         return True
     facings = exchanged_facings(subject, rows[at : last + 1], stand)
     crossed = [abs(one) for one in facings if abs(one) > 90 + EPSILON]
-    return ends and pause < _CROSSED_RATHER and foot <= 1 and len(crossed) <= _SHORT and max(crossed, default=0.0) < 180
+    return (
+        ends
+        and pause <= _CROSSED_RATHER + EPSILON
+        and foot <= 1
+        and len(crossed) <= _SHORT
+        and max(crossed, default=0.0) < 180
+    )
 
 
 def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bool:

@@ -18,13 +18,18 @@ if TYPE_CHECKING:
 
 _FEET_STEP = 0.045  # seconds between two rows: 16ths at 333 BPM
 _PASSAGE = 8  # beats
+_SIXTEENTH = 0.13  # seconds: 16ths at 115 BPM
+_HEEL_AND_TOE = 18  # meter of Pump charts from which one foot takes two neighbours with heel and toe
+_NUMBERS = {3: "three", 4: "four"}
 _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 
 
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
-    Two steps of a flam are none if the other foot is free to take the first. Rows less than 20 ms apart are told as
+    Two steps of a flam are none if the other foot is free to take the first, or the second where its hold ends. Three
+    panels among 16ths, and two, one and two again, are told as such. On Pump pads it is an info from meter 18, whose
+    players take neighbours with heel and toe. Rows less than 20 ms apart are told as
     what they are, a slip of the grid, and three rows or more less than 45 ms apart as a burst, once in two measures.
 
     `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
@@ -53,17 +58,20 @@ class FastStep(ChartRule):
         """One finding for each step that is too fast; one for a passage in which the rows are."""
         feet, bursts = subject.feet, []
         for row, column, way, seconds in self._fast(subject):
-            burst = _burst(subject, row)
-            if burst:
-                bursts.append(burst)
+            if rows := burst(subject, row):
+                bursts.append(rows)
             elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
-                message = f"the {feet.limb_name(row, column)} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+                message = _dense(subject, row)
+                if message is None:
+                    message = f"the {feet.limb_name(row, column)} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+                least = {"severity": "info"} if _heel_and_toe(subject, row) else {}
                 if subject.pause(row) < SLIP:
                     apart = f"{subject.pause(row) * 1000:.0f} ms"
                     message = f"this row comes {apart} after the one before: were they meant as one?"
-                yield self.finding(message, subject.at_row(row, column))
+                    least = {}
+                yield self.finding(message, subject.at_row(row, column), **least)
         end = -math.inf
-        for rows in sorted({tuple(rows) for rows in bursts}):
+        for rows in sorted(bursts):
             if subject.beat(rows[0]) > end + _PASSAGE:
                 quickest = 1000 * min(subject.pause(row) for row in rows[1:])
                 message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
@@ -78,7 +86,7 @@ class FastStep(ChartRule):
             yield from zip(*(one.tolist() for one in found), strict=True)
 
 
-def _burst(subject: ChartSubject, row: int) -> list[int]:
+def burst(subject: ChartSubject, row: int) -> list[int]:
     """The rows around one that come quicker than feet step, if they are three or more."""
     rows = subject.step_rows
     first = last = int(rows.searchsorted(row))
@@ -89,6 +97,48 @@ def _burst(subject: ChartSubject, row: int) -> list[int]:
     return rows[first : last + 1].tolist() if last - first >= 2 else []
 
 
+def _heel_and_toe(subject: ChartSubject, row: int) -> bool:
+    """Whether the panels lie as on a Pump pad, and who plays this chart takes two of them with heel and toe."""
+    return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _HEEL_AND_TOE
+
+
+def _dense(subject: ChartSubject, row: int) -> str | None:
+    """What is quick here, where it is not the feet but three panels at once, or two before and after one step."""
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    for place in range(max(at - 2, 0), at + 1):
+        panels = len(subject.pressed(int(rows[place])))
+        before = subject.pause(int(rows[place]))
+        after = subject.pause(int(rows[place + 1])) if place + 1 < len(rows) else math.inf
+        if panels >= 3 and min(before, after) < _SIXTEENTH:
+            where = f"{1000 * after:.0f} ms before the next step"
+            if after >= _SIXTEENTH:
+                where = f"{1000 * before:.0f} ms after the step before"
+            return f"{_NUMBERS.get(panels, panels)} panels in the middle of 16ths, {where}"
+    for first in (at - 2, at - 1):
+        if first >= 0 and first + 2 < len(rows):
+            counts = [len(subject.pressed(int(one))) for one in rows[first : first + 3]]
+            apart = max(subject.pause(int(one)) for one in rows[first + 1 : first + 3])
+            if counts == [2, 1, 2] and apart < _SIXTEENTH:
+                return f"two panels, one and two again in 16ths, {1000 * apart:.0f} ms apart"
+    return None
+
+
+def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
+    """Whether a hold of the other foot ends between two single steps, and that foot can take the second uncrossed."""
+    play, pad = subject.play, subject.pad
+    if play is None or pad is None or any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
+        return False
+    limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())
+    ends = play.rows.hold_end[:before].max(axis=0, initial=0)
+    ending = (ends > play.rows.tick[before]) & (ends <= play.rows.tick[row])
+    stood = standing(subject, before)
+    if limb > 1 or stood[1 - limb] < 0 or not ending[stood[1 - limb]]:
+        return False
+    x, _ = (pad.panels[second] - pad.panels[first]) * (1 if limb == 0 else -1)
+    return bool(x >= -EPSILON)
+
+
 def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bool:
     """Whether two single steps are a flam for two feet: the other foot has had time to come and takes the first."""
     play, pad, rows = subject.play, subject.pad, subject.step_rows
@@ -96,6 +146,8 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     if play is None or pad is None or subject.feet is None or at < 2:
         return False
     before = int(rows[at - 1])
+    if _let_go(subject, before, row):
+        return True
     if any((play.limb[one] >= 0).sum() != 1 or subject.feet.down[one] != 1 for one in (before, row)):
         return False
     limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.lint.freely import Freedom, fewest_crossed
 from dancetutor_cli.lint.rule import Happening, MoveRule
+from dancetutor_cli.lint.rules.fast_step import burst
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
 BESIDE = 140.0  # degrees: one foot is across the other, more beside it than before it
+_REST = 0.25  # seconds
+_MANY = 4  # spins that are the idea of a chart: one finding
+_TWISTS = 20  # meter of Pump charts whose players expect to turn
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
@@ -20,7 +25,9 @@ class Spin(MoveRule):
 
     Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot; a rest
     is about twice the pace of the passage, two panels at once may always be a jump. Nor of a walk along two pads, on
-    which one foot passes the other. A spin in a jump is DT203.
+    which one foot passes the other; nor where after two panels at once one crossover takes its place, nor in a burst,
+    of which DT305 tells. More than four in a chart are one finding. On Pump pads it is an info from meter 20. A spin in
+    a jump is DT203.
 
     `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
     back.
@@ -59,7 +66,10 @@ class Spin(MoveRule):
             first = row
             while first and abs(play.facing[first - 1]) > UNCROSSED:
                 first -= 1
-            if self._begun_otherwise(subject, row) or self._walks(subject, row):
+            if self._begun_otherwise(subject, row) or self._walks(subject, row) or burst(subject, row):
+                continue
+            free = Freedom(self.longest(subject), rest=_REST)
+            if fewest_crossed(subject, row, free) <= self._after_pair(subject, row):
                 continue
             steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
             yield Happening(row, max(map(subject.pause, steps)), self.said)
@@ -78,6 +88,22 @@ class Spin(MoveRule):
         return goes_on_the_other_foot(subject, int(rows[at - 1]), quick) and exchanged_is_uncrossed(
             subject, rows[first : last + 1], swap=False
         )
+
+    def _after_pair(self, subject: ChartSubject, row: int) -> int:
+        """How many steps may be crossed in place of a spin: one, where the phrase begins after two panels at once."""
+        from dancetutor_cli.lint.other_foot import segment
+
+        rows = subject.step_rows
+        first = segment(subject, int(rows.searchsorted(row)), self.longest(subject))[0]
+        return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """Whether the chart is one of those Pump charts that are made of twists."""
+        return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _TWISTS
+
+    def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+        """Each spin, or all of a chart that is made of them."""
+        return [found] if len(found) > _MANY else [[one] for one in found]
 
     def _walks(self, subject: ChartSubject, row: int) -> bool:
         """Whether she only goes along a pad for two: a foot has passed the other, side by side."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
 from dancetutor_cli.lint.rule import Happening, TimedRule
 from dancetutor_cli.lint.rules.doublestep import Doublestep, any_foot_near
 
@@ -16,7 +17,8 @@ class TripleStep(TimedRule):
     """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
 
     Steps while the other foot is held down, taps of a roll and steps around a mine do not count; nor those beside two
-    panels that can be jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there.
+    panels that can be jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there; nor
+    steps that go uncrossed in turn after a panel that is stepped on twice.
 
     `max_seconds`: only steps at most this far apart count. by-meter: the time of a doublestep (DT201) that at most
     `share` per cent of the charts of a meter have.
@@ -46,6 +48,8 @@ class TripleStep(TimedRule):
         """Each third step that is quick enough: where a run begins depends on that."""
         spans = self.options["min_seconds"], self.longest(subject)
         for row, seconds in subject.feet.same_foot_runs(3, *spans) if subject.feet else ():
-            if any_foot_near(subject, row):
+            free = Freedom(self.longest(subject))
+            in_turn = led_by_a_jack(subject, row) and fewest_crossed(subject, row, free) == 0
+            if in_turn or any_foot_near(subject, row):
                 continue
             yield Happening(row, seconds, f"the {subject.foot_name(row)} foot steps three times in a row")
