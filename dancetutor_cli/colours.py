@@ -25,7 +25,7 @@ class LimbColours:
 
     @property
     def by_limb(self) -> tuple[RGB, RGB, RGB, RGB]:
-        """In the order of `play.model.Limb`: left foot, right foot, left hand, right hand."""
+        """In the order of `play.played.Limb`: left foot, right foot, left hand, right hand."""
         return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from dancetutor_cli.colours import hex_colour, limb_colours, read_limb_colours
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.resources import config_path
 
 GOOD = config_path("colours.yaml").read_text("utf-8")

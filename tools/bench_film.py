@@ -43,7 +43,7 @@ class Watch:
 def child(output: str, kind: str) -> None:
     """Render a part of the demo song with workers of this process and print what was seen, as JSON."""
     from dancetutor_cli.jobs.film_plan import prepare
-    from dancetutor_cli.jobs.film_request import Request, look_up
+    from dancetutor_cli.jobs.film_request import FilmRequest, look_up
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.library.selection import Selection
@@ -54,7 +54,7 @@ def child(output: str, kind: str) -> None:
     renderer = "gl" if kind == "gl" else "cpu"
     look = FilmLook(load_layout("side-by-side"), (1280, 720), "draft" if kind == "draft" else "good", renderer)
     selection = Selection(steps_type="dance-single", difficulty="hard")
-    request = Request(DEMO, selection, look, preset="itg", section=SECTIONS[kind])
+    request = FilmRequest(DEMO, selection, look, preset="itg", section=SECTIONS[kind])
     watch = Watch()
     encoding = Encoding("mp4", look.size, request.fps, look.quality)
     make_film(lambda: prepare(request, look_up(request)), encoding, Path(output), default_jobs(), watch)
@@ -107,7 +107,7 @@ def film(kind: str) -> list[Row]:
 def gl() -> list[Row]:
     """Rows of the OpenGL renderer, none where there is no OpenGL."""
     from dancetutor_cli.errors import UnavailableError
-    from dancetutor_cli.video.scene.gl.probe import require_gl
+    from dancetutor_cli.video.scene.gl.available import require_gl
 
     try:
         require_gl()
@@ -145,7 +145,7 @@ def pack_child(folder: str) -> None:
     """Make the films of a folder's pack with workers of this process and print for how long they had work, as JSON."""
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
-    from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
     from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
@@ -164,7 +164,7 @@ def pack_child(folder: str) -> None:
             self.since, self.working = now, sum(worker.task is not None for worker in self._workers)
 
     look = FilmLook(load_layout("side-by-side"), (640, 360), "good", "cpu")
-    request = Request(Path(), Selection(steps_type="dance-single"), look, preset="itg", section="4:9")
+    request = FilmRequest(Path(), Selection(steps_type="dance-single"), look, preset="itg", section="4:9")
     encoding = Encoding("mp4", look.size, request.fps)
     videos = Path(folder) / "videos"
     videos.mkdir()

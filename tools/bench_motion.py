@@ -8,7 +8,7 @@ import numpy as np
 
 from dancetutor_cli.bake import bake, bake_plan, planned
 from dancetutor_cli.chart import load
-from dancetutor_cli.motion.ik import solver as ik
+from dancetutor_cli.motion.ik import full_body as ik
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.resources import charts_path

@@ -14,7 +14,7 @@ from collections import Counter
 from pathlib import Path
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.annotate import Item, Order, Outcome, annotate_song
+from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order, annotate_song
 from dancetutor_cli.library import find_files
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.markers.changes import STYLES
@@ -68,7 +68,7 @@ def check(path: Path, styles: tuple[str, ...], into_file: bool = False) -> Count
     return counts
 
 
-def run(path: Path, styles: tuple[str, ...], strip: bool = False, into_file: bool = False) -> Outcome:
+def run(path: Path, styles: tuple[str, ...], strip: bool = False, into_file: bool = False) -> AnnotateOutcome:
     order = Order(styles, None, Selection(), strip=strip, into_file=into_file)
     (outcome,) = annotate_song([Item(path, path)], order)
     if outcome.error and "no chart" not in outcome.error and "--into-file" not in outcome.error:

@@ -26,7 +26,7 @@ from scipy.optimize import nnls
 
 from dancetutor_cli.meter.estimate import _TAGS, Sized, on_scale, scales_of, sized
 from dancetutor_cli.meter.features import Feature
-from dancetutor_cli.meter.model import Curve, Model, Scale, model_of
+from dancetutor_cli.meter.model import Curve, MeterModel, Scale, model_of
 from dancetutor_cli.resources import config_path
 
 Floats = NDArray[np.float64]
@@ -152,7 +152,7 @@ class Fit:
         name = "ddr" if high > 1.15 else "low" if high < 0.75 else "itg"
         return self.names.index(name) if name in self.names else 0
 
-    def model(self, intervals: Mapping[str, Any], alone: tuple[float, float]) -> Model:
+    def model(self, intervals: Mapping[str, Any], alone: tuple[float, float]) -> MeterModel:
         """As the program has it."""
         scales = []
         for name, found, charts in zip(self.names, self.found, self.counts, strict=True):
@@ -299,7 +299,7 @@ def picture(out: Sequence[Judged], names: Sequence[str]) -> str:
     return "\n".join((*lines, "</svg>\n"))
 
 
-def yaml_of(pad: str, model: Model) -> str:
+def yaml_of(pad: str, model: MeterModel) -> str:
     """The file of a pad."""
     lines = [HEAD.format(pad=pad, charts=sum(scale.charts for scale in model.scales)), "scales:\n"]
     for scale in model.scales:

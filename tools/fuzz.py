@@ -43,11 +43,11 @@ def _chart(path: Path) -> object:
     """Read, solve and lint; write feet and take them out again: the bytes must be the old ones."""
     from dancetutor_cli.jobs.analyze import analyze_file
     from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
-    from dancetutor_cli.jobs.lint_run import LintRun, Request
+    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
     from dancetutor_cli.library.selection import Selection
 
     before = path.read_bytes()
-    result = analyze_file(LintRun(Request()).task(path))
+    result = analyze_file(LintRun(LintRequest()).task(path))
     if result.error:
         if "\n" in result.error:
             raise AssertionError("an error of several lines")
@@ -63,9 +63,9 @@ def _chart(path: Path) -> object:
 
 
 def _configuration(path: Path) -> object:
-    from dancetutor_cli.jobs.lint_run import LintRun, Request
+    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 
-    run = LintRun(Request())
+    run = LintRun(LintRequest())
     folder = path.with_suffix(".d")
     folder.mkdir(exist_ok=True)
     (folder / "dancetutor.yaml").write_bytes(path.read_bytes())

@@ -20,7 +20,7 @@ from dancetutor_cli.lint.excerpt import arrows
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules, matching
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
-from dancetutor_cli.play.model import Part, Play
+from dancetutor_cli.play.played import Part, Play
 
 BEFORE, AFTER = 9, 5  # rows, and lines of the file
 COUNTED = ("warning", "error")

@@ -19,7 +19,7 @@ from typing import Any
 from dancetutor_cli import chart as reader
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library import find_files
 from dancetutor_cli.lint.check import check_chart, check_file
 from dancetutor_cli.lint.finding import Finding
@@ -41,7 +41,7 @@ def band(steps_type: str, meter: int) -> str:
 
 def linted(folder: Path) -> Iterator[tuple[FileSubject | ChartSubject, tuple[Finding, ...]]]:
     """Every file below a folder, and every chart in it, with what the defaults find."""
-    run = LintRun(Request(config="default"))
+    run = LintRun(LintRequest(config="default"))
     for path in find_files([folder]):
         task = run.task(path)
         try:

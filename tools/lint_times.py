@@ -16,7 +16,7 @@ from typing import Any
 from dancetutor_cli import chart as reader
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library import find_files
 from dancetutor_cli.lint.configuration import default_rules
 from dancetutor_cli.lint.registry import all_rules
@@ -37,7 +37,7 @@ HEAD = """\
 
 def subjects(folder: Path) -> Iterator[tuple[ChartSubject, Any]]:
     """Every different chart below a folder that has feet, with its settings."""
-    run = LintRun(Request(config="default"))
+    run = LintRun(LintRequest(config="default"))
     seen: set[tuple[str, bytes, bytes]] = set()
     for path in find_files([folder]):
         try:

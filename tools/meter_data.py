@@ -12,7 +12,7 @@ from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library import find_files
 from dancetutor_cli.meter.features import Feature, features
 
@@ -44,7 +44,7 @@ class Labelled:
 
 def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
     """Every chart below a folder that differs from the others in notes or meter."""
-    wanted, run = list(wanted), LintRun(Request(config="default"))
+    wanted, run = list(wanted), LintRun(LintRequest(config="default"))
     seen: set[tuple[str, int, bytes, bytes]] = set()
     families = Families()
     songs: list[tuple[Labelled, str]] = []

@@ -18,7 +18,7 @@ from dancetutor_cli.bake import bake
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import load_settings
 from dancetutor_cli.rig.kinematics import joint_matrices

@@ -14,7 +14,7 @@ import numpy as np
 
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 

@@ -14,6 +14,7 @@ from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, in_turn, joined,
 from dancetutor_cli.bake.settle import mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.bar import bar_of, hold_share, holding
 from dancetutor_cli.motion.context import Context, context_of
 from dancetutor_cli.motion.footwork import plan_footwork
@@ -22,19 +23,18 @@ from dancetutor_cli.motion.ik.full_body import Poses, solve
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.gaze import look
-from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 from dancetutor_cli.motion.swing.foot_path import both_feet
 from dancetutor_cli.motion.swing.panels import panels_on_ground
-from dancetutor_cli.motion.trajectory.body import Trajectory, stepping
+from dancetutor_cli.motion.trajectory.posture import Trajectory, stepping
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.physics.hair import add_hair
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.pads import Pad
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
 LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step

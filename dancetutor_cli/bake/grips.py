@@ -8,17 +8,17 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Grip
 from dancetutor_cli.motion.bar import on_rail
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import arm_rotations, solve
-from dancetutor_cli.motion.ik.kernels import ArmGoal
+from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
 from dancetutor_cli.motion.ik.targets import ik_targets
-from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import BarSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import both_feet
-from dancetutor_cli.motion.trajectory.body import Known, body_trajectory
+from dancetutor_cli.motion.trajectory.posture import Known, body_trajectory
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limits import beyond

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Grip
+from dancetutor_cli.motion.baked import Grip
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

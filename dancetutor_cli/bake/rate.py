@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.played import Play
 
 
 def at_rate(play: Play, rate: float) -> Play:

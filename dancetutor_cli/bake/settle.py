@@ -17,10 +17,10 @@ from dancetutor_cli.motion.ik.full_body import Poses, Targets, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
-from dancetutor_cli.motion.trajectory.body import Known, Trajectory, body_trajectory
+from dancetutor_cli.motion.trajectory.posture import Known, Trajectory, body_trajectory
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton

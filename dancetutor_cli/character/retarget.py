@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.smoothing import upper_envelope
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import local_rotations, world_transforms
@@ -25,7 +25,7 @@ STRETCH = 0.995  # of the leg's length: the knee never locks
 SINK = 0.3  # seconds over which a character with short legs sinks into a wide stance
 HAND_BLEND = 0.25  # seconds over which a hand leaves its own way for the panel
 _LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
-_LEFT_HAND = 2  # play.model.Limb
+_LEFT_HAND = 2  # play.played.Limb
 Limb = tuple[str, tuple[str, str, str], Array, Array]  # side, chain, target (f, 3) of its end, weight (f,)
 
 

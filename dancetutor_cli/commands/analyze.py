@@ -19,8 +19,8 @@ from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import Task
-    from dancetutor_cli.jobs.lint_run import LintRun, Request
+    from dancetutor_cli.jobs.analyze import AnalyzeTask
+    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
     from dancetutor_cli.reports.tally import Tally
 
 Source = tuple[Path, bytes | None]
@@ -146,9 +146,9 @@ def command(**options: Any) -> int:  # fmt: skip
 
     Exit status: 0 no findings, 1 findings, 2 something could not be read or run.
     """
-    from dancetutor_cli.jobs.lint_run import LintRun, Request
+    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 
-    request = Request(
+    request = LintRequest(
         selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
         want_rows=options["format_name"] == "json",
         want_figures=options["format_name"] == "csv" or options["report_html"] is not None,
@@ -164,7 +164,7 @@ def command(**options: Any) -> int:  # fmt: skip
     return _run(LintRun(request), _sources(options["paths"], options["stdin_filename"]), options)
 
 
-def _watch(request: Request, options: dict[str, Any]) -> int:
+def _watch(request: LintRequest, options: dict[str, Any]) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
     from dancetutor_cli.jobs.lint_run import LintRun
     from dancetutor_cli.jobs.watch import changes
@@ -258,7 +258,7 @@ def _is_brief(options: dict[str, Any]) -> bool:
     return sys.stdout.isatty() and not (options["suggest"] or options["alternatives"])
 
 
-def _before_work(tasks: Sequence[Task]) -> None:
+def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     """Decide whether kernels have to be compiled for these files, and say so."""
     solves_often = any(task.suggest or task.alternatives for task in tasks)
     from dancetutor_cli.library.selection import note_bytes

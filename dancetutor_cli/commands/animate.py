@@ -32,16 +32,16 @@ from dancetutor_cli.lint.part import FASTEST, SLOWEST
 from dancetutor_cli.outputs import check_file, one_of
 
 if TYPE_CHECKING:
-    from dancetutor_cli.bake import Report
+    from dancetutor_cli.bake import MotionReport
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.bake import Asked, Dance
+    from dancetutor_cli.jobs.bake import Asked, BakedDance
 
 _TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class AnimateOptions:
     """How she shall dance; named as the fields of `jobs.bake.BakeTask`."""
 
     preset: str | None
@@ -116,16 +116,16 @@ class Result:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("dance", Wanted)
+@into("dance", AnimateOptions)
 @into("result", Result)
-def command(file: Path, selection: Selection, dance: Wanted, result: Result) -> None:
+def command(file: Path, selection: Selection, dance: AnimateOptions, result: Result) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
     capture; .json, only the moves: what moves when, from where to where.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
-    from dancetutor_cli.jobs.bake import BakeTask, Dance, ask
+    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
@@ -152,7 +152,7 @@ def command(file: Path, selection: Selection, dance: Wanted, result: Result) -> 
     target = output or Path(default_name(asked.song, asked.chart))
     check_file(target, tuple(FORMATS))
     _allow_long(asked, file, result.yes)
-    _write(Dance(asked, task, dances), target, result.report_to, result.plot)
+    _write(BakedDance(asked, task, dances), target, result.report_to, result.plot)
 
 
 def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
@@ -163,7 +163,7 @@ def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
         confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
-def _write(dance: Dance, target: Path, report_to: str | None, plot: Path | None) -> None:
+def _write(dance: BakedDance, target: Path, report_to: str | None, plot: Path | None) -> None:
     form = FORMATS[target.suffix.lower()]
     measured = report_to is not None or plot is not None
     if form.has_motion or measured:
@@ -186,7 +186,7 @@ def default_name(song: Song, chart: Chart) -> str:
     return f"{plain or 'dance'}.glb"
 
 
-def _report(report: Report, target: str | None, plot: Path | None) -> None:
+def _report(report: MotionReport, target: str | None, plot: Path | None) -> None:
     if target is not None:
         from dancetutor_cli.reports.motion_report import print_report
 

@@ -17,7 +17,7 @@ from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.annotate import Item, Order, Outcome
+    from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order
 
 STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
 STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
@@ -149,7 +149,7 @@ def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
     return [tuple(song) for song in songs.values()]
 
 
-def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None) -> Iterator[Outcome]:
+def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None) -> Iterator[AnnotateOutcome]:
     """What became of each file, in the order of the files as far as they are done."""
     from dancetutor_cli.jobs.annotate import annotate_song
 
@@ -165,7 +165,7 @@ def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None)
     try:
         for number, song in enumerate(songs):
             workers.submit(Task(number, annotate_task, (song, order)))
-        waiting: dict[int, list[Outcome]] = {}
+        waiting: dict[int, list[AnnotateOutcome]] = {}
         turn = 0
         for done in workers.done():
             if done.error is not None:
@@ -203,7 +203,7 @@ class _Talk:
 
             click.echo(f"warning: {WARNING}", err=True)
 
-    def tell(self, outcome: Outcome) -> None:
+    def tell(self, outcome: AnnotateOutcome) -> None:
         for note in outcome.notes:
             click.echo(f"warning: {_safe(note)}", err=True)
         if outcome.error is not None:
@@ -228,7 +228,7 @@ class _Talk:
             for path in outcome.beside:
                 click.echo(f"  {_safe(path.name)}")
 
-    def _verb(self, outcome: Outcome) -> str:
+    def _verb(self, outcome: AnnotateOutcome) -> str:
         if not outcome.changed:
             return "unchanged"
         past = "stripped" if self.order.strip else "annotated"
@@ -247,7 +247,7 @@ class _Talk:
         return 1 if self.check and self.lacking else 0
 
 
-def _kept(outcome: Outcome) -> str:
+def _kept(outcome: AnnotateOutcome) -> str:
     """What taking the markers out has left in the file."""
     pinned = dict(outcome.counts).get("pinned", 0)
     if not pinned:
@@ -256,7 +256,7 @@ def _kept(outcome: Outcome) -> str:
     return f": {pinned} pinned {measures} left alone; --force takes {them} out"
 
 
-def _details(outcome: Outcome) -> str:
+def _details(outcome: AnnotateOutcome) -> str:
     counts = Counter(dict(outcome.counts))
     words = (("missing", "new"), ("different", "other feet"), ("stale", "stale"), ("pinned", "pinned, left alone"))
     measures = sum(counts[name] for name in ("missing", "different", "stale", "pinned", "current"))

@@ -10,7 +10,7 @@ from dancetutor_cli.files import write_atomic
 from dancetutor_cli.outputs import check_file
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import Task
+    from dancetutor_cli.jobs.analyze import AnalyzeTask
     from dancetutor_cli.jobs.sheet import Drawable
     from dancetutor_cli.reports.sheet.draw import Sheet
 
@@ -24,7 +24,7 @@ def check_sheet(path: Path, files: int) -> None:
         raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
 
 
-def write_sheet(path: Path, tasks: list[Task]) -> str:
+def write_sheet(path: Path, tasks: list[AnalyzeTask]) -> str:
     """Draw the charts of one file, and return a line about it. An .svg holds one chart, a page any number of them."""
     from dancetutor_cli.jobs.sheet import drawable_charts
     from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet

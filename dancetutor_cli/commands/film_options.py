@@ -24,7 +24,7 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.video.layout import Layout
     from dancetutor_cli.video.media.film_formats import FilmFormat
     from dancetutor_cli.video.practice import Practice
@@ -127,10 +127,10 @@ def film_options(command: _Command) -> _Command:
     return command
 
 
-def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Request:
+def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmRequest:
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
-    from dancetutor_cli.jobs.film_request import Request
+    from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.video.ahead import parse_ahead
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
@@ -164,7 +164,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> Reque
         parse_ahead(options["call_ahead"]) if options["call_ahead"] else None,
         options["show_findings"],
     )
-    return Request(
+    return FilmRequest(
         path=file,
         selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
         look=look,

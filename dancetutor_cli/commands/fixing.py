@@ -14,7 +14,7 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.library.chart_files import twin
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import Task
+    from dancetutor_cli.jobs.analyze import AnalyzeTask
     from dancetutor_cli.jobs.fix import FixOutcome
     from dancetutor_cli.jobs.lint_run import LintRun
     from dancetutor_cli.jobs.result import FileResult
@@ -27,34 +27,34 @@ _OF_REPORTS = ("sheet", "watch", "suggest", "alternatives", "update_baseline", "
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class FixRequest:
     """One `--fix`: all findings of a rule, or of them the one of a number, from 1; rule `SAFE`: the safe fixes."""
 
     rule: str
     number: int | None = None
 
 
-def asked(texts: Sequence[str]) -> tuple[Asked, ...]:
+def asked(texts: Sequence[str]) -> tuple[FixRequest, ...]:
     """What the options mean; UsageError for a rule that has no fix."""
     return tuple(_asked(text) for text in texts)
 
 
-def _asked(text: str) -> Asked:
+def _asked(text: str) -> FixRequest:
     from dancetutor_cli.fixes.mend import FIXABLE
     from dancetutor_cli.lint.registry import rule_named
 
     if text.strip().lower() == SAFE:
-        return Asked(SAFE)
+        return FixRequest(SAFE)
     match = re.fullmatch(r"\s*([^:]+?)\s*(?::\s*([1-9]\d{0,8})\s*)?", text)
     if match is None:
         raise UsageError(f"--fix '{text}': write a rule, such as DT202, one of its findings, such as DT202:3, or safe")
     rule = rule_named(match[1])
     if rule.code not in FIXABLE:
         raise UsageError(f"--fix {text}: {rule.code} {rule.name} has no fix; {', '.join(FIXABLE)} have one, and safe")
-    return Asked(rule.code, int(match[2]) if match[2] else None)
+    return FixRequest(rule.code, int(match[2]) if match[2] else None)
 
 
-def fix_all(run: LintRun, tasks: Sequence[Task], options: dict[str, Any]) -> int:
+def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> int:
     """Mend every file, tell what was done; the exit status: 1 if a finding that was asked for is left."""
     wanted = asked(options["fix"])
     _check(tasks, options)
@@ -69,7 +69,7 @@ def fix_all(run: LintRun, tasks: Sequence[Task], options: dict[str, Any]) -> int
     return talk.end()
 
 
-def _check(tasks: Sequence[Task], options: dict[str, Any]) -> None:
+def _check(tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> None:
     """UsageError for options that do not go with --fix."""
     if options["format_name"] != "text":
         raise UsageError("--fix tells what it did in text alone; leave --format out")
@@ -80,7 +80,7 @@ def _check(tasks: Sequence[Task], options: dict[str, Any]) -> None:
         raise UsageError("--fix mends files; standard input is none")
 
 
-def _fix(run: LintRun, task: Task, wanted: Sequence[Asked], options: dict[str, Any]) -> FixOutcome:
+def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: dict[str, Any]) -> FixOutcome:
     from dancetutor_cli.jobs.analyze import analyze_file
     from dancetutor_cli.jobs.fix import FixOrder, FixOutcome, fix_file
 
@@ -92,7 +92,7 @@ def _fix(run: LintRun, task: Task, wanted: Sequence[Asked], options: dict[str, A
     return fix_file(FixOrder(task, findings, safe, write=not options["diff"], backup=options["backup"]))
 
 
-def _of_file(result: FileResult, asked_for: Asked) -> tuple[tuple[Finding, int], ...]:
+def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, int], ...]:
     from dancetutor_cli.jobs.fix import pick
 
     findings = [(finding, chart.player) for chart in result.charts for finding in chart.findings]

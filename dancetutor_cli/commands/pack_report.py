@@ -15,7 +15,7 @@ from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.outputs import check_file
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import Task
+    from dancetutor_cli.jobs.analyze import AnalyzeTask
     from dancetutor_cli.reports.pack import Pack
 
 _SONG = 2  # files that are one song: its .sm and its .ssc
@@ -97,7 +97,7 @@ def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def tell_beside(tasks: Sequence[Task], options: Mapping[str, Any]) -> int:
+def tell_beside(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any]) -> int:
     """`--beside`: print the table, with --full every chart that differs below it; the exit status."""
     from dancetutor_cli.jobs.beside import beside, read_theirs
     from dancetutor_cli.reports.beside import chart_lines, table_lines

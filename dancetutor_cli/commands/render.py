@@ -21,7 +21,7 @@ from dancetutor_cli.video.media.film_formats import FILES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.film_request import Request, Subject
+    from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 
 
 # Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
@@ -209,7 +209,9 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
     confirm_long(what, "Render")
 
 
-def _make(request: Request, subject: Subject, target: Path, kind: str, quiet: bool, options: dict[str, Any]) -> None:
+def _make(
+    request: FilmRequest, subject: Subject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
+) -> None:
     from dancetutor_cli.jobs.film_plan import Prepared, prepare
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film

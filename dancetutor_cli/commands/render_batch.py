@@ -17,8 +17,8 @@ from dancetutor_cli.files import encoded
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.batch import Outcome
-    from dancetutor_cli.jobs.film_list import BatchRequest, Unreadable
+    from dancetutor_cli.jobs.batch import FilmOutcome
+    from dancetutor_cli.jobs.film_list import BatchRequest, UnreadableFile
     from dancetutor_cli.jobs.pool import Workers
     from dancetutor_cli.reports.progress import FilmProgress
 
@@ -43,7 +43,7 @@ def render_batch(
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches, so there is nothing to render")
     make_folder(batch.folder)
-    outcomes: list[Outcome] = []
+    outcomes: list[FilmOutcome] = []
     jobs = options["jobs"] or default_jobs()
     with ExitStack() as stack:
         results = _open_results(options["results"], stack)
@@ -112,7 +112,7 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
         results.flush()
 
 
-def _tell(outcome: Outcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
+def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
     from dancetutor_cli.reports.safe import safe
 
     name = outcome.job.output.name
@@ -123,7 +123,7 @@ def _tell(outcome: Outcome, progress: FilmProgress, quiet: bool, number: int, co
         progress.say(safe(f"  warning: {warning}"))
 
 
-def _sum_up(outcomes: list[Outcome], unreadable: list[Unreadable], without: list[Path], quiet: bool) -> None:
+def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], without: list[Path], quiet: bool) -> None:
     """The sum, the table of what failed, and the exit status."""
     counts = Counter(outcome.status for outcome in outcomes)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]

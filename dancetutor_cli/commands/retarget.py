@@ -24,7 +24,7 @@ _CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a te
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class RetargetOptions:
     """What the options ask for."""
 
     output: Path
@@ -67,8 +67,8 @@ class Wanted:
     help="Measure the motion, its faults before and after, and how far the ragdoll was from it.",
 )
 @click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
-@into("wanted", Wanted)
-def command(file: Path, wanted: Wanted) -> None:
+@into("wanted", RetargetOptions)
+def command(file: Path, wanted: RetargetOptions) -> None:
     """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character, through a ragdoll.
 
     Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
@@ -107,7 +107,7 @@ def corrections_of(text: str) -> tuple[str, ...]:
 
 
 def _written(work: Retargeting, output: Path) -> str:
-    from dancetutor_cli.physics.engine import engine
+    from dancetutor_cli.physics.backend import engine
 
     engine()
     motion = work.motion
@@ -132,7 +132,7 @@ def _written(work: Retargeting, output: Path) -> str:
     return f"{len(motion.times)} keys, {seconds:.1f} s"
 
 
-def _report(work: Retargeting, wanted: Wanted) -> None:
+def _report(work: Retargeting, wanted: RetargetOptions) -> None:
     report = work.report()
     if wanted.report_to is not None:
         from dancetutor_cli.reports.motion_report import as_json, print_report

@@ -39,7 +39,7 @@ Place = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class FeetEntry:
     """One entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as they are written}"""
 
     when: Condition
@@ -82,7 +82,7 @@ def read_settings(song: Song, chart: Chart) -> SettingsFeet:
 
 
 @lru_cache(maxsize=8)
-def _entries(path: Path, _time: int, _size: int) -> tuple[Entry, ...]:
+def _entries(path: Path, _time: int, _size: int) -> tuple[FeetEntry, ...]:
     check_not_a_link_out(path)
     source = read(path)
     try:
@@ -91,7 +91,7 @@ def _entries(path: Path, _time: int, _size: int) -> tuple[Entry, ...]:
         raise FileError(path, error.message, source.error(error.keys, "").line) from None
 
 
-def entries_of(data: Mapping[str, Any], folder: Path) -> Iterator[Entry]:
+def entries_of(data: Mapping[str, Any], folder: Path) -> Iterator[FeetEntry]:
     """The entries of `feet`, checked; SettingError says at which key something is wrong, and names what there is."""
     listed = data.get("feet") or []
     if not isinstance(listed, list):
@@ -106,7 +106,7 @@ def entries_of(data: Mapping[str, Any], folder: Path) -> Iterator[Entry]:
             tick: frozenset(texts_of({"rules": value}, "rules"))
             for tick, value, _ in _by_beat(entry.get("ignore"), (*place, "ignore"))
         }
-        yield Entry(condition_of(entry.get("when"), folder, (*place, "when")), steps, ignore)
+        yield FeetEntry(condition_of(entry.get("when"), folder, (*place, "when")), steps, ignore)
 
 
 def _by_beat(value: Any, place: Place) -> Iterator[tuple[int, Any, Place]]:

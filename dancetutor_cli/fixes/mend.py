@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.fixes import safe
+from dancetutor_cli.fixes import safe_fixes
 from dancetutor_cli.fixes.cells import Fix, notes_of
 from dancetutor_cli.fixes.moved import moved
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ReaderRule
-from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.lint.suggest import MENDABLE, mending_moves
@@ -23,12 +23,12 @@ from dancetutor_cli.markers.splice import apply
 from dancetutor_cli.markers.verify import unchanged
 from dancetutor_cli.play.preset import Preset
 
-FIXABLE = (*MENDABLE, *safe.RULES)  # rules that `--fix` knows a fix for
+FIXABLE = (*MENDABLE, *safe_fixes.RULES)  # rules that `--fix` knows a fix for
 _RANKED = "DT213"  # tells the rows that are least sure: the next one takes the place of one that is gone
 NO_MOVE = "no single note moved to another panel of its row removes it without bringing another finding"
 NO_FIX = {
-    safe.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
-    safe.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
+    safe_fixes.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
+    safe_fixes.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
 }
 GONE = "an edit before has removed it too"
 
@@ -70,7 +70,7 @@ class Mending:
     def safe(self, chart: int) -> None:
         """All safe fixes of a chart: of a rule at once if that brings no finding, else each that brings none."""
         for player in range(max(len(self.song.charts[chart].players), 1)):
-            for rule in safe.RULES:
+            for rule in safe_fixes.RULES:
                 fixes = [fix for fix in self._safe_fixes(self._part(chart, player + 1)) if fix.rule == rule]
                 if fixes and not self._try(self._state(chart, player + 1), fixes):
                     for fix in fixes:
@@ -108,8 +108,8 @@ class Mending:
             return []
         path = self.song.path.absolute()
         rules = self.settings.for_chart(path, chart.written_type, chart.difficulty, chart.meter)
-        grid = rules[safe.OFF_GRID]["grid"] if safe.OFF_GRID in rules else [TICKS_PER_MEASURE]
-        return safe.safe_fixes(self.song.data, chart, [int(name) for name in grid])
+        grid = rules[safe_fixes.OFF_GRID]["grid"] if safe_fixes.OFF_GRID in rules else [TICKS_PER_MEASURE]
+        return safe_fixes.safe_fixes(self.song.data, chart, [int(name) for name in grid])
 
     def _part(self, index: int, player: int) -> Chart:
         """A chart as it is now, or of one for two the part of a player."""

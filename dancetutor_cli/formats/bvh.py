@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton

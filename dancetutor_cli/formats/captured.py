@@ -13,7 +13,7 @@ from dancetutor_cli.character.nodes import Nodes, read_nodes
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.outputs import one_of
 from dancetutor_cli.physics.captured import Captured
 from dancetutor_cli.rig import quaternion as quat

@@ -20,7 +20,7 @@ from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.formats.thinning import clocks
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126

@@ -26,10 +26,10 @@ from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.files import encoded, write_atomic
+from dancetutor_cli.motion.baked import Bar, Grip
 from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Sidestep, Step, Swing, Walk
-from dancetutor_cli.motion.model import Bar, Grip
 from dancetutor_cli.motion.plan import FootTrack, Plan, Press
-from dancetutor_cli.play.model import Limb, Part, StepKind
+from dancetutor_cli.play.played import Limb, Part, StepKind
 
 SCHEMA = 1
 _FEET = ("left_foot", "right_foot")

@@ -15,7 +15,7 @@ from dancetutor_cli.bounded import read_json, shown_key
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Limb, Part, Play, Rows
+from dancetutor_cli.play.played import Limb, Part, Play, Rows
 
 SCHEMA = 1
 _LIMBS = {limb.name.lower(): int(limb) for limb in Limb if limb >= 0}

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.play.model import Limb, Part, Play, StepKind
+from dancetutor_cli.play.played import Limb, Part, Play, StepKind
 
 _LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
 _KINDS = {int(kind): kind.name.lower() for kind in StepKind}

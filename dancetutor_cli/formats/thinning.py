@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
@@ -22,19 +22,19 @@ FREE = 0.002  # metres that a part of the body which touches nothing may be off 
 GRIPPING = 0.0003  # the same for a hand on the bar
 WAVING = 0.03  # and for hair, which is thrown about by what is so fast
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
-_FIRST_HAND = 2  # play.model.Limb
+_FIRST_HAND = 2  # play.played.Limb
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
+class KeyTimes:
     """Joints that share their keys. keep : (f,) which keys of the motion those are."""
 
     joints: tuple[int, ...]
     keep: Mask
 
 
-def clocks(motion: Motion) -> tuple[Clock, ...]:
+def clocks(motion: Motion) -> tuple[KeyTimes, ...]:
     """Every joint of a motion in one clock; the first has the root and all that carries the feet, and all keys."""
     every = np.ones(len(motion.times), dtype=bool)
     frame = motion.times * motion.fps
@@ -43,11 +43,11 @@ def clocks(motion: Motion) -> tuple[Clock, ...]:
     feet, hands, hair, others = _groups(motion.skeleton)
     held, gripped = _touches(motion)
     free = np.full(len(every), FREE)
-    out = [Clock(feet, every)]
+    out = [KeyTimes(feet, every)]
     for joints, least in ((hands, np.where(gripped, GRIPPING, free)), (hair, free + (WAVING - FREE)), (others, free)):
         if joints:
             wanted = _off(motion, joints, regular) > least
-            out.append(Clock(joints, regular | wanted | (held if joints is hands else False)))
+            out.append(KeyTimes(joints, regular | wanted | (held if joints is hands else False)))
     return tuple(out)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Bar, Motion
+    from dancetutor_cli.motion.baked import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice, mismatch, preset_for
-from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.meter.bill import AUTO
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class AnalyzeTask:
     """What to do with one file. Pickles, so that another process can do it.
 
     presets : which cost preset each chart gets
@@ -50,7 +50,7 @@ class Task:
     rate: float = 1.0
 
 
-def analyze_file(task: Task) -> FileResult:
+def analyze_file(task: AnalyzeTask) -> FileResult:
     """Read, solve and lint one file. Never raises for what is wrong with the file: that is `error` in the result."""
     try:
         song = load_song(task)
@@ -75,7 +75,7 @@ def analyze_file(task: Task) -> FileResult:
     )
 
 
-def _chart_results(song: Song, selected: tuple[Chart, ...], task: Task) -> tuple[ChartResult, ...]:
+def _chart_results(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask) -> tuple[ChartResult, ...]:
     """The charts one by one, then what only all of them together tell: the scale of the meters."""
     from dancetutor_cli.lint.meters import Meters
 
@@ -98,14 +98,14 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
     return tuple(chart.label for chart in song.charts if chart.index not in meant)
 
 
-def load_song(task: Task) -> Song:
+def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
     from dancetutor_cli import chart as reader
 
     return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
 
 
-def solved(song: Song, charts: tuple[Chart, ...], task: Task) -> Iterator[ChartSubject]:
+def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
     """Each of the charts with its play; of those for two, each player's part."""
     from dancetutor_cli.lint.solved import solved_chart
 
@@ -129,7 +129,7 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
             yield f"{result.label}: {result.mismatch}"
 
 
-def _chart_result(subject: ChartSubject, task: Task) -> ChartResult:
+def _chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
     from dancetutor_cli.lint.excerpt import arrows, with_excerpts
 
     chart, play = subject.chart, subject.play
@@ -165,7 +165,7 @@ def _rows(subject: ChartSubject) -> str:
 
 
 def _findings(
-    subject: ChartSubject, task: Task, preset: Preset
+    subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
     """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
     from dancetutor_cli.lint.check import check_chart
@@ -189,7 +189,7 @@ def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[Al
     return alternatives_of(subject, preset, count)
 
 
-def _figures(subject: ChartSubject, task: Task) -> Figures:
+def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
     from dancetutor_cli.chart.density import density
     from dancetutor_cli.lint.tech_counts import facing_counts, tech_counts
 
@@ -211,11 +211,11 @@ def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
             yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
 
 
-def failed(task: Task, message: str) -> FileResult:
+def failed(task: AnalyzeTask, message: str) -> FileResult:
     """The result of a task that broke down."""
     return _unreadable(task, FileError(task.path, message))
 
 
-def _unreadable(task: Task, error: FileError) -> FileResult:
+def _unreadable(task: AnalyzeTask, error: FileError) -> FileResult:
     finding = Finding("DT101", "unreadable", "error", error.message, error.line, error.column)
     return FileResult(str(task.path), "", "", str(error), (), (finding,), ())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.jobs.analyze import Task, analyze_file, failed
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file, failed
 from dancetutor_cli.jobs.result import FileResult
 
 if TYPE_CHECKING:
@@ -16,10 +16,10 @@ _WORTH_WORKERS = 8
 
 
 def analyze_all(
-    tasks: Sequence[Task],
+    tasks: Sequence[AnalyzeTask],
     jobs: int | None,
     cache: ResultCache | None,
-    before_work: Callable[[Sequence[Task]], None] = lambda tasks: None,
+    before_work: Callable[[Sequence[AnalyzeTask]], None] = lambda tasks: None,
 ) -> Iterator[FileResult]:
     """The result of every task, in the order of the tasks, as early as they are known.
 
@@ -50,12 +50,12 @@ def analyze_all(
 _Fresh = Iterator[tuple[int, FileResult, bool]]
 
 
-def _here(tasks: Sequence[Task], _: int | None) -> _Fresh:
+def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
     for place, task in enumerate(tasks):
         yield place, analyze_file(task), True
 
 
-def _in_workers(tasks: Sequence[Task], jobs: int | None) -> _Fresh:
+def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
     from dancetutor_cli.jobs.pool import Task as Work
     from dancetutor_cli.jobs.pool import default_jobs, open_workers
 
@@ -70,5 +70,5 @@ def _in_workers(tasks: Sequence[Task], jobs: int | None) -> _Fresh:
         workers.close()
 
 
-def _analyze(_: Callable[[int], None], task: Task) -> FileResult:
+def _analyze(_: Callable[[int], None], task: AnalyzeTask) -> FileResult:
     return analyze_file(task)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.lint_run import LintRun
     from dancetutor_cli.markers.beside import Planned
-    from dancetutor_cli.markers.changes import Change, Lack
-    from dancetutor_cli.markers.planning import Plan
+    from dancetutor_cli.markers.changes import FileChange, Lack
+    from dancetutor_cli.markers.planning import MarkerPlan
     from dancetutor_cli.play.preset import Preset
 
 
@@ -54,7 +54,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class AnnotateOutcome:
     """What became of a file: lines for people, mostly.
 
     problems : contradictions in what people said about feet; lacks : what is missing or stale
@@ -74,7 +74,7 @@ class Outcome:
     diff: tuple[str, ...] = ()
 
 
-def annotate_song(items: Sequence[Item], order: Order) -> list[Outcome]:
+def annotate_song(items: Sequence[Item], order: Order) -> list[AnnotateOutcome]:
     """Annotate the files of one song, or take the markers out. Never raises for what is wrong with a file.
 
     Of a .sm and a .ssc only the .ssc speaks for the song in `data.sme` and in .edit files.
@@ -87,18 +87,18 @@ def annotate_song(items: Sequence[Item], order: Order) -> list[Outcome]:
     return [_attempt(item, order, ssc and item.source.suffix.lower() != ".ssc") for item in items]
 
 
-def _attempt(item: Item, order: Order, second: bool) -> Outcome:
+def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
     try:
         return _annotate(item, order, second)
     except NoChartsError as error:  # music of a menu: nothing to write
-        return Outcome(item.source, notes=(str(error),))
+        return AnnotateOutcome(item.source, notes=(str(error),))
     except FileError as error:
-        return Outcome(item.source, error=str(error))
+        return AnnotateOutcome(item.source, error=str(error))
     except OSError as error:
-        return Outcome(item.source, error=str(FileError(item.source, error.strerror or str(error))))
+        return AnnotateOutcome(item.source, error=str(FileError(item.source, error.strerror or str(error))))
 
 
-def _annotate(item: Item, order: Order, second: bool) -> Outcome:
+def _annotate(item: Item, order: Order, second: bool) -> AnnotateOutcome:
     from dancetutor_cli import chart as reader
     from dancetutor_cli.markers.changes import BESIDE, EDIT, SIDECAR
 
@@ -118,7 +118,7 @@ class _Work:
 
     def __init__(self, item: Item, order: Order, song: Song, beside: tuple[str, ...]) -> None:
         self.item, self.order, self.song, self.beside = item, order, song, beside
-        self.changes: list[Change] = []
+        self.changes: list[FileChange] = []
         self.lacks: list[Lack] = []
         self.problems: list[Lack] = []
         self.notes: list[str] = []
@@ -182,13 +182,13 @@ class _Work:
                     raise
                 self.notes.append(str(error))
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> AnnotateOutcome:
         """Bring the changes to the disk if that is wanted, and say what became of the file."""
         selection = self.order.selection
         if self.order.write:
             for change in self.changes:
                 self._bring(change)
-        return Outcome(
+        return AnnotateOutcome(
             self.item.source,
             error="; ".join(self.errors) or None,
             notes=tuple(self.notes),
@@ -229,10 +229,10 @@ class _Work:
         splices = background.remove(song)
         return reader.parse(apply(song.data, splices), song.path) if splices else song
 
-    def _take(self, plan: Plan) -> None:
-        from dancetutor_cli.markers.changes import Change
+    def _take(self, plan: MarkerPlan) -> None:
+        from dancetutor_cli.markers.changes import FileChange
 
-        self.changes.append(Change(self.item.target, self.song.data, plan.data))
+        self.changes.append(FileChange(self.item.target, self.song.data, plan.data))
         self.lacks += plan.lacks
         self.notes += plan.notes
         self.counts += plan.counts
@@ -245,7 +245,7 @@ class _Work:
         self.changes.append(change)
         self.lacks += lacks
 
-    def _bring(self, change: Change) -> None:
+    def _bring(self, change: FileChange) -> None:
         """Bring one change to the disk; with -o also what is the same as before, so that the copy is whole."""
         if self._in_place and not change.needed:
             return
@@ -265,18 +265,18 @@ class _Work:
 @cache
 def _configured(preset: str | None) -> LintRun:
     """Knows the presets of each file's charts; the same for `analyze`, so that both find the same feet."""
-    from dancetutor_cli.jobs.lint_run import LintRun, Request
+    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 
-    return LintRun(Request(preset=preset))
+    return LintRun(LintRequest(preset=preset))
 
 
-def _diff(changes: Sequence[Change]) -> Iterator[str]:
+def _diff(changes: Sequence[FileChange]) -> Iterator[str]:
     from dancetutor_cli.markers.diff import unified
 
     for change in changes:
         yield from unified(str(change.path), change.old, change.new)
 
 
-def annotate_task(report: Callable[[int], None], items: Sequence[Item], order: Order) -> list[Outcome]:
+def annotate_task(report: Callable[[int], None], items: Sequence[Item], order: Order) -> list[AnnotateOutcome]:
     """`annotate_song` as worker processes call it."""
     return annotate_song(items, order)

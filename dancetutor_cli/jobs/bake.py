@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.bake.styled import Styled
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.motion.model import Bar, Motion
+    from dancetutor_cli.motion.baked import Bar, Motion
     from dancetutor_cli.motion.plan import Plan
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.physics.pipeline import Wishes
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.play.preset import Preset
 
 AFTER = 2.5  # seconds after the last row that a section may still reach
@@ -108,7 +108,7 @@ def check_style(style: str | None, bar: bool) -> None:
     """Say what is wrong with a style: FileError or UsageError, before the work; UnavailableError without the engine."""
     if style is None:
         return
-    from dancetutor_cli.physics.engine import engine
+    from dancetutor_cli.physics.backend import engine
     from dancetutor_cli.physics.style import load_style
 
     load_style(style)
@@ -122,9 +122,9 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], corrections: tuple[str
     if not (push or trip or corrections):
         return None
     from dancetutor_cli.physics.pipeline import Wishes
-    from dancetutor_cli.physics.pushes import Trip, parse_push
+    from dancetutor_cli.physics.pushes import Stumble, parse_push
 
-    return Wishes(corrections, tuple(parse_push(text) for text in push), tuple(Trip(second) for second in trip))
+    return Wishes(corrections, tuple(parse_push(text) for text in push), tuple(Stumble(second) for second in trip))
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
@@ -203,7 +203,7 @@ def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Pla
 
 
 @dataclass
-class Dance:
+class BakedDance:
     """What is asked for, made when it is first wanted; as `formats.writers.Dance` describes it."""
 
     asked: Asked

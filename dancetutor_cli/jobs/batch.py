@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs import film_work
-from dancetutor_cli.jobs.film_work import FilmJob, Opened, Outcome
-from dancetutor_cli.jobs.pool import Done, Task, Workers
+from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome, Opened
+from dancetutor_cli.jobs.pool import Finished, Task, Workers
 
-__all__ = ["Batch", "FilmJob", "Outcome"]
+__all__ = ["Batch", "FilmJob", "FilmOutcome"]
 
 
 @dataclass
@@ -45,7 +45,7 @@ class Batch:
     _films: dict[int, _Film] = field(default_factory=dict)
     _queue: deque[int] = field(default_factory=deque)
 
-    def run(self) -> Iterator[Outcome]:
+    def run(self) -> Iterator[FilmOutcome]:
         """Do it all. The order of outcomes depends on the workers; the films do not."""
         self._queue = deque(range(len(self.jobs)))
         self._fill()
@@ -66,7 +66,7 @@ class Batch:
     def _is_fresh(film: _Film) -> bool:
         return film.opened is None or film.waiting > 1
 
-    def _ended(self, done: Done) -> Outcome | None:
+    def _ended(self, done: Finished) -> FilmOutcome | None:
         kind, number = done.key[:2]
         film = self._films[number]
         if done.error is not None:
@@ -78,7 +78,7 @@ class Batch:
             return self._after_segments(number, film) if film.waiting == 0 else None
         return self._outcome(number, film)
 
-    def _after_open(self, number: int, film: _Film, done: Done) -> Outcome | None:
+    def _after_open(self, number: int, film: _Film, done: Finished) -> FilmOutcome | None:
         if film.error is not None or done.result.skipped:
             film.opened = done.result
             return self._outcome(number, film)
@@ -90,13 +90,13 @@ class Batch:
             self.workers.submit(Task(("segment", number, part.number), film_work.render_segment, arguments))
         return None if opened.missing else self._after_segments(number, film)
 
-    def _after_segments(self, number: int, film: _Film) -> Outcome | None:
+    def _after_segments(self, number: int, film: _Film) -> FilmOutcome | None:
         if film.error is not None:
             return self._outcome(number, film)
         self.workers.submit(Task(("close", number), film_work.close_film, (film.job, film.opened)))
         return None
 
-    def _outcome(self, number: int, film: _Film) -> Outcome:
+    def _outcome(self, number: int, film: _Film) -> FilmOutcome:
         del self._films[number]
         seconds = time.monotonic() - film.began
         return film_work.outcome(film.job, film.opened, film.error, seconds)

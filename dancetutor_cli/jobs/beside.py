@@ -19,7 +19,7 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.chart.msd import Tag, plain, scan
 from dancetutor_cli.chart.names import difficulty as named
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
-from dancetutor_cli.jobs.analyze import Task, load_song, solved
+from dancetutor_cli.jobs.analyze import AnalyzeTask, load_song, solved
 from dancetutor_cli.lint.tech_counts import tech_rows
 
 TEN = (
@@ -125,7 +125,7 @@ def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
     return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
 
 
-def beside(tasks: Iterable[Task], theirs: Mapping[Key, Mapping[str, int]]) -> Beside:
+def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Mapping[str, int]]) -> Beside:
     """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
     found, seen = Beside(), set[Key]()
     by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)

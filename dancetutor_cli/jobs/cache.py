@@ -16,7 +16,7 @@ from pathlib import Path
 import dancetutor_cli
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
 from dancetutor_cli.kernel_folder import users_folder
@@ -36,7 +36,7 @@ class ResultCache:
         self._folder = folder
         self._listings: dict[Path, str] = {}
 
-    def key(self, task: Task) -> str | None:
+    def key(self, task: AnalyzeTask) -> str | None:
         """The hash of what the task's result depends on, or None if it cannot be kept."""
         if task.want_rows or task.data is not None:
             return None

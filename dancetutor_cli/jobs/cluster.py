@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs.pool import Done, Task, WorkFailedError, attempt
+from dancetutor_cli.jobs.pool import Finished, Task, WorkFailedError, attempt
 
 TIMEOUT = 10  # seconds to find the scheduler
 RETRIES = 3  # how often a piece of work is begun again when its worker is lost
 _MEND = "install it: pip install 'dancetutor[cluster]'"
 
 
-def perform(task: Task) -> Done:
+def perform(task: Task) -> Finished:
     """Do a piece of work on a worker of the cluster; what it reports is summed up in its result."""
     return attempt(task, lambda _count: None)
 
@@ -44,7 +44,7 @@ class ClusterWorkers:
         self._tasks[future.key] = task
         self._running.add(future)
 
-    def done(self) -> Iterator[Done]:
+    def done(self) -> Iterator[Finished]:
         """Results as they come."""
         while self._running.count():
             future = next(self._running)
@@ -55,12 +55,14 @@ class ClusterWorkers:
             yield result
 
     @staticmethod
-    def _result(future: Any, task: Task) -> Done:
+    def _result(future: Any, task: Task) -> Finished:
         try:
             result = future.result()
         except Exception as error:  # whatever the cluster itself ran into
-            return Done(task.key, error=WorkFailedError(f"the cluster gave a piece of work up: {type(error).__name__}"))
-        assert isinstance(result, Done)
+            return Finished(
+                task.key, error=WorkFailedError(f"the cluster gave a piece of work up: {type(error).__name__}")
+            )
+        assert isinstance(result, Finished)
         return result
 
     def close(self) -> None:

@@ -38,7 +38,7 @@ class RowChange:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ChartChange:
     """What is other in a file or in one of its charts. chart : its label, "" for the file; said : a line each"""
 
     file: str
@@ -47,16 +47,16 @@ class Change:
     rows: tuple[RowChange, ...] = ()
 
 
-def compare(before: Path, now: Path) -> Iterator[Change]:
+def compare(before: Path, now: Path) -> Iterator[ChartChange]:
     """Everything that changed from one version to another: two files, or two folders. UsageError without charts."""
     old, new = _files(before), _files(now)
     if before.is_file() and now.is_file():
         old, new = {now.name: before}, {now.name: now}
     for name in sorted(old.keys() | new.keys()):
         if name not in old:
-            yield Change(name, "", ("is new",))
+            yield ChartChange(name, "", ("is new",))
         elif name not in new:
-            yield Change(name, "", ("is gone",))
+            yield ChartChange(name, "", ("is gone",))
         else:
             yield from _file(name, old[name], new[name])
 
@@ -67,27 +67,27 @@ def _files(path: Path) -> dict[str, Path]:
     return {Path(os.path.relpath(file, root)).as_posix(): file for file in find_files([path])}
 
 
-def _file(name: str, before: Path, now: Path) -> Iterator[Change]:
+def _file(name: str, before: Path, now: Path) -> Iterator[ChartChange]:
     try:
         old = load(before)
     except FileError as error:
-        yield Change(name, "", (f"could not be read before: {error.message}",))
+        yield ChartChange(name, "", (f"could not be read before: {error.message}",))
         return
     try:
         new = load(now)
     except FileError as error:
-        yield Change(name, "", (f"cannot be read any more: {error.message}",))
+        yield ChartChange(name, "", (f"cannot be read any more: {error.message}",))
         return
     if old.data == new.data:
         return
     if said := tuple(_head(old, new)):
-        yield Change(name, "", said)
+        yield ChartChange(name, "", said)
     charts, others = _by_key(old), _by_key(new)
     for key in dict.fromkeys((*charts, *others)):
         if key not in charts:
-            yield Change(name, others[key].label, (f"is new: {len(_rows(others[key]))} rows",))
+            yield ChartChange(name, others[key].label, (f"is new: {len(_rows(others[key]))} rows",))
         elif key not in others:
-            yield Change(name, charts[key].label, ("is gone",))
+            yield ChartChange(name, charts[key].label, ("is gone",))
         elif (change := _chart(name, charts[key], others[key])) is not None:
             yield change
 
@@ -114,7 +114,7 @@ def _by_key(song: Song) -> dict[tuple[str, str, int], Chart]:
     return found
 
 
-def _chart(name: str, old: Chart, new: Chart) -> Change | None:
+def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
     said: list[str] = []
     if old.meter != new.meter:
         said.append(f"meter {old.meter} → {new.meter}")
@@ -129,7 +129,7 @@ def _chart(name: str, old: Chart, new: Chart) -> Change | None:
         added, lost = sum(not row.before for row in rows), sum(not row.now for row in rows)
         kinds = ((added, "new"), (lost, "gone"), (len(rows) - added - lost, "other"))
         said.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
-    return Change(name, new.label, tuple(said), rows) if said else None
+    return ChartChange(name, new.label, tuple(said), rows) if said else None
 
 
 def _rows(chart: Chart) -> Mapping[int, Row]:
@@ -176,7 +176,7 @@ def _times(old: Chart, new: Chart, ticks: Sequence[int]) -> Iterator[str]:
     yield f"{int(moved.sum())} rows at other times from beat {first:g} on, by up to {np.abs(shift).max() * 1000:.0f} ms"
 
 
-def change_lines(changes: Sequence[Change], most_rows: int | None) -> Iterator[str]:
+def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Iterator[str]:
     """The changes for people: a line for a file or chart, below it its rows. most_rows : of a chart, None: all"""
     for change in _folded(changes):
         yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.said)}"
@@ -186,9 +186,9 @@ def change_lines(changes: Sequence[Change], most_rows: int | None) -> Iterator[s
             yield f"  ... and {len(change.rows) - len(shown)} more rows"
 
 
-def _folded(changes: Sequence[Change]) -> Iterator[Change]:
+def _folded(changes: Sequence[ChartChange]) -> Iterator[ChartChange]:
     """What is said alike of several charts of a file, without rows, said once."""
-    alike: dict[tuple[str, tuple[str, ...]], list[Change]] = {}
+    alike: dict[tuple[str, tuple[str, ...]], list[ChartChange]] = {}
     for n, change in enumerate(changes):
         own = (str(n),) if change.rows or not change.chart else ()
         alike.setdefault((change.file, (*change.said, *own)), []).append(change)

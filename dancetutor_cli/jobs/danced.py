@@ -10,16 +10,16 @@ import numpy as np
 
 from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.film_request import Request, Subject
+from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 from dancetutor_cli.play.rows import prepare
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
 
 # The pad on which both stand: of a couple each has half of it.
@@ -41,7 +41,7 @@ class Danced:
     partners: Mapping[float, Motion] = field(default_factory=dict)
 
 
-def danced(request: Request, subject: Subject) -> Danced:
+def danced(request: FilmRequest, subject: Subject) -> Danced:
     """Find the feet and bake the motions. UsageError for a steps type without a pad."""
     chart = subject.chart
     if len(chart.players) > 1:
@@ -56,7 +56,7 @@ def danced(request: Request, subject: Subject) -> Danced:
     return Danced((solved,), play, pad, _motions(request, replace(subject, chart=chart), play, pad))
 
 
-def _by_two(request: Request, subject: Subject) -> Danced:
+def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     chart = subject.chart
     if request.bar or request.play is not None:
         option = "--bar" if request.bar else "--play"
@@ -73,7 +73,7 @@ def _by_two(request: Request, subject: Subject) -> Danced:
     return Danced(solved, _together(chart, plays, whole), whole, motions[0], motions[1])
 
 
-def _known(request: Request, solved: ChartSubject) -> tuple[Play, Pad]:
+def _known(request: FilmRequest, solved: ChartSubject) -> tuple[Play, Pad]:
     if solved.play is None or solved.pad is None:
         raise UsageError(f"{request.path}: no pad is known for steps type '{solved.chart.steps_type}'")
     return solved.play, solved.pad
@@ -116,7 +116,7 @@ def _together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
     )
 
 
-def _motions(request: Request, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
+def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
     """The dancer's motion at each rate of the film, on the clock that is heard there: she falls as fast as all do."""
     if request.look.layout.dancer is None:
         return {}

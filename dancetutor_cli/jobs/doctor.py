@@ -62,7 +62,7 @@ def _cpu() -> Check:
 
 def _gl() -> Check:
     from dancetutor_cli.errors import UnavailableError
-    from dancetutor_cli.video.scene.gl.probe import gpu_device, require_gl
+    from dancetutor_cli.video.scene.gl.available import gpu_device, require_gl
 
     try:
         require_gl()

@@ -16,13 +16,13 @@ from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.film_request import Request, Subject
+    from dancetutor_cli.jobs.film_request import FilmRequest, Subject
     from dancetutor_cli.video.media.encoder import Encoding
 
 _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")
 
 
-def film_key(request: Request, subject: Subject, encoding: Encoding) -> str:
+def film_key(request: FilmRequest, subject: Subject, encoding: Encoding) -> str:
     """Hash (hex) of the chart file, which chart, the music, what is wanted of the film, and this program."""
     parts = {field.name: _plain(getattr(request, field.name)) for field in fields(request)}
     parts |= {

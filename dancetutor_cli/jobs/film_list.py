@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.jobs.film_request import Request
+from dancetutor_cli.jobs.film_request import FilmRequest
 from dancetutor_cli.jobs.film_work import FilmJob
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.media.encoder import Encoding
@@ -31,7 +31,7 @@ class BatchRequest:
     """
 
     paths: tuple[Path, ...]
-    request: Request
+    request: FilmRequest
     encoding: Encoding
     folder: Path
     name: str = DEFAULT_NAME
@@ -41,7 +41,7 @@ class BatchRequest:
 
 
 @dataclass(frozen=True, slots=True)
-class Unreadable:
+class UnreadableFile:
     """A chart file that cannot be read."""
 
     path: Path
@@ -52,7 +52,7 @@ class FilmList(NamedTuple):
     """The films of a batch, the files that could not be read, and those that have no chart that is wanted."""
 
     films: list[FilmJob]
-    unreadable: list[Unreadable]
+    unreadable: list[UnreadableFile]
     without: list[Path]
 
 
@@ -92,7 +92,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     """The films of the batch (of this shard), sorted by path. Of what is no film only the first shard tells."""
     check_name(batch.name)
     jobs: list[FilmJob] = []
-    bad: list[Unreadable] = []
+    bad: list[UnreadableFile] = []
     without: list[Path] = []
     taken: set[str] = set()
     for path in chart_files(batch.paths):
@@ -101,7 +101,7 @@ def film_list(batch: BatchRequest) -> FilmList:
 
             song = charts.load(path)
         except (DancetutorError, OSError) as error:
-            bad.append(Unreadable(path, str(error)))
+            bad.append(UnreadableFile(path, str(error)))
             continue
         found = [_job(batch, song, chart, taken) for chart in _charts(batch, song)]
         jobs += found

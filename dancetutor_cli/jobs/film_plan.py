@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.tempo import fastest_bpm
-from dancetutor_cli.jobs.film_request import Request, Subject
+from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.film import FilmPlan, turned
 from dancetutor_cli.video.media.clicks import clicks_of
@@ -28,7 +28,7 @@ from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.jobs.danced import Danced
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.notes import Cue
@@ -46,7 +46,7 @@ class Prepared:
     warnings: tuple[str, ...]
 
 
-def prepare(request: Request, subject: Subject) -> Prepared:
+def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
     from dancetutor_cli.character import dressed
     from dancetutor_cli.jobs.danced import danced

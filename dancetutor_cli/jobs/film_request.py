@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class FilmRequest:
     """What film is wanted. Pickles, so that another process can prepare it.
 
     path : the chart file; selection : which chart
@@ -84,7 +84,7 @@ class Subject:
         return float(self.chart.timing.seconds(end)[0])
 
 
-def look_up(request: Request) -> Subject:
+def look_up(request: FilmRequest) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     if request.look.layout.dancer is not None:
         from dancetutor_cli.jobs.bake import check_motion, check_style
@@ -109,7 +109,7 @@ def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
     return 0.0, end if music is None else max(end, seconds_of(music))
 
 
-def _section(request: Request, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:
+def _section(request: FilmRequest, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:
     whole = whole_song(chart)
     if request.section is None:
         return whole

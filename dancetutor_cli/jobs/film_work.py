@@ -18,7 +18,7 @@ import numpy as np
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import DancetutorError, FileError
 from dancetutor_cli.files import encoded, write_atomic
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.jobs.pool import Report, Task
 from dancetutor_cli.video.media.encoder import Encoding, join
 from dancetutor_cli.video.media.film_formats import PICTURES
@@ -47,7 +47,7 @@ class Segment:
 class FilmJob:
     """A film of a batch. label : the chart's, for people; output : the file (for "png" the folder) it becomes."""
 
-    request: Request
+    request: FilmRequest
     label: str
     output: Path
     encoding: Encoding
@@ -75,7 +75,7 @@ class Opened:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class FilmOutcome:
     """How a film job ended. status : "done", "skipped" or "failed"."""
 
     job: FilmJob
@@ -100,15 +100,15 @@ class Outcome:
         }
 
 
-def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> Outcome:
+def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
     """What became of a job."""
     if error is not None:
         if opened is not None and not any(part.path.is_file() for part in opened.parts):
             shutil.rmtree(opened.folder, ignore_errors=True)  # nothing in it is worth going on with
-        return Outcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
+        return FilmOutcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
     assert opened is not None
     status = "skipped" if opened.skipped else "done"
-    return Outcome(job, status, None, opened.warnings, opened.frames, seconds)
+    return FilmOutcome(job, status, None, opened.warnings, opened.frames, seconds)
 
 
 def open_film(report: Report, job: FilmJob) -> Opened:

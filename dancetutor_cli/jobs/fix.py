@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError, NoChartsError
 from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
-from dancetutor_cli.jobs.analyze import Task, load_song
+from dancetutor_cli.jobs.analyze import AnalyzeTask, load_song
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import preset_for
 
@@ -27,7 +27,7 @@ class FixOrder:
     write : whether the file is written; backup : keep the old bytes beside it
     """
 
-    task: Task
+    task: AnalyzeTask
     findings: tuple[tuple[Finding, int], ...]
     safe: bool = False
     write: bool = True

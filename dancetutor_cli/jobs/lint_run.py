@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.library.feet_files import places_of_feet
 from dancetutor_cli.library.selection import Selection
@@ -25,7 +25,7 @@ from dancetutor_cli.meter.bill import AUTO
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class LintRequest:
     """What the command line asks for; None where it says nothing and the configuration decides.
 
     config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
@@ -53,7 +53,7 @@ class Request:
 class LintRun:
     """Turns files into tasks, and raw results into what is reported."""
 
-    request: Request
+    request: LintRequest
     _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
     _sources: dict[Path, Path | None] = field(default_factory=dict)
     _choices: dict[int, PresetChoice] = field(default_factory=dict)
@@ -101,11 +101,11 @@ class LintRun:
             if baseline is not None and not self.request.update_baseline:
                 yield baseline
 
-    def task(self, path: Path, data: bytes | None = None) -> Task:
+    def task(self, path: Path, data: bytes | None = None) -> AnalyzeTask:
         """The piece of work for a file."""
         settings = self.configuration(path).settings
         request = self.request
-        return Task(
+        return AnalyzeTask(
             path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
             request.alternatives, request.want_figures, request.want_excerpts, request.meter_scale, request.rate,
         )  # fmt: skip

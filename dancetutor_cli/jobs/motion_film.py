@@ -22,7 +22,7 @@ from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.video.picture import Frame
 
 SIZE, FPS = (720, 720), 30

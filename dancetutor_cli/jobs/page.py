@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.bake import Asked
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.page import Content
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.play.preset import Preset
 
 MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", ".wav": "audio/wav",

@@ -9,7 +9,7 @@ from pathlib import Path
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.page import PageTask, make_page
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.page.index import Entry, index_page
+from dancetutor_cli.page.index import IndexEntry, index_page
 
 INDEX = "index.html"
 
@@ -20,7 +20,7 @@ class PageJob:
 
     task: PageTask
     target: Path
-    entry: Entry
+    entry: IndexEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,9 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
                 name, number = f"{stem}-{number}", number + 1
             taken.add(name.lower())
             bake = replace(task.bake, path=path, selection=Selection(index=chart.index), jobs=1)
-            entry = Entry(f"{name}.html", clean(song.title) or song.path.stem, clean(song.artist), clean(chart.label))
+            entry = IndexEntry(
+                f"{name}.html", clean(song.title) or song.path.stem, clean(song.artist), clean(chart.label)
+            )
             jobs.append(PageJob(replace(task, bake=bake), folder / entry.file, entry))
     return jobs, bad
 

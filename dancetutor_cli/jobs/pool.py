@@ -38,7 +38,7 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class Finished:
     """A piece of work that has ended: its result, or the error it raised."""
 
     key: Any
@@ -52,7 +52,7 @@ class Workers(Protocol):
     def submit(self, task: Task) -> None:
         """Add a piece of work to the end of the queue."""
 
-    def done(self) -> Iterator[Done]:
+    def done(self) -> Iterator[Finished]:
         """Yield results as they come; ends when nothing is left to do."""
 
     def close(self) -> None:
@@ -72,20 +72,20 @@ def open_workers(jobs: int, report: Callable[[Any, int], None]) -> Workers:
     return SerialWorkers(report) if jobs <= 1 else ProcessWorkers(jobs, report)
 
 
-def attempt(task: Task, report: Report) -> Done:
+def attempt(task: Task, report: Report) -> Finished:
     """Do a piece of work; whatever it raises becomes an error that can be sent between processes."""
     try:
-        return Done(task.key, task.function(report, *task.arguments))
+        return Finished(task.key, task.function(report, *task.arguments))
     except DancetutorError as error:
-        return Done(task.key, error=error)
+        return Finished(task.key, error=error)
     except MemoryError:
-        return Done(task.key, error=UnavailableError("out of memory; try fewer --jobs or a smaller --size"))
+        return Finished(task.key, error=UnavailableError("out of memory; try fewer --jobs or a smaller --size"))
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        return Done(task.key, error=UnavailableError(f"{where}{error.strerror or error}"))
+        return Finished(task.key, error=UnavailableError(f"{where}{error.strerror or error}"))
     except Exception as error:
         said = (str(error).strip().splitlines() or [""])[-1][:300]
-        return Done(task.key, error=WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}"))
+        return Finished(task.key, error=WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}"))
 
 
 class SerialWorkers:
@@ -98,7 +98,7 @@ class SerialWorkers:
     def submit(self, task: Task) -> None:
         self._queue.append(task)
 
-    def done(self) -> Iterator[Done]:
+    def done(self) -> Iterator[Finished]:
         while self._queue:
             task = self._queue.popleft()
             yield attempt(task, lambda n, key=task.key: self._report(key, n))  # type: ignore[misc]
@@ -144,7 +144,7 @@ def _worker(connection: Connection) -> None:
             try:
                 message = pickle.dumps(done)
             except Exception as error:
-                message = pickle.dumps(Done(done.key, error=WorkFailedError(f"a result cannot be sent: {error}")))
+                message = pickle.dumps(Finished(done.key, error=WorkFailedError(f"a result cannot be sent: {error}")))
             connection.send_bytes(message)
 
 
@@ -189,7 +189,7 @@ class ProcessWorkers:
                 with contextlib.suppress(OSError):  # a dead worker is noticed where results are read
                     worker.connection.send_bytes(pickle.dumps(worker.task))
 
-    def done(self) -> Iterator[Done]:
+    def done(self) -> Iterator[Finished]:
         while self._queue or any(w.task is not None for w in self._workers):
             self._feed()
             busy = {w.connection: w for w in self._workers if w.task is not None}
@@ -199,19 +199,19 @@ class ProcessWorkers:
                     self._feed()
                     yield result
 
-    def _receive(self, worker: _Worker) -> Done | None:
+    def _receive(self, worker: _Worker) -> Finished | None:
         try:
             message = pickle.loads(worker.connection.recv_bytes())
         except (EOFError, OSError):
             return self._bury(worker)
-        if isinstance(message, Done):
+        if isinstance(message, Finished):
             worker.task = None
             return message
         if worker.task is not None:
             self.report(worker.task.key, message)
         return None
 
-    def _bury(self, worker: _Worker) -> Done | None:
+    def _bury(self, worker: _Worker) -> Finished | None:
         """A worker died. Its work goes to a new one, once; then it is given up."""
         worker.process.join(5)
         self._workers.remove(worker)
@@ -224,7 +224,9 @@ class ProcessWorkers:
             self._queue.appendleft(task)
             return None
         code = worker.process.exitcode
-        return Done(task.key, error=UnavailableError(f"a worker process was killed (status {code}); out of memory?"))
+        return Finished(
+            task.key, error=UnavailableError(f"a worker process was killed (status {code}); out of memory?")
+        )
 
     def close(self) -> None:
         self._queue.clear()

@@ -19,7 +19,7 @@ from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.ffmpeg import EncoderError
 
 
-class Progress(Protocol):
+class ProgressListener(Protocol):
     """Who wants to know how far the work is."""
 
     def begin(self, frames: int, fps: int) -> None:
@@ -61,7 +61,7 @@ def _remove(folder: Path) -> None:
 
 
 @contextmanager
-def _workers(jobs: int, progress: Progress) -> Iterator[Workers]:
+def _workers(jobs: int, progress: ProgressListener) -> Iterator[Workers]:
     workers = open_workers(jobs, lambda _key, frames: progress.advance(frames))
     try:
         yield workers
@@ -74,7 +74,7 @@ def make_film(
     encoding: Encoding,
     output: Path,
     jobs: int,
-    progress: Progress,
+    progress: ProgressListener,
     renderer: RendererKind = "cpu",
 ) -> Prepared:
     """Make a film and put it at `output` (for "png": a folder of pictures).

@@ -20,7 +20,7 @@ class ChartResult:
     counts : name of the move -> rows in which it happens
     playable : False if the steps type has no pad; then there are no rows and no cost
     arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
-    ambiguous : beat of each row with ties, and "resolved" or "open", see `play.model.Ambiguity`; None likewise
+    ambiguous : beat of each row with ties, and "resolved" or "open", see `play.played.Ambiguity`; None likewise
     player : of a chart for two whose part this is, 1 or 2, else 0
     estimate : how hard it plays; None for a pad without a model of meters
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.errors import DancetutorError, FileError
 
 if TYPE_CHECKING:
-    from dancetutor_cli.bake import Report
+    from dancetutor_cli.bake import MotionReport
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.physics.pipeline import Passed, Wishes
     from dancetutor_cli.physics.style import Style
     from dancetutor_cli.physics.tuning import Tuning
@@ -120,7 +120,7 @@ class Retargeting:
         """For people."""
         return self.task.source.stem
 
-    def report(self) -> Report:
+    def report(self) -> MotionReport:
         """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
         import numpy as np
 

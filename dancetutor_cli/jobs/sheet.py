@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from dancetutor_cli.chart.density import Density, density
-from dancetutor_cli.jobs.analyze import Task, load_song, solved
+from dancetutor_cli.jobs.analyze import AnalyzeTask, load_song, solved
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
@@ -23,7 +23,7 @@ class Drawable:
     counts: dict[str, int]
 
 
-def drawable_charts(task: Task) -> Iterator[Drawable]:
+def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
     """The selected charts of a file that have notes; FileError if the file cannot be read."""
     song = load_song(task)
     for subject in solved(song, task.selection.charts(song), task):

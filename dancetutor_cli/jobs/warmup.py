@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.video.choices import QUALITIES, Quality
@@ -48,7 +48,9 @@ def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
     look = FilmLook(load_layout("television"), (320, 180), renderer="cpu")
     selection = Selection(steps_type=steps_type, difficulty="hard")
     practice = Practice(metronome=True)
-    request = Request(charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice)
+    request = FilmRequest(
+        charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice
+    )
     prepared[steps_type] = prepare(request, look_up(request))
 
 

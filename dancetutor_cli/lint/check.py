@@ -11,7 +11,7 @@ from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule
-from dancetutor_cli.lint.settings import Options, Settings
+from dancetutor_cli.lint.rule_settings import Options, Settings
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject

@@ -22,7 +22,7 @@ from dancetutor_cli.library.settings_file import (
 )
 from dancetutor_cli.lint.registry import all_rules, matching, named_singly, rule_named
 from dancetutor_cli.lint.rule import BY_METER
-from dancetutor_cli.lint.settings import SEVERITIES, Layer, Options, Settings
+from dancetutor_cli.lint.rule_settings import SEVERITIES, Layer, Options, Settings
 from dancetutor_cli.marked_yaml import MarkedYaml, parse_value, read
 from dancetutor_cli.resources import config_path
 

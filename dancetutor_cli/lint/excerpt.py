@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.lint.finding import ExcerptRow, Finding
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Part, Play
+from dancetutor_cli.play.played import Part, Play
 
 ROWS = 4
 _BEFORE = 2

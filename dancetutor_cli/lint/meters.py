@@ -11,7 +11,7 @@ from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import Played, SongRule
-from dancetutor_cli.lint.settings import Settings
+from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.meter.bill import AUTO, Estimate
 from dancetutor_cli.meter.estimate import Sized, on_scale, scales_of, size

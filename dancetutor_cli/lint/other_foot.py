@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.lint.feet import WALL
+from dancetutor_cli.lint.foot_questions import WALL
 from dancetutor_cli.lint.rule import EPSILON
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
-from dancetutor_cli.play.model import Limb, Play, StepKind
+from dancetutor_cli.play.played import Limb, Play, StepKind
 from dancetutor_cli.resources import config_path
 
 if TYPE_CHECKING:

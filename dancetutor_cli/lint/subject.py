@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
-from dancetutor_cli.lint.feet import Feet
+from dancetutor_cli.lint.foot_questions import Feet
 from dancetutor_cli.lint.note_questions import Notes
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Ambiguity, Limb, Play, StepKind
+from dancetutor_cli.play.played import Ambiguity, Limb, Play, StepKind
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 

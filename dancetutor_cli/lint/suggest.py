@@ -12,7 +12,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.settings import Layer, Settings
+from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.play import Play, Rows, StepKind, solve
 from dancetutor_cli.play.engine import engine_for

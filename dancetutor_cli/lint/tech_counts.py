@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Part, Play, StepKind
+from dancetutor_cli.play.played import Part, Play, StepKind
 
 _JACK, _DOUBLESTEP, _FOOTSWITCH = 176, 235, 300  # milliseconds between two rows, the game's own limits
 _TOE = int(Part.TOE)

@@ -11,9 +11,9 @@ from dancetutor_cli.errors import FileError, MissingFileError
 from dancetutor_cli.feet import sme
 from dancetutor_cli.library.feet_files import song_stems
 from dancetutor_cli.markers import edit, sidecar, smeditor, theme
-from dancetutor_cli.markers.changes import EDIT, SIDECAR, SMEDITOR, THEME, Change, ChartFeet, Lack
+from dancetutor_cli.markers.changes import EDIT, SIDECAR, SMEDITOR, THEME, ChartFeet, FileChange, Lack
 
-Planned = tuple[Change, list[Lack]]
+Planned = tuple[FileChange, list[Lack]]
 
 
 def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[Planned | FileError]:
@@ -26,14 +26,14 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
         old = _present(path, song)
         new = sidecar.write(path, old, song, feet)
         why = [(one.chart, sidecar.lack(path, old, song, one.chart, new)) for one in feet]
-        yield Change(path, old, new), [Lack(text, chart.line) for chart, text in why if text]
+        yield FileChange(path, old, new), [Lack(text, chart.line) for chart, text in why if text]
     elif style == SMEDITOR:
         path = folder / sme.FILE_NAME
         _one_song(song, path)
         old = _present(path, song)
         merged = smeditor.write(path, old, song, feet)
         lacks = [] if merged == old else [Lack(f"{path.name} has not the feet that the solver finds")]
-        yield Change(path, old, merged), lacks
+        yield FileChange(path, old, merged), lacks
     elif style == EDIT:
         for where, data in edit.edit_files(song, feet):
             if isinstance(data, FileError):
@@ -42,7 +42,7 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
             path = folder / where.name
             old = _present(path, song)
             lacks = [] if old == data else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
-            yield Change(path, old, data), lacks
+            yield FileChange(path, old, data), lacks
     elif style == THEME:
         table, lua = (folder / path.name for path in theme.paths_for(song.path))
         before, script = _present(table, song), _present(lua, song)
@@ -50,7 +50,7 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
         said = theme.write(table, before, song, feet)
         for path, old, new in ((table, before, theme.as_json(said)), (lua, script, theme.as_lua(said))):
             lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
-            yield Change(path, old, new), lacks
+            yield FileChange(path, old, new), lacks
 
 
 def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
@@ -77,7 +77,7 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
 
 
 def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
-    return Change(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
+    return FileChange(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
 
 
 def _one_song(song: Song, path: Path) -> None:

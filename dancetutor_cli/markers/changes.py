@@ -7,7 +7,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.measures import StepRows
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.played import Play
 
 MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME = "measure", "rows", "sidecar", "smeditor", "edit", "theme"
 BACKGROUND = "background"  # no style of feet: what `render --background --into-file` has entered, to be taken out
@@ -27,7 +27,7 @@ class ChartFeet:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class FileChange:
     """A file that is to become something else. old : None if it is not there; new : None to remove it."""
 
     path: Path

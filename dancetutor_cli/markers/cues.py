@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 CROSSOVER, BRACKET, TURN = "crossover", "bracket", "turn"
 KINDS = (CROSSOVER, BRACKET, TURN)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 SOURCE, TARGET = "dance-single", "dance-double"
 _COLUMNS = 4

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.measures import StepRows
 from dancetutor_cli.feet.notation import letter
-from dancetutor_cli.play.model import Limb, Part, Play
+from dancetutor_cli.play.played import Limb, Part, Play
 
 _LOW = min(Limb)
 _LETTER = np.array(  # by (limb - _LOW) * len(Part) + part

@@ -22,7 +22,7 @@ from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(slots=True)
-class Plan:
+class MarkerPlan:
     """What became of one file. data : its new bytes; the rest is for people.
 
     counts : measures by what was done about them; lacks : what `--check` reports
@@ -77,9 +77,9 @@ def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> Char
     return ChartFeet(chart, found, tuple(of_row[row] for row in found.row.tolist()), feet[0].play)
 
 
-def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bool) -> Plan:
+def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bool) -> MarkerPlan:
     """Write the styles that live inside note data: `measure` and `rows`."""
-    plan = Plan(song.data)
+    plan = MarkerPlan(song.data)
     splices: list[Splice] = []
     for one in feet:
         if MEASURE in styles:
@@ -98,7 +98,7 @@ def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bo
     return plan
 
 
-def add_charts(song: Song, before: Song, plan: Plan, feet: Sequence[ChartFeet]) -> None:
+def add_charts(song: Song, before: Song, plan: MarkerPlan, feet: Sequence[ChartFeet]) -> None:
     """Add the lane-split charts to the plan.
 
     song : without them, as `plan` was made from; before : the song as it was read, perhaps with older ones
@@ -115,9 +115,9 @@ def add_charts(song: Song, before: Song, plan: Plan, feet: Sequence[ChartFeet]) 
             raise edit.EditError(song.path, f"{source.label}: cannot be added as a chart for two pads; nothing written")
 
 
-def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bool) -> Plan:
+def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bool) -> MarkerPlan:
     """Take the styles that live inside note data out."""
-    plan = Plan(song.data)
+    plan = MarkerPlan(song.data)
     splices: list[Splice] = []
     for chart in charts:
         found: list[Splice] = []
@@ -135,14 +135,14 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
     return plan
 
 
-def checked(song: Song, plan: Plan) -> Plan:
+def checked(song: Song, plan: MarkerPlan) -> MarkerPlan:
     """The plan, if its bytes read like the song they were made from; raises `verify.HarmError` if not."""
     if plan.data != song.data:
         unchanged(song, plan.data, edit.ours)
     return plan
 
 
-def _tell_measures(plan: Plan, song: Song, chart: Chart, states: Sequence[MeasureState]) -> None:
+def _tell_measures(plan: MarkerPlan, song: Song, chart: Chart, states: Sequence[MeasureState]) -> None:
     """Count what was found, and list what lacks: one line for each kind in a chart, with the first place."""
     by_state: dict[State, list[MeasureState]] = {}
     for one in states:

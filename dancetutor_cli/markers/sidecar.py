@@ -14,7 +14,7 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import encoded
 from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.letters import limbs_of
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 
 SUFFIX = ".dancetutor.json"
 _SCHEMA = 1

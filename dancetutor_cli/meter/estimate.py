@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from dancetutor_cli.meter.bill import AUTO, Estimate
 from dancetutor_cli.meter.features import features
-from dancetutor_cli.meter.model import Model, Scale, model_for
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.meter.model import MeterModel, Scale, model_for
+from dancetutor_cli.play.played import Play
 
 # What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: not trusted.
 _TAGS = {"ITG": "itg", "DDR X": "ddr"}
@@ -25,7 +25,7 @@ class Sized:
     terms, played : for each scale the meters that terms add, at rate 1 and at the rate asked for
     """
 
-    model: Model
+    model: MeterModel
     label: int
     difficulty: str
     on: Mapping[str, float]
@@ -45,7 +45,7 @@ def size(play: Play, steps_type: str, label: tuple[int, str], rate: float = 1.0)
     return replace(one, played=model.terms(features(play, model.wanted, rate)), rate=rate)
 
 
-def sized(model: Model, values: Sequence[float], label: tuple[int, str]) -> Sized:
+def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> Sized:
     """The same by the features of `model.wanted`."""
     terms = model.terms(values)
     on = {scale.name: scale.start + sum(of.values()) for scale, of in zip(model.scales, terms, strict=True)}

@@ -58,7 +58,7 @@ class Scale:
 class _Pieces(NamedTuple):
     """All straight pieces of all curves of all scales, side by side: what is worked out at once.
 
-    feature : its place in `Model.wanted`; low, width : where the piece begins, and how long it is (the last: endless)
+    feature : its place in `MeterModel.wanted`; low, width : where it begins, and how long it is (the last: endless)
     slope : meters for each unit; starts : the piece that each term of each scale begins with
     """
 
@@ -70,7 +70,7 @@ class _Pieces(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class MeterModel:
     """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale.
 
     wanted : every feature that a curve asks for, once
@@ -92,13 +92,13 @@ class Model:
 
 
 @cache
-def model_for(steps_type: str) -> Model | None:
+def model_for(steps_type: str) -> MeterModel | None:
     """The model of a steps type; None where nobody has fitted one. FileError says what is wrong with its file."""
     pad = _PADS.get(steps_type)
     return None if pad is None else load_model(config_path(f"meter/{pad}.yaml"))
 
 
-def load_model(path: Path) -> Model:
+def load_model(path: Path) -> MeterModel:
     """Read a model; FileError names the line of what cannot be."""
     source = read(path)
     source.only((), ("scales", "alone"))
@@ -111,7 +111,7 @@ def load_model(path: Path) -> Model:
     return model_of(found, (alone[0], alone[1]), tuple(dict.fromkeys(curve.feature for curve in curves)))
 
 
-def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> Model:
+def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> MeterModel:
     """A model for features in this order."""
     rows: list[tuple[int, float, float, float]] = []
     starts = []
@@ -125,7 +125,7 @@ def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tupl
                     rows.append((place, a, width, (high - low) / (b - a)))
     feature, low_ends, widths, slopes = (np.array(column, dtype=np.float64) for column in zip(*rows, strict=True))
     pieces = _Pieces(feature.astype(np.int64), low_ends, widths, slopes, np.array(starts))
-    return Model(scales, alone, wanted, pieces)
+    return MeterModel(scales, alone, wanted, pieces)
 
 
 def _scale(source: MarkedYaml, name: str) -> Scale:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Bar, Ground
+from dancetutor_cli.motion.baked import Bar, Ground
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, panels_on_ground, squares_on_ground
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Contact, Grip
 from dancetutor_cli.motion.foot_moves import Move, Swing
-from dancetutor_cli.motion.model import Contact, Grip
 
 Array = NDArray[np.float64]
 

@@ -18,9 +18,9 @@ from dancetutor_cli.video.scene.stage import PANEL
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.lint.finding import Finding
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.notes import NoteTrack
 
 SCHEMA = 1  # of the page's data; grows when an old page's script could not read it

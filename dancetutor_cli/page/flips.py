@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
-from dancetutor_cli.play.model import Play, StepKind
+from dancetutor_cli.play.played import Play, StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad

@@ -12,7 +12,7 @@ from dancetutor_cli.page.document import HERE, listed
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class IndexEntry:
     """One page. file : its name in the folder; title, artist : of the song; label : of the chart"""
 
     file: str
@@ -21,7 +21,7 @@ class Entry:
     label: str
 
 
-def index_page(entries: Sequence[Entry], title: str) -> bytes:
+def index_page(entries: Sequence[IndexEntry], title: str) -> bytes:
     """The page that leads to the others; songs in the order given, names never as markup."""
     style = (HERE / "index.css").read_text("utf-8")
     songs = []

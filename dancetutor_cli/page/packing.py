@@ -18,7 +18,7 @@ from dancetutor_cli.video.scene.props import JOINT, bar_matrix, with_bar
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Bar, Motion
+    from dancetutor_cli.motion.baked import Bar, Motion
 
 TICK = 1e-5  # seconds and metres of the smallest step of a time and of a place
 QUALITY = 86  # of the texture as WebP

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.physics.plants import lowest
 from dancetutor_cli.physics.ragdoll import hinge_axis
-from dancetutor_cli.physics.repin import Feet, repinned
+from dancetutor_cli.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import local_rotations
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -224,7 +224,7 @@ def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
 class _Feet:
     """Where ankles and feet shall be; lift : metres (f,) by which the file's body must rise to stand on y = 0."""
 
-    feet: Feet
+    feet: AnkleTracks
     lift: Array
 
 
@@ -249,12 +249,12 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
         places.append(path + quat.rotate(turn, np.array([0.0, 0.0, theirs - ahead_of])))
         turns.append(turn)
         stands.append(standing)
-    feet = Feet(np.stack(places, axis=1), np.stack(turns, axis=1))
+    feet = AnkleTracks(np.stack(places, axis=1), np.stack(turns, axis=1))
     low = lowest(body, feet)
     lift = -_floor(low, np.stack(stands, axis=1))
     lifted = feet.places + lift[:, None, None] * _UP
     lifted += np.maximum(-(low + lift[:, None]), 0.0)[..., None] * _UP
-    return _Feet(Feet(lifted, feet.turns), lift)
+    return _Feet(AnkleTracks(lifted, feet.turns), lift)
 
 
 def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:

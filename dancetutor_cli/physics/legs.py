@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.smoothing import upper_envelope
-from dancetutor_cli.physics.repin import Feet, Leg
+from dancetutor_cli.physics.repin import AnkleTracks, Leg
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
@@ -22,8 +22,8 @@ SINK = 0.25  # seconds over which the pelvis sinks
 
 
 def soft_legs(
-    skeleton: Skeleton, poses: tuple[Array, Array], feet: Feet, held: Array, times: Array
-) -> tuple[Array, Feet]:
+    skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, held: Array, times: Array
+) -> tuple[Array, AnkleTracks]:
     """Root (f, 3) and feet with which no knee pops.
 
     poses : local rotations (f, j, 4), of which the pelvis counts, and root (f, 3); held : (f, 2) how far feet stand
@@ -49,7 +49,7 @@ def soft_legs(
         short = less + np.hypot(less, ROUND * (1.0 - held[:, side]) / 2)  # 0 below the reach, without an edge
         short = np.where(held[:, side] < 1.0, short, np.maximum(2 * less, 0.0))
         places[:, side] -= way * (short / np.maximum(far, 1e-9))[:, None]
-    return root, Feet(places, feet.turns)
+    return root, AnkleTracks(places, feet.turns)
 
 
 def _soft(leg: Leg, distance: Array, times: Array) -> Array:

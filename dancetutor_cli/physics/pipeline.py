@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, upper_envelope
 from dancetutor_cli.physics.actors import Actor, BreakableSoles, StiffKnees
@@ -17,15 +17,15 @@ from dancetutor_cli.physics.follower import follow_all
 from dancetutor_cli.physics.legs import soft_legs
 from dancetutor_cli.physics.plants import Plants, let_go, planted, tidied
 from dancetutor_cli.physics.points import place_points, points_of
-from dancetutor_cli.physics.pushes import Blow, Push, Struck, Trip, disturbed, recovered, told
+from dancetutor_cli.physics.pushes import Blow, Push, Struck, Stumble, disturbed, recovered, told
 from dancetutor_cli.physics.ragdoll import bones_of
-from dancetutor_cli.physics.repin import Feet, feet_of, repinned
+from dancetutor_cli.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.physics.restrain import restrained
 from dancetutor_cli.physics.simulation import Ragdoll, simulate
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.physics.toes import eased_ankles, flatten_toes
 from dancetutor_cli.physics.weight import kept_mass, mass_of
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import beyond
 
@@ -61,7 +61,7 @@ class Wishes:
 
     corrections: tuple[str, ...] = ()
     pushes: tuple[Push, ...] = ()
-    trips: tuple[Trip, ...] = ()
+    trips: tuple[Stumble, ...] = ()
 
 
 def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> Passed:
@@ -120,7 +120,7 @@ def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
     return out
 
 
-def _possible(motion: Motion, poses: Poses, feet: Feet) -> Poses:
+def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     """Poses that give way only so far that hips and ankles of feet which stay stay within their limits."""
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))

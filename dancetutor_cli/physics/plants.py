@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.physics.repin import Feet
+from dancetutor_cli.physics.repin import AnkleTracks
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import sole_points
@@ -66,7 +66,7 @@ def tidied(plants: Plants, rate: float) -> Plants:
     return Plants(*out)
 
 
-def let_go(skeleton: Skeleton, feet: Feet, plants: Plants) -> Plants:
+def let_go(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
     """Without the beginnings and ends of plants in which a foot on one end alone is far from where it will be, or was.
 
     Feet come down and leave over heel and toe tips, and roll on: holding them longer would drag the body after them.
@@ -90,7 +90,7 @@ def let_go(skeleton: Skeleton, feet: Feet, plants: Plants) -> Plants:
     return Plants(heel, ball)
 
 
-def planted(skeleton: Skeleton, feet: Feet, plants: Plants) -> tuple[Feet, Array]:
+def planted(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> tuple[AnkleTracks, Array]:
     """Feet that stand still where they are held.
 
     Returns
@@ -112,17 +112,17 @@ def planted(skeleton: Skeleton, feet: Feet, plants: Plants) -> tuple[Feet, Array
             held[first:end, side] = 1.0
             spans.append((low, high))
         _between(spans, feet, (places, turns, held), side)
-    return cleared(skeleton, Feet(places, turns), held), held
+    return cleared(skeleton, AnkleTracks(places, turns), held), held
 
 
-def cleared(skeleton: Skeleton, feet: Feet, held: Array) -> Feet:
+def cleared(skeleton: Skeleton, feet: AnkleTracks, held: Array) -> AnkleTracks:
     """The feet, those that are not held off the floor."""
     places = feet.places.copy()
     places[..., 1] += np.where(held < 1.0, np.maximum(CLEAR - lowest(skeleton, feet), 0.0), 0.0)
-    return Feet(places, feet.turns)
+    return AnkleTracks(places, feet.turns)
 
 
-def lowest(skeleton: Skeleton, feet: Feet) -> Array:
+def lowest(skeleton: Skeleton, feet: AnkleTracks) -> Array:
     """Height (f, 2) of the lowest point between heel and ball of each foot."""
     out = []
     for k, points in enumerate(sole_points(skeleton)):
@@ -133,7 +133,7 @@ def lowest(skeleton: Skeleton, feet: Feet) -> Array:
     return np.stack(out, axis=1)
 
 
-def _between(spans: list[tuple[int, int]], feet: Feet, made: tuple[Array, Array, Array], side: int) -> None:
+def _between(spans: list[tuple[int, int]], feet: AnkleTracks, made: tuple[Array, Array, Array], side: int) -> None:
     """Let what holding has changed at both ends of each way through the air fade into each other."""
     places, turns, held = made
     frames = len(places)

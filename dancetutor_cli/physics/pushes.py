@@ -18,11 +18,11 @@ from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.physics.actors import Actor
 from dancetutor_cli.physics.plants import cleared
-from dancetutor_cli.physics.repin import Feet, feet_of, repinned
+from dancetutor_cli.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.rig import quaternion as quat
 
 if TYPE_CHECKING:
-    from dancetutor_cli.motion.model import Contact, Motion
+    from dancetutor_cli.motion.baked import Contact, Motion
     from dancetutor_cli.physics.simulation import Ragdoll
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ class Push:
 
 
 @dataclass(frozen=True, slots=True)
-class Trip:
+class Stumble:
     """The foot that is in the air at `second`, or the next one to be, is caught by something."""
 
     second: float
@@ -140,7 +140,7 @@ def force_of(push: Push, motion: Motion) -> Array:
     return push.newtons * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
-def caught(motion: Motion, feet: Feet, trip: Trip) -> tuple[Feet, Array, float, int]:
+def caught(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
     """Feet of which one is caught; the force (3,) that throws her, second and which foot it is.
 
     The toes of the motion's rotations are late, too, in place. Raises UsageError if no foot is in the air from then on.
@@ -171,7 +171,7 @@ def caught(motion: Motion, feet: Feet, trip: Trip) -> tuple[Feet, Array, float, 
     speed = np.linalg.norm(np.gradient(places[:, side], motion.times, axis=0), axis=1)
     rests = np.ones(places.shape[:2])
     rests[:, side] = np.where((behind > 0) & (speed > MOVES), 0.0, 1.0)
-    return cleared(motion.skeleton, Feet(places, turns), rests), TRIP_FORCE * way, start, side
+    return cleared(motion.skeleton, AnkleTracks(places, turns), rests), TRIP_FORCE * way, start, side
 
 
 def _late(turns: Array, times: Array, at: Array) -> Array:
@@ -186,7 +186,7 @@ def missed_by_trip(motion: Motion, second: float, side: int) -> list[Contact]:
     return [c for c in motion.contacts if c.limb == side and second <= c.start < second + LASTS + CATCH_UP]
 
 
-def staggering(motion: Motion, feet: Feet, second: float, gave: Array) -> Feet:
+def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) -> AnkleTracks:
     """Feet of somebody who cannot stay: both step after the body, one after the other, and come back.
 
     gave : (3,) metres of the body from where it should be
@@ -214,7 +214,7 @@ def staggering(motion: Motion, feet: Feet, second: float, gave: Array) -> Feet:
         turns[:, side] = quat.slerp(feet.turns[:, side], level, still[:, 0] * (1 - back))
         gone = (1 - still) * feet.places[:, side] + still * own
         places[:, side] = np.where(inside[:, None], gone, feet.places[:, side])
-    return cleared(motion.skeleton, Feet(places, turns), np.where(inside, 0.0, 1.0)[:, None] * np.ones(2))
+    return cleared(motion.skeleton, AnkleTracks(places, turns), np.where(inside, 0.0, 1.0)[:, None] * np.ones(2))
 
 
 def _hop(share: Array) -> Array:
@@ -232,7 +232,7 @@ def without(motion: Motion, missed: Sequence[Contact], note: str) -> Motion:
     return replace(motion, contacts=kept, notes=(*motion.notes, note + tail))
 
 
-def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Trip]) -> tuple[Motion, list[Blow]]:
+def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) -> tuple[Motion, list[Blow]]:
     """The motion with feet that trips catch, and the blows that strike her.
 
     Raises UsageError for a push or trip outside of the motion, or without a foot in the air.
@@ -257,8 +257,8 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Trip]) -> 
 
 
 def recovered(
-    motion: Motion, feet: Feet, root: Array, pushes: Sequence[Push]
-) -> tuple[Motion, Feet, list[list[Contact]]]:
+    motion: Motion, feet: AnkleTracks, root: Array, pushes: Sequence[Push]
+) -> tuple[Motion, AnkleTracks, list[list[Contact]]]:
     """The motion without what pushes make her miss, her feet, and what each push makes her miss.
 
     root : (f, 3) behind the ragdoll

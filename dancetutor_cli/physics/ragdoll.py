@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.physics.engine import engine
+from dancetutor_cli.physics.backend import engine
 from dancetutor_cli.physics.points import Point
 from dancetutor_cli.physics.style import Style
 from dancetutor_cli.rig import quaternion as quat

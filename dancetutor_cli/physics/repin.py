@@ -22,21 +22,21 @@ ROUNDS = 40  # of pulling the pelvis until both legs reach
 
 
 @dataclass(frozen=True, slots=True)
-class Feet:
+class AnkleTracks:
     """Where both ankles are, (f, 2, 3), and how both feet are turned, (f, 2, 4), in the world."""
 
     places: Array
     turns: Array
 
 
-def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> Feet:
+def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> AnkleTracks:
     """The feet of poses, local rotations (f, j, 4) and root (f, 3)."""
     positions, world = world_transforms(skeleton, rotations, root)
     ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
-    return Feet(positions[:, ankles], world[:, ankles])
+    return AnkleTracks(positions[:, ankles], world[:, ankles])
 
 
-def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: Feet) -> tuple[Array, Array]:
+def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) -> tuple[Array, Array]:
     """The poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`; returns the same."""
     rotations, root = poses[0].copy(), poses[1].copy()
     ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.physics.engine import engine
+from dancetutor_cli.physics.backend import engine
 from dancetutor_cli.physics.points import Point, place_points
 from dancetutor_cli.physics.ragdoll import Bone, build, pose_of, turns_of
 from dancetutor_cli.physics.style import Style

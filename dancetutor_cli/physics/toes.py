@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.physics.plants import CLEAR, Plants, Sole, cleared
-from dancetutor_cli.physics.repin import Feet
+from dancetutor_cli.physics.repin import AnkleTracks
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limits import beyond, within
@@ -21,7 +21,7 @@ _UP = np.array([0.0, 1.0, 0.0])
 _AHEAD = np.array([0.0, 0.0, 1.0])
 
 
-def flatten_toes(skeleton: Skeleton, rotations: Array, feet: Feet, plants: Plants, held: Array) -> Feet:
+def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array) -> AnkleTracks:
     """Turn toes of local rotations (f, j, 4) in place: flat on the floor where balls are held, never below it.
 
     Returns the feet, higher where toes can bend no further.
@@ -49,7 +49,7 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: Feet, plants: Plant
         world = quat.multiply(feet.turns[:, side], rotations[:, toes])
         tips = np.stack([(ball + quat.rotate(world, p.offset))[:, 1] for p in points[2:]]).min(axis=0)
         places[:, side, 1] += np.where(held[:, side] < 1, np.maximum(least - tips, 0.0), 0.0)
-    return Feet(places, feet.turns)
+    return AnkleTracks(places, feet.turns)
 
 
 def _frames_to(flags: Flags) -> Array:
@@ -62,7 +62,9 @@ def _frames_to(flags: Flags) -> Array:
     return np.asarray(np.minimum(np.abs(frames - at[k]), np.abs(frames - at[np.maximum(k - 1, 0)])), dtype=np.float64)
 
 
-def eased_ankles(skeleton: Skeleton, rotations: Array, feet: Feet, plants: Plants, held: Array) -> tuple[Feet, bool]:
+def eased_ankles(
+    skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array
+) -> tuple[AnkleTracks, bool]:
     """Feet whose ankles stay within their limits, and whether any had to be turned; those that lie flat do not turn.
 
     rotations : local (f, j, 4) with legs that end in `feet`; a foot held at one end turns about it
@@ -83,4 +85,4 @@ def eased_ankles(skeleton: Skeleton, rotations: Array, feet: Feet, plants: Plant
         places[past, side] += held[past, side][:, None] * moved
         turns[past, side] = turn
         changed = True
-    return cleared(skeleton, Feet(places, turns), held), changed
+    return cleared(skeleton, AnkleTracks(places, turns), held), changed

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.distances import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.physics.pipeline import through_ragdoll
 from dancetutor_cli.physics.ragdoll import NOMINAL, bones_of

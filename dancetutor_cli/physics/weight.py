@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.smoothing import cubic, low_pass
-from dancetutor_cli.physics.repin import Feet, repinned
+from dancetutor_cli.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -28,7 +28,7 @@ def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
 
 
 def kept_mass(
-    skeleton: Skeleton, poses: Poses, feet: Feet, path: tuple[Array, Array], share: Array, free: Array
+    skeleton: Skeleton, poses: Poses, feet: AnkleTracks, path: tuple[Array, Array], share: Array, free: Array
 ) -> Poses:
     """Poses whose centre of mass is on its path, legs ending in `feet`.
 

@@ -9,9 +9,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dancetutor_cli.play.causes import Blame, blame
+    from dancetutor_cli.play.doublestep_causes import Blame, blame
     from dancetutor_cli.play.kbest import Alternative, alternatives
-    from dancetutor_cli.play.model import Ambiguity, Limb, Part, Play, Rows, StepKind
+    from dancetutor_cli.play.played import Ambiguity, Limb, Part, Play, Rows, StepKind
     from dancetutor_cli.play.preset import DEFAULT_PRESET, Preset, default_preset, load_preset, preset_names
     from dancetutor_cli.play.rows import prepare
     from dancetutor_cli.play.solver import solve, solve_chart
@@ -22,8 +22,8 @@ __all__ = [
 ]  # fmt: skip
 _MODULES = {
     "kbest": ("Alternative", "alternatives"),
-    "causes": ("Blame", "blame"),
-    "model": ("Ambiguity", "Limb", "Part", "Play", "Rows", "StepKind"),
+    "doublestep_causes": ("Blame", "blame"),
+    "played": ("Ambiguity", "Limb", "Part", "Play", "Rows", "StepKind"),
     "preset": ("DEFAULT_PRESET", "Preset", "default_preset", "load_preset", "preset_names"),
     "rows": ("prepare",),
     "solver": ("solve", "solve_chart"),

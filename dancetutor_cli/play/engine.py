@@ -16,9 +16,9 @@ from dancetutor_cli.play.curves import curve_table
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
 from dancetutor_cli.play.jit import INTERPRETED
 from dancetutor_cli.play.kernel import PRICE, run
-from dancetutor_cli.play.model import Limb, Rows
+from dancetutor_cli.play.played import Limb, Rows
 from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.store import Found, Nodes, RowArrays, Tables
+from dancetutor_cli.play.store import Found, RowArrays, RowStates, Tables
 from dancetutor_cli.play.tables import MOST_MOVES, Rules, geometry, moves
 from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
@@ -95,11 +95,11 @@ class Engine:
         self._call(_arrays(rows, None), PRICE, _nodes(0, self._node), priced)
         return priced.cost
 
-    def _call(self, arrays: RowArrays, row: int, nodes: Nodes, found: Found) -> tuple[int, int]:
+    def _call(self, arrays: RowArrays, row: int, nodes: RowStates, found: Found) -> tuple[int, int]:
         with _wrapping():
             return run(arrays, row, self.tables, nodes, self.rules, found)
 
-    def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, Nodes]:
+    def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, RowStates]:
         n, c = arrays.steps.shape
         counts = self.tables.counts
         if counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
@@ -125,7 +125,7 @@ class Engine:
                 self.tables = _grown(self.tables, wanted, n)
         return found, nodes
 
-    def _explore_from(self, row: int, arrays: RowArrays, nodes: Nodes) -> None:
+    def _explore_from(self, row: int, arrays: RowArrays, nodes: RowStates) -> None:
         """Meet every state from a row on, so that the programme can go on there."""
         wanted = store.UNEXPLORED
         before = self.tables.transition[nodes.transition[row - 1], store.TO_LAYER] if row else store.START
@@ -150,11 +150,11 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
     )  # fmt: skip
 
 
-def _nodes(rows: int, node: NDArray[np.int64]) -> Nodes:
-    return Nodes(np.empty((rows + 2, 2), dtype=np.int64), node, np.empty(rows, dtype=np.int32))
+def _nodes(rows: int, node: NDArray[np.int64]) -> RowStates:
+    return RowStates(np.empty((rows + 2, 2), dtype=np.int64), node, np.empty(rows, dtype=np.int32))
 
 
-def _make_room(nodes: Nodes, row: int) -> None:
+def _make_room(nodes: RowStates, row: int) -> None:
     """Room for as many nodes as the rest of the rows will need if it goes on like this, at most twice as many.
 
     The array grows where it is, so that old and new are not in memory together.

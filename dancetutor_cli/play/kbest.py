@@ -15,7 +15,7 @@ import numpy as np
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.engine import Engine, Layers, engine_for
-from dancetutor_cli.play.model import Play, Rows
+from dancetutor_cli.play.played import Play, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.solver import forced_limbs, play_of
 from dancetutor_cli.play.store import ACTION, COST, FACTS, LIMBS, NEXT

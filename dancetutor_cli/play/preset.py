@@ -12,7 +12,7 @@ from dancetutor_cli.bounded import is_regular, leads_out
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import MarkedYaml, read
-from dancetutor_cli.play.vocabulary import MODELS, MOST_MS, Model
+from dancetutor_cli.play.vocabulary import MODELS, MOST_MS, CostModel
 from dancetutor_cli.resources import config_path
 
 DEFAULT_PRESET = "itg"
@@ -244,4 +244,4 @@ def _wrong(source: MarkedYaml, keys: tuple[str | int, ...], message: str) -> Usa
     return UsageError(str(source.error(keys, message)))
 
 
-__all__ = ["DEFAULT_PRESET", "Model", "Preset", "default_preset", "load_preset", "preset_names"]
+__all__ = ["DEFAULT_PRESET", "CostModel", "Preset", "default_preset", "load_preset", "preset_names"]

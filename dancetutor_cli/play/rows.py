@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Rows, StepKind
+from dancetutor_cli.play.played import Rows, StepKind
 
 _STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
 _STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL

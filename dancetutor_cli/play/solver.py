@@ -10,12 +10,12 @@ from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play.curves import cost_at
 from dancetutor_cli.play.engine import Engine, engine_for
-from dancetutor_cli.play.model import Play, Rows
-from dancetutor_cli.play.moves import name_moves
+from dancetutor_cli.play.played import Play, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import EVENT_BITS, EVENTS, NEXT, Found
+from dancetutor_cli.play.techniques import name_moves
 
 _PLACE = (1 << PLACE_BITS) - 1
 

@@ -24,9 +24,9 @@ LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
 TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
 PLACE_SHIFT = 18  # in `Tables.ends`: places in the layers before and after, so many bits each, then the facts
 PLACE_MASK = (1 << PLACE_SHIFT) - 1
-COST_SHIFT = 32  # in `Nodes.node`: an edge below, the cost from here on; the least is the cheapest, then the first
+COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
 EDGE_MASK = (1 << COST_SHIFT) - 1
-FIRST, BASE = range(2)  # columns of `Nodes.row`
+FIRST, BASE = range(2)  # columns of `RowStates.row`
 START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on
 (
@@ -86,7 +86,7 @@ class Tables(NamedTuple):
     edge_move: NDArray[np.int32]
 
 
-class Nodes(NamedTuple):
+class RowStates(NamedTuple):
     """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row

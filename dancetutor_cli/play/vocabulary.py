@@ -11,7 +11,7 @@ MOST_MS = 2047  # since the last row with steps; longer times cost like this one
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class CostModel:
     """What a preset of this model has to say. A weight is one number, a curve one for each time since the last row."""
 
     switches: tuple[str, ...]
@@ -43,8 +43,8 @@ _ITG_CURVES = (
 )  # fmt: skip
 
 MODELS = {
-    "thesis": Model(("allow-doublestep",), _THESIS, ()),
-    "itg": Model(("brackets", "holdswitches"), _ITG, _ITG_CURVES),
+    "thesis": CostModel(("allow-doublestep",), _THESIS, ()),
+    "itg": CostModel(("brackets", "holdswitches"), _ITG, _ITG_CURVES),
 }
 
 # What may happen in a row, by the names players use; the number of a name is its bit in the kernels' events.

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.quality.figures import Report
+from dancetutor_cli.bake.quality.figures import MotionReport
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.files import write_atomic
 
@@ -18,7 +18,7 @@ WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
 INK, GRID, LINE = "#222222", "#dddddd", "#3060c0"
 
 
-def write_plot(path: Path, report: Report) -> None:
+def write_plot(path: Path, report: MotionReport) -> None:
     """Write the report's curves as .svg or .png. Raises UsageError for another name, FileError if it cannot."""
     if path.suffix.lower() == ".svg":
         write_atomic(path, _svg(report).encode())
@@ -28,7 +28,7 @@ def write_plot(path: Path, report: Report) -> None:
         raise UsageError(f"{path}: a plot's name must end in .svg or .png")
 
 
-def _panels(report: Report) -> Iterator[tuple[str, float, Array, tuple[float, float, float, float], bool]]:
+def _panels(report: MotionReport) -> Iterator[tuple[str, float, Array, tuple[float, float, float, float], bool]]:
     """(title, y of the top, points (n, 2) in pixels, (t0, t1, low, high), whether dots are drawn) of each curve."""
     for k, (title, (times, values)) in enumerate(report.curves.items()):
         good = np.isfinite(values)
@@ -44,7 +44,7 @@ def _panels(report: Report) -> Iterator[tuple[str, float, Array, tuple[float, fl
         yield title, top, np.column_stack((x, y)), (first, last, low, high), "contact" in title
 
 
-def _svg(report: Report) -> str:
+def _svg(report: MotionReport) -> str:
     height = TOP + len(report.curves) * (PANEL + GAP)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" font-family="sans-serif">']
     out.append('<rect width="100%" height="100%" fill="white"/>')
@@ -62,7 +62,7 @@ def _svg(report: Report) -> str:
     return "\n".join([*out, "</svg>", ""])
 
 
-def _png(report: Report) -> bytes:
+def _png(report: MotionReport) -> bytes:
     from PIL import Image, ImageDraw
 
     image = Image.new("RGB", (WIDTH, TOP + len(report.curves) * (PANEL + GAP)), "white")

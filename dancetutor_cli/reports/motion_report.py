@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from dancetutor_cli.bake import Report
+    from dancetutor_cli.bake import MotionReport
 
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
 
-def print_report(report: Report) -> None:
+def print_report(report: MotionReport) -> None:
     """The figures as a table on standard output."""
     from rich.console import Console
     from rich.table import Table
@@ -30,7 +30,7 @@ def print_report(report: Report) -> None:
         Console().print(_distances(report))
 
 
-def _distances(report: Report) -> Table:
+def _distances(report: MotionReport) -> Table:
     from rich.table import Table
 
     table = Table(title="Distance of the ragdoll, cm")
@@ -42,7 +42,7 @@ def _distances(report: Report) -> Table:
     return table
 
 
-def as_json(report: Report) -> dict[str, Any]:
+def as_json(report: MotionReport) -> dict[str, Any]:
     """The report as plain data; a figure that could not be measured is null."""
     figures = [
         {

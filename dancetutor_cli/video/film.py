@@ -17,7 +17,7 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
-from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, FeetDiagram, NextRows, PadMap, PadView, StepRows
+from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, FeetDiagram, NextRows, PadMap, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -29,7 +29,7 @@ from dancetutor_cli.video.scroll import parse_scroll
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.video.picture import PadLike
     from dancetutor_cli.video.scene.dancer import Dancer
 
@@ -65,7 +65,7 @@ class FilmPlan:
     directions: tuple[float | None, ...]
     motions: Mapping[float, Motion]
     pad: PadLike | None
-    rows: StepRows | None = None
+    rows: DiagramRows | None = None
     callouts: tuple[Callout, ...] = ()
     cues: tuple[Cue, ...] = ()
     speeds: NDArray[np.float64] | None = None
@@ -146,10 +146,12 @@ class Film:
         )
 
     @cached_property
-    def _progress(self) -> captions.Progress | None:
+    def _progress(self) -> captions.ProgressStrip | None:
         if (part := self.layout.progress) is None:
             return None
-        return captions.Progress(self.plan.song, self._box("progress"), self.scale * part.text, self.face, self.style)
+        return captions.ProgressStrip(
+            self.plan.song, self._box("progress"), self.scale * part.text, self.face, self.style
+        )
 
     @cached_property
     def _runs(self) -> Runs:

@@ -36,7 +36,7 @@ class HighwayPart:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TextBox:
     """A place for words. box : share of the picture; text : how much larger than usual they are."""
 
     box: Box
@@ -104,13 +104,13 @@ class Layout:
     dancer: DancerPart | None = None
     highway: HighwayPart | None = None
     header: HeaderPart | None = None
-    calls: Part | None = None
-    runs: Part | None = None
-    count: Part | None = None
-    legend: Part | None = None
-    progress: Part | None = None
+    calls: TextBox | None = None
+    runs: TextBox | None = None
+    count: TextBox | None = None
+    legend: TextBox | None = None
+    progress: TextBox | None = None
     screen: ScreenPart | None = None
-    feet: Part | None = None
+    feet: TextBox | None = None
     next: NextPart | None = None
     practice: PracticePart | None = None
     wide: WideBoxes | None = None

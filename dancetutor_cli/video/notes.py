@@ -16,7 +16,7 @@ class NoteTrack:
 
     second, end_second : float64 (n,), of the music; end_second = second where there is no hold
     beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
-    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.model.Limb`
+    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.played.Limb`
     quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
     """
 

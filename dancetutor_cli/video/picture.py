@@ -28,7 +28,7 @@ class PadLike(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Foot:
+class FootFromAbove:
     """A foot from above. heel, toe : (x, y) in panel widths, x to the right, y to the screen; height : metres."""
 
     heel: tuple[float, float]

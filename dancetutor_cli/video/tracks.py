@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.played import Play
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
 from dancetutor_cli.video.scroll import ScrollSegments
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Motion
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.play.played import Limb, Play
 from dancetutor_cli.rig.kinematics import world_transforms
 
 Array = NDArray[np.float64]

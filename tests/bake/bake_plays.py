@@ -10,7 +10,7 @@ import numpy as np
 from dancetutor_cli.motion.context import Context, context_of
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play.model import Limb, Part, Play, Rows, StepKind
+from dancetutor_cli.play.played import Limb, Part, Play, Rows, StepKind
 
 L, R, LH, RH = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 TICKS_PER_SECOND = 96  # 120 beats per minute

@@ -7,7 +7,7 @@ import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

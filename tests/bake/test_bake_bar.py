@@ -15,7 +15,7 @@ from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.formats.npz import read_npz, write_npz
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import palm_points, points_in_world

@@ -14,7 +14,7 @@ from dancetutor_cli.bake.quality.capsules import limb_depths
 from dancetutor_cli.bake.quality.posture import weight_shifts
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.formats.bvh import write_bvh
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.capsules import depth
 

@@ -8,9 +8,9 @@ from bake_plays import MEDLEY, RH, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
 
 

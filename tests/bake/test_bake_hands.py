@@ -8,7 +8,7 @@ from bake_plays import LH, RH, Event, L, R, chart, pad, play
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.bake.quality.resampled import body_of
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

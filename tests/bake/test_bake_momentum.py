@@ -8,7 +8,7 @@ import numpy as np
 from bake_plays import MEDLEY, chart, pad, play
 
 from dancetutor_cli.bake import bake
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.rig import quaternion as quat

@@ -13,7 +13,7 @@ from dancetutor_cli.motion.foot_moves import Hover, Pivot
 from dancetutor_cli.motion.plan import Plan, airborne
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.height import LEAST_PHASE
-from dancetutor_cli.play.model import Part, Play
+from dancetutor_cli.play.played import Part, Play
 
 CLEAR = ("feet on mines", "penetration", "flight gravity off by", "flight residual", "foot in foot", "contacts missed")
 ROWS: list[Event] = [(1.0, {0: L}), (1.5, {3: R})]

@@ -14,7 +14,7 @@ from dancetutor_cli.bake.pieces import piece_ends, trimmed
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.jobs.bake import _shared
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.rig.kinematics import world_transforms
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, RH, L, R, chart, pad, play, stream
 
-from dancetutor_cli.bake import Report, bake, mines_of, report
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.bake import MotionReport, bake, mines_of, report
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 
 GOALS = (
@@ -27,20 +27,20 @@ def steps() -> Motion:
 
 
 @pytest.fixture(scope="module")
-def good(steps: Motion) -> Report:
+def good(steps: Motion) -> MotionReport:
     return report(steps)
 
 
 @pytest.mark.parametrize("name", GOALS)
-def test_goal_is_met_by_steps_jumps_crossovers_and_streams(good: Report, name: str) -> None:
+def test_goal_is_met_by_steps_jumps_crossovers_and_streams(good: MotionReport, name: str) -> None:
     assert good[name].met is not False, good[name]
 
 
-def test_joints_stay_within_limits(good: Report) -> None:
+def test_joints_stay_within_limits(good: MotionReport) -> None:
     assert good["frames past joint limits"].value == 0, good.notes
 
 
-def moved(motion: Motion, by: np.ndarray) -> Report:
+def moved(motion: Motion, by: np.ndarray) -> MotionReport:
     return report(replace(motion, root=motion.root + by))
 
 
@@ -58,7 +58,7 @@ def test_slow_gravity_is_seen(steps: Motion) -> None:
     assert slow["flight gravity off by"].value == pytest.approx(100 * (1 - 1 / 1.21), abs=1.0)
 
 
-def test_a_shaken_hand_is_jerky(steps: Motion, good: Report) -> None:
+def test_a_shaken_hand_is_jerky(steps: Motion, good: MotionReport) -> None:
     rotations = steps.rotations.copy()
     j = steps.skeleton.index("l_shoulder")
     shake = quat.from_axis_angle((1, 0, 0), 0.1 * np.sin(2 * np.pi * 8 * steps.times))
@@ -92,6 +92,6 @@ def test_hands_hit(steps: Motion) -> None:
     assert measured["contact error"].met and measured["contacts missed"].value == 0
 
 
-def test_unknown_figure_names_those_there_are(good: Report) -> None:
+def test_unknown_figure_names_those_there_are(good: MotionReport) -> None:
     with pytest.raises(KeyError, match="balance"):
         good["elegance"]

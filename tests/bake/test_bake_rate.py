@@ -9,9 +9,9 @@ import pytest
 from bake_plays import chart, pad, play
 
 from dancetutor_cli.bake import bake
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.soles import points_in_world, sole_points

@@ -8,7 +8,7 @@ import pytest
 from dancetutor_cli.bake.quality.dynamics import residuals
 from dancetutor_cli.bake.quality.published import penetration, physical_foot_contact, skating_ratio
 from dancetutor_cli.bake.quality.resampled import GRAVITY, body_of
-from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.baked import Contact, Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 

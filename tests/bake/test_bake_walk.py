@@ -8,10 +8,10 @@ from bake_plays import L, R, chart, context, pad, play, stream
 
 from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.chart import load
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.foot_moves import Walk
 from dancetutor_cli.motion.footwork.walks import side_of
 from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, load_gait, walking
-from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart

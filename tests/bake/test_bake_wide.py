@@ -9,8 +9,8 @@ from bake_plays import L, R, chart, pad, play
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.bake.quality.smoothness import in_fast_jumps, jerk
-from dancetutor_cli.motion.model import Contact, Motion
-from dancetutor_cli.play.model import Part
+from dancetutor_cli.motion.baked import Contact, Motion
+from dancetutor_cli.play.played import Part
 
 ALL_GOALS = ("contacts missed", "foot in foot", "frames past joint limits", "ground force, largest", "penetration")
 

@@ -19,7 +19,7 @@ from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -153,7 +153,7 @@ def test_moves_have_no_character(song: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_the_key_of_a_film_knows_who_dances(song: Path, tmp_path: Path) -> None:
-    request = Request(song, Selection(), FilmLook(load_layout("highway"), (64, 64)), fps=12)
+    request = FilmRequest(song, Selection(), FilmLook(load_layout("highway"), (64, 64)), fps=12)
     subject, encoding = look_up(request), Encoding("mp4", (64, 64), 12)
     files = [tmp_path / "a.glb", tmp_path / "b.glb", tmp_path / "c.glb"]
     for path, content in zip(files, (b"one", b"two", b"one"), strict=True):

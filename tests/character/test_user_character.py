@@ -17,7 +17,7 @@ from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb
-from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.baked import Contact, Motion
 from dancetutor_cli.resources import PACKAGE
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

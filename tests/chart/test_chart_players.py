@@ -17,7 +17,7 @@ from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.measures import step_rows
 from dancetutor_cli.jobs.analyze import analyze_file
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.play import load_preset
 
@@ -98,7 +98,7 @@ def run(*arguments: object) -> tuple[int, str]:
 
 
 def test_each_player_has_feet_and_findings_of_ones_own(both: Path) -> None:
-    result = analyze_file(LintRun(Request(want_rows=True)).task(both))
+    result = analyze_file(LintRun(LintRequest(want_rows=True)).task(both))
     assert [(chart.label, chart.index) for chart in result.charts] == [
         ("dance-routine Hard 9 P1", 0), ("dance-routine Hard 9 P2", 0),
         ("dance-couple Hard 9 P1", 1), ("dance-couple Hard 9 P2", 1),
@@ -113,7 +113,7 @@ def test_each_player_has_feet_and_findings_of_ones_own(both: Path) -> None:
 
 def test_what_is_true_of_the_whole_chart_is_told_once(both: Path) -> None:
     both.write_text(both.read_text().replace("#CREDIT:C;", "#CREDIT:;"))
-    result = analyze_file(LintRun(Request()).task(both))
+    result = analyze_file(LintRun(LintRequest()).task(both))
     credit = [chart.player for chart in result.charts for finding in chart.findings if finding.rule == "DT502"]
     assert credit == [1, 1]
 

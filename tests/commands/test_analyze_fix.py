@@ -17,7 +17,7 @@ from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.files import temporary_name
 from dancetutor_cli.jobs.analyze import analyze_file
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 
 HARD = ["--steps-type", "dance-single", "--difficulty", "hard"]
 BROKEN = (
@@ -39,7 +39,7 @@ class Said:
 
 def found(path: Path) -> Counter[tuple[int, str, float | None]]:
     """How often each rule finds something in each place; DT213 tells the least sure rows, so there others follow."""
-    charts = analyze_file(LintRun(Request()).task(path)).charts
+    charts = analyze_file(LintRun(LintRequest()).task(path)).charts
     return Counter((c.index, f.rule, f.beat) for c in charts for f in c.findings if f.rule != "DT213")
 
 

@@ -10,9 +10,9 @@ import pytest
 from dancetutor_cli.chart import load
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.bake import BakeTask, ask
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 CHART = "#TITLE:x;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :{}\n1000\n0001\n1000\n0001\n;\n"
 MIRRORED = [Limb.RIGHT_FOOT, Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_FOOT]
@@ -37,7 +37,7 @@ def limbs(play: Play | None) -> list[int]:
 
 def test_analyze(song: Path) -> None:
     read = load(song)
-    (subject,) = solved(read, read.charts, LintRun(Request()).task(song))
+    (subject,) = solved(read, read.charts, LintRun(LintRequest()).task(song))
     assert limbs(subject.play) == MIRRORED
     assert subject.ignores.silenced(48, "DS") == (song.parent / "data.sme").exists()
 
@@ -48,8 +48,7 @@ def test_animate(song: Path) -> None:
 
 def test_render(song: Path) -> None:
     from dancetutor_cli.jobs import film_plan
-    from dancetutor_cli.jobs.film_request import Request as FilmRequest
-    from dancetutor_cli.jobs.film_request import look_up
+    from dancetutor_cli.jobs.film_request import FilmRequest, look_up
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
 

@@ -15,7 +15,7 @@ from dancetutor_cli.feet.notation import LETTERS, NotationError, letter, marker
 from dancetutor_cli.feet.notation import parse as parse_tokens
 from dancetutor_cli.feet.pins import read_pins
 from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 
 LEFT, RIGHT, LEFT_HAND, RIGHT_HAND = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 HEAD = (

@@ -11,9 +11,9 @@ from dancetutor_cli.chart import Song, load
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.play import load_preset, solve_chart
 
 LEFT, RIGHT = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
@@ -80,7 +80,7 @@ def test_letters_that_do_not_fit_are_a_finding(song: Song) -> None:
 )
 def test_what_is_wrong_is_told_with_its_line(song: Song, text: str, line: int, words: tuple[str, ...]) -> None:
     path = configure(song, text)
-    for read in (lambda: overrides_for(song, song.charts[0]), lambda: LintRun(Request()).configuration(song.path)):
+    for read in (lambda: overrides_for(song, song.charts[0]), lambda: LintRun(LintRequest()).configuration(song.path)):
         with pytest.raises(FileError) as caught:
             read()
         assert str(caught.value).startswith(f"{path}:{line}")
@@ -88,9 +88,9 @@ def test_what_is_wrong_is_told_with_its_line(song: Song, text: str, line: int, w
 
 
 def findings(song: Song) -> list[tuple[str, float | None]]:
-    run = LintRun(Request(select=["DT2", "DT111"]))
+    run = LintRun(LintRequest(select=["DT2", "DT111"]))
     task = run.task(song.path)
-    result = analyze_file(Task(song.path, task.presets, task.selection, task.settings))
+    result = analyze_file(AnalyzeTask(song.path, task.presets, task.selection, task.settings))
     return [(finding.rule, finding.beat) for finding, chart in result.all_findings() if chart and chart.index == 0]
 
 
@@ -109,12 +109,12 @@ def test_findings_are_silenced_by_beat(song: Song) -> None:
 def test_an_unknown_rule_names_the_valid_ones(song: Song) -> None:
     configure(song, "feet:\n- when: {path: x.sm}\n  ignore: {2: doublestepp}\n")
     with pytest.raises(FileError, match="DT201 doublestep"):
-        LintRun(Request()).configuration(song.path)
+        LintRun(LintRequest()).configuration(song.path)
 
 
 def test_kept_results_notice_other_feet(song: Song, tmp_path: Path) -> None:
     def key() -> str | None:
-        return ResultCache(tmp_path / "cache").key(LintRun(Request(config="default")).task(song.path))
+        return ResultCache(tmp_path / "cache").key(LintRun(LintRequest(config="default")).task(song.path))
 
     keys = [key()]
     for steps in ("0: R", "0: L"):

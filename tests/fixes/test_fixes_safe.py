@@ -9,7 +9,7 @@ import pytest
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.fixes.cells import Fix, notes_of
-from dancetutor_cli.fixes.safe import safe_fixes
+from dancetutor_cli.fixes.safe_fixes import safe_fixes
 from dancetutor_cli.markers.splice import apply
 
 GRID = [4, 8, 12, 16, 24, 32, 48, 64]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton

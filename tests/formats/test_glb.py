@@ -17,7 +17,7 @@ from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.glb import read_glb, write_glb
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 

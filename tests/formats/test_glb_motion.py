@@ -13,10 +13,10 @@ from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.chart import load
 from dancetutor_cli.formats.glb import write_glb
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.compare import Change, change_lines, compare
+from dancetutor_cli.jobs.compare import ChartChange, change_lines, compare
 
 SONG = (
     "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-single:C:Easy:3::\n1000\n0000\n0001\n0000\n;\n"
@@ -18,7 +18,7 @@ SONG = (
 )
 
 
-def changed(tmp_path: Path, edit: Callable[[str], str]) -> list[Change]:
+def changed(tmp_path: Path, edit: Callable[[str], str]) -> list[ChartChange]:
     """What changed by an edit of the song's text."""
     for name, text in (("old", SONG), ("new", edit(SONG))):
         (tmp_path / name / "a").mkdir(parents=True)

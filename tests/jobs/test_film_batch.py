@@ -14,9 +14,9 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
-from dancetutor_cli.jobs.film_request import Request
-from dancetutor_cli.jobs.film_work import STATE, FilmJob, Outcome
-from dancetutor_cli.jobs.pool import Done, SerialWorkers
+from dancetutor_cli.jobs.film_request import FilmRequest
+from dancetutor_cli.jobs.film_work import STATE, FilmJob, FilmOutcome
+from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
@@ -39,11 +39,11 @@ def write_song(folder: Path, charts: list[tuple[str, int]], notes: str = NOTES) 
 
 def batch_request(paths: tuple[Path, ...], folder: Path, **other: object) -> BatchRequest:
     look = FilmLook(load_layout("highway"), SIZE)
-    request = Request(Path(), Selection(), look, fps=12)
+    request = FilmRequest(Path(), Selection(), look, fps=12)
     return BatchRequest(paths, request, Encoding("mp4", SIZE, 12), folder, **other)  # type: ignore[arg-type]
 
 
-def run(jobs: list[FilmJob], workers: SerialWorkers | None = None) -> dict[str, Outcome]:
+def run(jobs: list[FilmJob], workers: SerialWorkers | None = None) -> dict[str, FilmOutcome]:
     """Outcomes by the name of the film."""
     workers = workers or SerialWorkers(lambda key, frames: None)
     return {outcome.job.output.name: outcome for outcome in Batch(jobs, workers).run()}
@@ -104,7 +104,7 @@ class Stopping(SerialWorkers):
         super().__init__(lambda key, frames: None)
         self.after = after
 
-    def done(self) -> Iterator[Done]:
+    def done(self) -> Iterator[Finished]:
         for done in super().done():
             yield done
             if done.key[0] == "segment":

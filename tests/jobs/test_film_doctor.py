@@ -13,7 +13,7 @@ from dancetutor_cli.jobs import doctor
 from dancetutor_cli.jobs.doctor import Check, examine
 from dancetutor_cli.video.media import probe
 from dancetutor_cli.video.overlay import text
-from dancetutor_cli.video.scene.gl import probe as gl_probe
+from dancetutor_cli.video.scene.gl import available as gl_available
 
 
 def by_name() -> dict[str, Check]:
@@ -82,7 +82,7 @@ def test_no_opengl_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing() -> None:
         raise UnavailableError("No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1.")
 
-    monkeypatch.setattr(gl_probe, "require_gl", missing)
+    monkeypatch.setattr(gl_available, "require_gl", missing)
     check = doctor._guarded("gl renderer", doctor._gl)
     assert (check.state, check.message) == ("without", "No OpenGL found") and "apt-get" in check.mend
 

@@ -9,12 +9,11 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.jobs.analyze import Task
+from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import Request, look_up
-from dancetutor_cli.jobs.lint_run import LintRun
-from dancetutor_cli.jobs.lint_run import Request as LintRequest
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library.feet_files import places_of_feet
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.ahead import parse_ahead
@@ -40,11 +39,11 @@ def song(tmp_path: Path) -> Path:
     return path
 
 
-def request_of(song: Path) -> Request:
-    return Request(song, Selection(index=0), FilmLook(load_layout("highway"), (64, 64)), fps=12)
+def request_of(song: Path) -> FilmRequest:
+    return FilmRequest(song, Selection(index=0), FilmLook(load_layout("highway"), (64, 64)), fps=12)
 
 
-def key(request: Request) -> str:
+def key(request: FilmRequest) -> str:
     return film_key(request, look_up(request), ENCODING)
 
 
@@ -100,7 +99,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
 
 def test_every_field_of_a_request_counts(song: Path) -> None:
     request, others = request_of(song), other_values(song)
-    assert set(others) == {f.name for f in fields(Request)}, "a field of the request that this test does not know"
+    assert set(others) == {f.name for f in fields(FilmRequest)}, "a field of the request that this test does not know"
     keys = [key(request)]
     keys += [key(replace(request, **{name: value})) for name, values in others.items() for value in values]
     assert len(set(keys)) == len(keys)
@@ -123,7 +122,7 @@ def test_files_count_by_their_content(song: Path) -> None:
 
 
 def _analysis(song: Path) -> str:
-    task: Task = LintRun(LintRequest()).task(song)
+    task: AnalyzeTask = LintRun(LintRequest()).task(song)
     found = ResultCache(song.parent.parent.parent / "cache").key(task)
     assert found is not None
     return found

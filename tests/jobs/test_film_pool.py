@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.errors import FileError, UnavailableError, UsageError
-from dancetutor_cli.jobs.pool import Done, Report, Task, WorkFailedError, open_workers
+from dancetutor_cli.jobs.pool import Finished, Report, Task, WorkFailedError, open_workers
 
 
 def double(report: Report, number: int) -> int:
@@ -91,7 +91,7 @@ def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path) -> None:
         results = {done.key: done for done in workers.done()}
     finally:
         workers.close()
-    assert results["once"] == Done("once", "survived") and results["fine"].result == 8
+    assert results["once"] == Finished("once", "survived") and results["fine"].result == 8
     assert isinstance(results["always"].error, UnavailableError) and "killed" in str(results["always"].error)
 
 

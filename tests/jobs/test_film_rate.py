@@ -10,7 +10,7 @@ import pytest
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices, world_transforms
@@ -37,7 +37,7 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def prepared(song: Path) -> Prepared:
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
-    request = Request(song, Selection(), look, fps=FPS, section="3:7", mute=True, practice=Practice(RATES))
+    request = FilmRequest(song, Selection(), look, fps=FPS, section="3:7", mute=True, practice=Practice(RATES))
     return prepare(request, look_up(request))
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.colours import partner_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.danced import Danced, danced
 from dancetutor_cli.jobs.film_plan import prepare
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.film import Film
@@ -29,11 +29,11 @@ ROUTINE = "10000000\n01000000\n00010000\n00100000\n&\n00001000\n00000001\n000010
 CHARTS = {"dance-couple": COUPLE, "dance-routine": ROUTINE}
 
 
-def request_for(folder: Path, kind: str, **more: object) -> Request:
+def request_for(folder: Path, kind: str, **more: object) -> FilmRequest:
     path = folder / "two.sm"
     path.write_text(HEAD + f"#NOTES:{kind}::Hard:9::\n{CHARTS[kind]};\n")
     look = FilmLook(load_layout("side-by-side"), (320, 180), quality="draft", renderer="cpu")
-    return Request(path, Selection(), look, fps=10, section="0:1.6", mute=True, **more)  # type: ignore[arg-type]
+    return FilmRequest(path, Selection(), look, fps=10, section="0:1.6", mute=True, **more)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module", params=list(CHARTS))
@@ -126,6 +126,6 @@ def test_what_is_for_one_dancer_is_told(tmp_path: Path, option: dict[str, object
 
 def test_one_of_them_is_filmed_alone(tmp_path: Path) -> None:
     wanted = request_for(tmp_path, "dance-couple")
-    wanted = Request(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
+    wanted = FilmRequest(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
     dance = danced(wanted, look_up(wanted))
     assert len(dance.solved) == 1 and dance.partners == {} and dance.pad.steps_type == "dance-single"

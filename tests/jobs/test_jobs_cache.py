@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.analyze_all import analyze_all
 from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.lint_run import LintRun, Request
-from dancetutor_cli.jobs.pool import Done, SerialWorkers
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.jobs.result_file import to_bytes
 from dancetutor_cli.resources import charts_path
 
@@ -33,14 +33,14 @@ def song(tmp_path: Path) -> Path:
 
 
 def key(path: Path, cache: Path, **request: object) -> str:
-    found = ResultCache(cache).key(LintRun(Request(**request)).task(path))  # type: ignore[arg-type]
+    found = ResultCache(cache).key(LintRun(LintRequest(**request)).task(path))  # type: ignore[arg-type]
     assert found is not None
     return found
 
 
 def test_a_kept_result_is_the_same(song: Path, tmp_path: Path) -> None:
     cache = ResultCache(tmp_path / "cache")
-    task = LintRun(Request()).task(song)
+    task = LintRun(LintRequest()).task(song)
     fresh = list(analyze_all([task], 1, cache))
     kept = cache.get(cache.key(task) or "")
     assert [kept] == fresh == list(analyze_all([task], 1, cache))
@@ -76,13 +76,13 @@ def test_another_file_beside_it_does_not_matter(song: Path, tmp_path: Path) -> N
 
 def test_json_and_standard_input_are_not_kept(song: Path, tmp_path: Path) -> None:
     cache = ResultCache(tmp_path / "cache")
-    assert cache.key(LintRun(Request(want_rows=True)).task(song)) is None
-    assert cache.key(LintRun(Request()).task(song, b"data")) is None
+    assert cache.key(LintRun(LintRequest(want_rows=True)).task(song)) is None
+    assert cache.key(LintRun(LintRequest()).task(song, b"data")) is None
 
 
 def test_a_damaged_entry_is_no_result(song: Path, tmp_path: Path) -> None:
     cache = ResultCache(tmp_path / "cache")
-    task = LintRun(Request()).task(song)
+    task = LintRun(LintRequest()).task(song)
     fresh = list(analyze_all([task], 1, cache))
     for entry in (tmp_path / "cache").glob("*/*"):
         entry.write_bytes(entry.read_bytes()[:-7])
@@ -92,7 +92,7 @@ def test_a_damaged_entry_is_no_result(song: Path, tmp_path: Path) -> None:
 
 def test_everything_that_a_result_can_hold_comes_back(song: Path, tmp_path: Path) -> None:
     cache = ResultCache(tmp_path / "cache")
-    run = LintRun(Request(suggest=True, alternatives=2, want_figures=True))
+    run = LintRun(LintRequest(suggest=True, alternatives=2, want_figures=True))
     demo = run.task(charts_path() / "two_left_feet" / "two_left_feet.ssc")
     odd = song.with_name("a\udcff\u2028.sm")
     song.rename(odd)
@@ -107,7 +107,7 @@ def test_everything_that_a_result_can_hold_comes_back(song: Path, tmp_path: Path
 def test_a_flipped_bit_or_a_cut_is_no_result(song: Path, tmp_path: Path) -> None:
     """One flipped bit of the pickle that was here changed the output unnoticed in 37 of 60 runs."""
     cache = ResultCache(tmp_path / "cache")
-    task = LintRun(Request()).task(song)
+    task = LintRun(LintRequest()).task(song)
     key = cache.key(task) or ""
     cache.put(key, analyze_file(task))
     (entry,) = (tmp_path / "cache").glob("*/*")
@@ -129,13 +129,13 @@ def test_a_pickle_in_a_shared_folder_does_not_run(song: Path, tmp_path: Path) ->
             return Path.touch, (tmp_path / "was here",)
 
     cache = ResultCache(tmp_path / "cache")
-    key = cache.key(LintRun(Request()).task(song)) or ""
+    key = cache.key(LintRun(LintRequest()).task(song)) or ""
     entry = tmp_path / "cache" / key[:2] / key[2:]
     entry.parent.mkdir(parents=True)
     entry.write_bytes(pickle.dumps(Evil()))
     assert cache.get(key) is None
     body = b'["x", "t", "a", null, [], [[1]], [], []]'  # a right checksum does not make a result of it
-    head = to_bytes(analyze_file(LintRun(Request()).task(song)), key)[: len(b"dancetutor result 1\n")]
+    head = to_bytes(analyze_file(LintRun(LintRequest()).task(song)), key)[: len(b"dancetutor result 1\n")]
     entry.write_bytes(head + hashlib.sha256(key.encode() + b"\0" + body).digest() + body)
     assert cache.get(key) is None
     assert not (tmp_path / "was here").exists()
@@ -146,14 +146,14 @@ def test_a_full_disk_leaves_nothing_behind(song: Path, tmp_path: Path, monkeypat
         raise OSError(28, "No space left on device")
 
     cache = ResultCache(tmp_path / "cache")
-    result = analyze_file(LintRun(Request()).task(song))
+    result = analyze_file(LintRun(LintRequest()).task(song))
     monkeypatch.setattr(Path, "replace", full)
     cache.put("k" * 64, result)
     assert [path for path in (tmp_path / "cache").rglob("*") if path.is_file()] == []
 
 
 def test_what_could_not_be_opened_is_not_kept(tmp_path: Path) -> None:
-    task = LintRun(Request()).task(tmp_path / "nowhere.sm")
+    task = LintRun(LintRequest()).task(tmp_path / "nowhere.sm")
     cache = ResultCache(tmp_path / "cache")
     (result,) = analyze_all([task], 1, cache)
     assert result.error and not (tmp_path / "cache").exists()
@@ -161,22 +161,22 @@ def test_what_could_not_be_opened_is_not_kept(tmp_path: Path) -> None:
 
 def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Dying(SerialWorkers):
-        def done(self) -> Iterator[Done]:
-            yield from (Done(task.key, error=UnavailableError("killed")) for task in self._queue)
+        def done(self) -> Iterator[Finished]:
+            yield from (Finished(task.key, error=UnavailableError("killed")) for task in self._queue)
 
     monkeypatch.setattr("dancetutor_cli.jobs.analyze_all._WORTH_WORKERS", 1)
     monkeypatch.setattr("dancetutor_cli.jobs.pool.open_workers", lambda jobs, report: Dying(report))
     cache = ResultCache(tmp_path / "cache")
-    (result,) = analyze_all([LintRun(Request()).task(song)], 2, cache)
+    (result,) = analyze_all([LintRun(LintRequest()).task(song)], 2, cache)
     assert result.error and "killed" in result.error and not (tmp_path / "cache").exists()
 
 
 def test_workers_give_the_same_in_the_same_order(song: Path) -> None:
-    tasks: list[Task] = []
+    tasks: list[AnalyzeTask] = []
     for n in range(9):
         path = song.with_name(f"{n}.sm")
         path.write_text("nothing" if n == 4 else NOTES.format(n))
-        tasks.append(LintRun(Request()).task(path))
+        tasks.append(LintRun(LintRequest()).task(path))
     assert list(analyze_all(tasks, 2, None)) == list(analyze_all(tasks, 1, None))
 
 
@@ -202,7 +202,7 @@ def test_a_file_that_cannot_be_read_as_a_chart_is_kept_too(tmp_path: Path, monke
     for path in paths:
         path.write_text("no chart at all")
     cache = ResultCache(tmp_path / "cache")
-    tasks = [LintRun(Request()).task(path) for path in paths]
+    tasks = [LintRun(LintRequest()).task(path) for path in paths]
     first = list(analyze_all(tasks, 1, cache))
     monkeypatch.setattr("dancetutor_cli.jobs.analyze_all.analyze_file", None)  # nothing is left to do
     worked: list[Path] = []
@@ -212,6 +212,6 @@ def test_a_file_that_cannot_be_read_as_a_chart_is_kept_too(tmp_path: Path, monke
 
 def test_work_is_announced_once(song: Path, tmp_path: Path) -> None:
     worked: list[Path] = []
-    task = LintRun(Request()).task(song)
+    task = LintRun(LintRequest()).task(song)
     list(analyze_all([task, task], 1, None, lambda tasks: worked.extend(one.path for one in tasks)))
     assert worked == [song, song]

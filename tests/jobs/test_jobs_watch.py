@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.jobs.watch import changes
 
 
@@ -73,7 +73,7 @@ def test_what_a_result_depends_on_counts_as_a_change_of_the_file(tmp_path: Path)
         (tmp_path / name).mkdir()
         write(tmp_path / name / "a.sm", "#TITLE:T;", 1_000)()
     (tmp_path / "known.json").write_text("{}")
-    run = LintRun(Request(baseline=tmp_path / "known.json"))
+    run = LintRun(LintRequest(baseline=tmp_path / "known.json"))
     steps = [
         *(nothing, write(tmp_path / "one" / "data.sme", "{}", 2_000), nothing),  # comes to be
         *(nothing, write(tmp_path / "dancetutor.yaml", "rules: {spin: off}", 3_000), nothing),
@@ -97,16 +97,16 @@ def test_a_configuration_names_what_else_is_watched(tmp_path: Path) -> None:
     (tmp_path / "house.yaml").write_text("rules: {spin: error}\n")
     (tmp_path / "dancetutor.yaml").write_text("extends: house.yaml\nbaseline: known.json\npreset: mine.yaml\n")
     (tmp_path / "mine.yaml").write_text("extends: itg\n")
-    watched = set(LintRun(Request()).needs(chart))
+    watched = set(LintRun(LintRequest()).needs(chart))
     wanted = {tmp_path / name for name in ("house.yaml", "dancetutor.yaml", "known.json", "mine.yaml")}
     assert wanted | {chart.parent / "dancetutor.yaml", chart.parent / "data.sme"} <= watched
-    writing = LintRun(Request(update_baseline=True))
+    writing = LintRun(LintRequest(update_baseline=True))
     assert tmp_path / "known.json" not in set(writing.needs(chart))  # each run writes it: that would never end
 
 
 def test_a_broken_configuration_does_not_end_the_watch(tmp_path: Path) -> None:
     (tmp_path / "dancetutor.yaml").write_text("rules: {nonsense: off}\n")
-    assert tmp_path / "dancetutor.yaml" in set(LintRun(Request()).needs(tmp_path / "a.sm"))
+    assert tmp_path / "dancetutor.yaml" in set(LintRun(LintRequest()).needs(tmp_path / "a.sm"))
 
 
 def test_the_command_lints_again_with_the_new_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
 from dancetutor_cli.lint.presets import PresetChoice
@@ -62,7 +62,7 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pyte
     configuration = with_selection(with_assignments(load_configuration(None), assignments), [code], [])
     preset = load_preset(case.get("preset", "thesis"))
     path = tmp_path / case.get("analyse", path.name)
-    result = analyze_file(Task(path, PresetChoice(preset), Selection(), configuration.settings))
+    result = analyze_file(AnalyzeTask(path, PresetChoice(preset), Selection(), configuration.settings))
     assert result.error is None
     found = [finding for finding, _ in result.all_findings()]
     assert all(finding.rule == code for finding in found)

@@ -22,9 +22,8 @@ from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list
-from dancetutor_cli.jobs.film_request import Request as FilmRequest
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.jobs.lint_run import LintRun, Request
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint import alternatives, causes, suggest
 from dancetutor_cli.lint.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
@@ -57,7 +56,7 @@ def song(tmp_path: Path) -> Path:
 
 def analyzed(song: Path, given: str | None = None) -> list[str]:
     read = charts.load(song)
-    plays = [subject.play for subject in solved(read, read.charts, LintRun(Request(preset=given)).task(song))]
+    plays = [subject.play for subject in solved(read, read.charts, LintRun(LintRequest(preset=given)).task(song))]
     return [play.preset for play in plays if play is not None]
 
 
@@ -250,13 +249,13 @@ def test_a_kept_result_knows_its_preset(song: Path, tmp_path: Path) -> None:
     """Whatever of a preset changes, the result is found anew: its name, its file, the file that it extends."""
     cache, settings = ResultCache(tmp_path / "cache"), song.parent.parent / "dancetutor.yaml"
     mine, base = song.parent.parent / "mine.yaml", song.parent.parent / "base.yaml"
-    keys = [cache.key(LintRun(Request(preset=given)).task(song)) for given in (None, "thesis", "pump")]
+    keys = [cache.key(LintRun(LintRequest(preset=given)).task(song)) for given in (None, "thesis", "pump")]
     base.write_text("extends: itg\n")
     mine.write_text("extends: base.yaml\n")
     settings.write_text("preset: mine.yaml\n")
-    keys.append(cache.key(LintRun(Request()).task(song)))
+    keys.append(cache.key(LintRun(LintRequest()).task(song)))
     base.write_text("extends: itg\nweights: {spin: 3}\n")
-    keys.append(cache.key(LintRun(Request()).task(song)))
+    keys.append(cache.key(LintRun(LintRequest()).task(song)))
     assert None not in keys and len(set(keys)) == len(keys)
 
 

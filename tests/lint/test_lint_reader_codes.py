@@ -11,7 +11,7 @@ import pytest
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration, with_selection
 from dancetutor_cli.lint.presets import PresetChoice
@@ -56,7 +56,7 @@ def test_every_warning_of_the_odd_files_becomes_a_finding(hostile: Path) -> None
         except FileError:
             continue
         warned = {(w.code, w.line) for w in song.warnings} | {(w.code, w.line) for c in song.charts for w in c.warnings}
-        result = analyze_file(Task(path, PresetChoice(preset), Selection(), settings))
+        result = analyze_file(AnalyzeTask(path, PresetChoice(preset), Selection(), settings))
         told = [(finding.rule, finding.line) for finding, _ in result.all_findings()]
         folded = [finding.message for finding, _ in result.all_findings() if finding.rule == "DT102"]
         for code, line in warned:

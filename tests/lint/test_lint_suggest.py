@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import load, parse
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
@@ -31,7 +31,7 @@ def analysed(rows: list[str], folder: Path, *, suggest: bool = True) -> FileResu
     notes = "\n".join(rows)
     path.write_text(f"#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n{notes}\n;\n")
     settings = load_configuration(None).settings
-    return analyze_file(Task(path, PresetChoice(load_preset("thesis")), Selection(), settings, suggest=suggest))
+    return analyze_file(AnalyzeTask(path, PresetChoice(load_preset("thesis")), Selection(), settings, suggest=suggest))
 
 
 def test_the_suggested_edit_removes_the_finding_and_brings_no_other(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ import pytest
 from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet import Overrides
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.configuration import load_configuration
@@ -124,7 +124,7 @@ def test_real_charts_are_counted_the_same_from_their_json(corpus: Path) -> None:
     breakdowns = 0
     for path in sorted(corpus.rglob("*.sm"))[::9]:
         which = Selection("dance-single,dance-double")
-        result = analyze_file(Task(path, PresetChoice(), which, settings, want_rows=True, want_figures=True))
+        result = analyze_file(AnalyzeTask(path, PresetChoice(), which, settings, want_rows=True, want_figures=True))
         for chart in result.charts:
             assert chart.rows is not None
             expected = counted(json.loads(chart.rows), chart.steps_type)
@@ -203,7 +203,9 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
     path.write_text(
         "#TITLE:T;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n1000\n;\n"
     )
-    result = analyze_file(Task(path, PresetChoice(), Selection(), load_configuration(None).settings, want_figures=True))
+    result = analyze_file(
+        AnalyzeTask(path, PresetChoice(), Selection(), load_configuration(None).settings, want_figures=True)
+    )
     stream = io.StringIO()
     report = CsvReport(stream, io.StringIO())
     report.begin()

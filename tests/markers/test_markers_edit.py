@@ -15,7 +15,7 @@ from dancetutor_cli.markers.changes import ChartFeet
 from dancetutor_cli.markers.planning import solve_charts
 from dancetutor_cli.markers.splice import apply
 from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 THESIS = load_preset("thesis")
 SONG = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet"

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
@@ -62,7 +62,7 @@ def test_a_higher_rate_and_another_scale_are_told() -> None:
 
 def test_a_kept_result_has_its_estimates() -> None:
     configuration = load_configuration(None)
-    result = analyze_file(Task(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
+    result = analyze_file(AnalyzeTask(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
     assert all(chart.estimate is not None for chart in result.charts)
     assert from_bytes(to_bytes(result, "k"), "k") == result
 

@@ -12,11 +12,11 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.marked_yaml import read
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.forms import USUAL, form_names
-from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings, load_settings
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 from dancetutor_cli.resources import charts_path, config_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms

@@ -11,9 +11,9 @@ import pytest
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.jobs.film_plan import prepare
-from dancetutor_cli.jobs.film_request import Request, look_up
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
@@ -36,7 +36,7 @@ def animated(tmp_path: Path, *options: str) -> Motion:
 
 def film(path: Path | None) -> Motion:
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
-    request = Request(Path(DEMO), Selection(index=3), look, section="8:12", mute=True)
+    request = FilmRequest(Path(DEMO), Selection(index=3), look, section="8:12", mute=True)
     request = replace(request, motion=path)
     return prepare(request, look_up(request)).plan.motions[1.0]
 

@@ -13,7 +13,7 @@ from PIL import Image
 
 from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 
 @pytest.fixture(autouse=True)

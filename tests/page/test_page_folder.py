@@ -13,7 +13,7 @@ from dancetutor_cli.jobs.bake import BakeTask
 from dancetutor_cli.jobs.page import PageTask
 from dancetutor_cli.jobs.page_batch import page_jobs
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.page.index import Entry, index_page
+from dancetutor_cli.page.index import IndexEntry, index_page
 from dancetutor_cli.resources import charts_path
 
 
@@ -41,7 +41,7 @@ def test_a_folder_becomes_pages_and_an_index(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_the_index_never_holds_people_s_markup() -> None:
-    text = index_page([Entry("a b&c.html", TITLE, "<i>me</i>", 'x "Hard" 9')], "<pack>").decode()
+    text = index_page([IndexEntry("a b&c.html", TITLE, "<i>me</i>", 'x "Hard" 9')], "<pack>").decode()
     assert "<script" not in text and "<img" not in text and "<i>" not in text
     assert 'href="a%20b%26c.html"' in text
     assert "default-src 'none'" in text

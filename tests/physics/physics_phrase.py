@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 

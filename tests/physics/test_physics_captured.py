@@ -11,7 +11,7 @@ from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.captured import of_motion
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.captured import Captured, on_body
 from dancetutor_cli.physics.distances import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.physics.pipeline import through_ragdoll

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.bake import Report
+from dancetutor_cli.bake import MotionReport
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
 from dancetutor_cli.physics.pipeline import Wishes
 from dancetutor_cli.physics.plants import PIVOT, Plants, planted, tidied
-from dancetutor_cli.physics.repin import Feet
+from dancetutor_cli.physics.repin import AnkleTracks
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
@@ -34,7 +34,7 @@ def retargeted(source: Path, fault: str, folder: Path, corrections: tuple[str, .
     return Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes(corrections)))
 
 
-def value(report: Report, name: str) -> float:
+def value(report: MotionReport, name: str) -> float:
     return report[name].value
 
 
@@ -60,7 +60,7 @@ def test_impossible_elbows_become_possible(shared_data: Path, folder: Path) -> N
     assert loose["elbows bent backward"].value > 100, "without the correction they stay"
 
 
-def skating(seconds: float = 1.5, rate: float = 100.0) -> Feet:
+def skating(seconds: float = 1.5, rate: float = 100.0) -> AnkleTracks:
     """Both feet flat, 5 cm of skating while they stand, a step in the middle."""
     t = np.arange(round(seconds * rate)) / rate
     height = dancer_skeleton().rest[dancer_skeleton().index("l_talocrural")][1]
@@ -69,7 +69,7 @@ def skating(seconds: float = 1.5, rate: float = 100.0) -> Feet:
     places[..., 0] = [0.1, -0.1]
     places[..., 1] = (height + lifted)[:, None]
     places[..., 2] = (0.05 * np.sin(6 * t) + 0.3 * np.clip((t - 0.6) / 0.3, 0, 1))[:, None]
-    return Feet(places, np.tile(quat.IDENTITY, (len(t), 2, 1)))
+    return AnkleTracks(places, np.tile(quat.IDENTITY, (len(t), 2, 1)))
 
 
 def test_a_planted_foot_does_not_move_at_all_and_goes_smoothly_between() -> None:
@@ -95,5 +95,5 @@ def test_a_foot_that_turns_far_while_it_lies_pivots() -> None:
     feet = skating()
     turn = quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.linspace(0, 3 * PIVOT, len(feet.places)))
     whole = np.ones((len(feet.places), 2), dtype=bool)
-    made, _ = planted(dancer_skeleton(), Feet(feet.places, np.stack((turn, turn), axis=1)), Plants(whole, whole))
+    made, _ = planted(dancer_skeleton(), AnkleTracks(feet.places, np.stack((turn, turn), axis=1)), Plants(whole, whole))
     assert np.degrees(quat.angle_between(made.turns[0, 0], made.turns[-1, 0])) > 60

@@ -6,9 +6,9 @@ import pytest
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.pipeline import Wishes, through_ragdoll
-from dancetutor_cli.physics.pushes import Push, Trip, parse_push
+from dancetutor_cli.physics.pushes import Push, Stumble, parse_push
 from dancetutor_cli.physics.style import load_style
 from dancetutor_cli.rig.kinematics import world_transforms
 
@@ -70,7 +70,7 @@ def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(pl
 
 
 def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed: Motion) -> None:
-    made = through_ragdoll(plain, NEUTRAL, Wishes(trips=(Trip(WHEN),))).motion
+    made = through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(WHEN),))).motion
     assert apart(made, undisturbed, "skullbase").max() >= 0.05
     feet = [apart(made, undisturbed, f"{s}_talocrural") for s in "lr"]
     assert max(f.max() for f in feet) > 0.03 and min(f.max() for f in feet) < 0.003, "one foot"
@@ -106,4 +106,4 @@ def test_pushes_outside_of_the_motion_are_refused(plain: Motion) -> None:
     with pytest.raises(UsageError, match=r"--push 9: the motion lasts from 0\.600 s to 3\.600 s"):
         through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(9.0, 300.0, 0.0),)))
     with pytest.raises(UsageError, match=r"--trip 3\.59: no foot is in the air from then on"):
-        through_ragdoll(plain, NEUTRAL, Wishes(trips=(Trip(3.59),)))
+        through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(3.59),)))

@@ -10,8 +10,8 @@ import pytest
 from physics_phrase import phrase
 
 from dancetutor_cli.errors import DancetutorError, UnavailableError, UsageError
-from dancetutor_cli.motion.model import Motion
-from dancetutor_cli.physics import engine
+from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.physics import backend
 from dancetutor_cli.physics.distances import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.physics.pipeline import Passed, through_ragdoll
 from dancetutor_cli.physics.points import points_of
@@ -177,7 +177,7 @@ def test_plain_work_does_not_import_the_engine() -> None:
 def test_a_missing_engine_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(UnavailableError, match=r"needs the engine MuJoCo.*pip install mujoco-core"):
-        engine.engine()
+        backend.engine()
 
 
 def _simulated(motion: Motion, style: Style):

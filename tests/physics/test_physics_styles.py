@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from bake_mirror import mirrored_motion
 
-from dancetutor_cli.bake import Report, bake, report
+from dancetutor_cli.bake import MotionReport, bake, report
 from dancetutor_cli.bake.styled import styled
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.physics.style import style_names
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -27,7 +27,7 @@ def danced() -> dict[str, Motion]:
 
 
 @pytest.fixture(scope="module")
-def reports(danced: dict[str, Motion]) -> dict[str, Report]:
+def reports(danced: dict[str, Motion]) -> dict[str, MotionReport]:
     return {name: report(motion) for name, motion in danced.items()}
 
 
@@ -45,7 +45,7 @@ def test_any_two_styles_are_apart(danced: dict[str, Motion]) -> None:
 
 
 @pytest.mark.parametrize("name", style_names())
-def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str, Report], name: str) -> None:
+def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str, MotionReport], name: str) -> None:
     figures = ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits")
     overlaps = ("limb in torso", "foot in foot", "leg in leg", "arm in arm", "arm in leg", "hair in back")
     for figure in (*figures, *overlaps):
@@ -53,7 +53,7 @@ def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str
 
 
 @pytest.mark.parametrize("name", style_names())
-def test_she_neither_falls_nor_jerks_nor_floats_in_any_style(reports: dict[str, Report], name: str) -> None:
+def test_she_neither_falls_nor_jerks_nor_floats_in_any_style(reports: dict[str, MotionReport], name: str) -> None:
     jerks = tuple(f"jerk of the {part}" for part in ("root", "left hand", "right hand", "head"))
     for figure in ("balance", "knee angle", "residual force, median", *jerks):
         assert reports[name][figure].met, (name, reports[name][figure])

@@ -13,7 +13,7 @@ from dancetutor_cli import play as solver
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play import Play, Preset, Rows, StepKind
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 KINDS = {".": 0, "1": StepKind.TAP, "L": StepKind.LIFT, "2": StepKind.HOLD, "4": StepKind.ROLL, "r": StepKind.ROLL_TAP}
 OTHER_LIMB = {-2: -2, -1: -1, 0: 1, 1: 0, 2: 3, 3: 2}

@@ -19,7 +19,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import Play, Preset, load_preset, prepare, solve, solve_chart
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 LETTERS = {Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L"}
 LIMBS = {Limb.LEFT_FOOT: "L", Limb.RIGHT_FOOT: "R", Limb.LEFT_HAND: "l", Limb.RIGHT_HAND: "r"}

@@ -18,7 +18,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
@@ -42,7 +42,7 @@ def results() -> list[FileResult]:
     settings, preset = load_configuration("contest").settings, load_preset("itg")
     hostile = Path(__file__).resolve().parent.parent / "data" / "hostile"
     paths = [*sorted(hostile.glob("*.s*")), Path("charts/two_left_feet/two_left_feet.sm")]
-    return [*(analyze_file(Task(path, PresetChoice(preset), Selection(), settings)) for path in paths), ODD_FILE]
+    return [*(analyze_file(AnalyzeTask(path, PresetChoice(preset), Selection(), settings)) for path in paths), ODD_FILE]
 
 
 def text_of(report_class: type[Any], results: list[FileResult]) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.jobs.analyze import Task, analyze_file
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.presets import PresetChoice
@@ -68,7 +68,7 @@ def log_of(*paths: Path) -> Any:
     report = SarifReport(stream)
     settings, preset = load_configuration("contest").settings, load_preset("itg")
     for path in paths:
-        report.add(analyze_file(Task(path, PresetChoice(preset), Selection(), settings)))
+        report.add(analyze_file(AnalyzeTask(path, PresetChoice(preset), Selection(), settings)))
     report.end(tally)
     return json.loads(stream.getvalue())
 

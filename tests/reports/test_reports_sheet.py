@@ -22,7 +22,7 @@ from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
 from dancetutor_cli.reports.sheet.places import lay_out
-from dancetutor_cli.reports.sheet.style import sheet_style
+from dancetutor_cli.reports.sheet.sheet_style import sheet_style
 
 SVG = "{http://www.w3.org/2000/svg}"
 ROWS = ["1000", "0100", "0001", "0010", "2000", "00M0", "3000", "0F00"]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.capsules import capsule_figures
 from dancetutor_cli.bake.quality.contact import contact_figures
 from dancetutor_cli.bake.quality.dynamics import dynamics_figures
-from dancetutor_cli.bake.quality.figures import Figure, Report
+from dancetutor_cli.bake.quality.figures import Figure, MotionReport
 from dancetutor_cli.bake.quality.flight import flight_figures
 from dancetutor_cli.bake.quality.grips_kept import bar_figures
 from dancetutor_cli.bake.quality.ground import ground_figures
@@ -23,14 +23,14 @@ from dancetutor_cli.bake.quality.shape import shape_figures
 from dancetutor_cli.bake.quality.smoothness import jerk, smoothness_figures
 from dancetutor_cli.bake.quality.zero_moment import balance_figures
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 
 SHORTEST = 0.05  # seconds; of less there are no accelerations to measure
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
-__all__ = ["Figure", "Report", "report"]
+__all__ = ["Figure", "MotionReport", "report"]
 
 
-def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
+def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> MotionReport:
     """Measure a motion.
 
     Parameters
@@ -64,7 +64,9 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> Report:
         *limbs,
         *posture_figures(body, motion.skeleton, motion.contacts),
     )
-    return Report(figures, errors, (*notes, *jump_notes, *shape_notes, *limb_notes), _curves(motion, body, errors))
+    return MotionReport(
+        figures, errors, (*notes, *jump_notes, *shape_notes, *limb_notes), _curves(motion, body, errors)
+    )
 
 
 def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str, Curve]:

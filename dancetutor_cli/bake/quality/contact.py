@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.figures import Figure
-from dancetutor_cli.motion.model import Contact, Motion
+from dancetutor_cli.motion.baked import Contact, Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
-from dancetutor_cli.play.model import Limb, Part
+from dancetutor_cli.play.played import Limb, Part
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import SOLE_NAMES, BodyPoint, palm_points, place, sole_points
 

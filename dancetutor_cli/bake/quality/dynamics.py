@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import GRAVITY, GROUND, Body
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.smoothing import low_pass
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import mass_points

@@ -9,7 +9,7 @@ from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import Body, body_of
 from dancetutor_cli.bake.quality.shape import PAST
 from dancetutor_cli.bake.quality.smoothness import smoothness_figures
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.plants import PIVOT, Plants
 from dancetutor_cli.physics.ragdoll import bend_and_twist, bones_of
 from dancetutor_cli.rig.kinematics import world_transforms

@@ -34,7 +34,7 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class MotionReport:
     """All figures of a motion.
 
     contact_errors : (c,) milliseconds, late positive, nan for a miss

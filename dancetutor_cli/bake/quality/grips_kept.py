@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dancetutor_cli.bake.quality.figures import Figure
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.soles import palm_points, points_in_world
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import GROUND, Body, intervals, over_ground
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.kinematics import world_transforms

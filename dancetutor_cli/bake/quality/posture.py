@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import Body, intervals
 from dancetutor_cli.bake.quality.smoothness import knee_angles
-from dancetutor_cli.motion.model import Contact
-from dancetutor_cli.play.model import StepKind
+from dancetutor_cli.motion.baked import Contact
+from dancetutor_cli.play.played import StepKind
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]

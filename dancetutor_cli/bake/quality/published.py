@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import Body
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import world_transforms
 

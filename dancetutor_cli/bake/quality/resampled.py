@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Ground, Motion
+from dancetutor_cli.motion.baked import Ground, Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass

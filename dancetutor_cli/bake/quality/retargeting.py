@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from dancetutor_cli.bake.quality.figures import Figure, Report
+from dancetutor_cli.bake.quality.figures import Figure, MotionReport
 from dancetutor_cli.physics.distances import DEVIATION, LARGEST, MEAN, Distances
 from dancetutor_cli.physics.style import NEUTRAL
 
 
-def with_distances(report: Report, distances: Distances | None, style: str | None) -> Report:
+def with_distances(report: MotionReport, distances: Distances | None, style: str | None) -> MotionReport:
     """The report with a ragdoll's distances; without one it stays as it is. Only `neutral` has goals: others differ."""
     if distances is None:
         return report

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import Body
-from dancetutor_cli.motion.model import Contact
+from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.numerics.smoothing import low_pass
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]

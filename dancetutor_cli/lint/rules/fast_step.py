@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.lint.feet import SLIP
 from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.foot_questions import SLIP
 from dancetutor_cli.lint.other_foot import standing
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.feet import SLIP
+from dancetutor_cli.lint.foot_questions import SLIP
 from dancetutor_cli.lint.rule import MoveRule
 
 if TYPE_CHECKING:

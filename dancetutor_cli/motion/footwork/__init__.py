@@ -15,7 +15,7 @@ from dancetutor_cli.motion.footwork.planner import Planner
 if TYPE_CHECKING:
     from dancetutor_cli.motion.context import Context
     from dancetutor_cli.motion.plan import Plan
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
 
 __all__ = ["plan_footwork"]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import FootState
-from dancetutor_cli.play.model import Part
+from dancetutor_cli.play.played import Part
 
 LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
 NEIGHBOURS = 0.45  # metres between panels that one foot can press together

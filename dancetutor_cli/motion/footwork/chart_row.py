@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.swing.pace import reduction
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 Array = NDArray[np.float64]
 

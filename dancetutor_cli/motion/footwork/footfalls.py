@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Ground
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Walk
 from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
-from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.plan import FootTrack, Route, Turn
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Ground
 from dancetutor_cli.motion.footwork.footing import Footing, FootState
-from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, CROSSED, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
-from dancetutor_cli.play.model import Part
+from dancetutor_cli.play.played import Part
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, SHOE_OUTLINE
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 FORGOTTEN = 1.0  # seconds after which a hold that has ended is of no account
 

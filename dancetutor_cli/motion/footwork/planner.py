@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Move, Swing
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
@@ -20,9 +21,8 @@ from dancetutor_cli.motion.footwork.pressing import press
 from dancetutor_cli.motion.footwork.sidesteps import SideSteps
 from dancetutor_cli.motion.footwork.steps import step
 from dancetutor_cli.motion.footwork.turning import Facing, leading_foot, turn_start
-from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.plan import Plan, Press, Turn
-from dancetutor_cli.play.model import Limb, Play, StepKind
+from dancetutor_cli.play.played import Limb, Play, StepKind
 
 Array = NDArray[np.float64]
 MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines

@@ -22,7 +22,7 @@ from dancetutor_cli.motion.footwork.walks import places_along, walk_there
 from dancetutor_cli.motion.plan import Press, Turn
 from dancetutor_cli.motion.swing.pace import reduction
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
-from dancetutor_cli.play.model import Play
+from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
 SPREADS = np.arange(0.34, 0.67, 0.04)  # metres between the feet as she steps aside, smallest first

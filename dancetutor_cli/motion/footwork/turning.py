@@ -11,7 +11,7 @@ from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.numerics.ease import STEEPEST
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 Array = NDArray[np.float64]
 AHEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Ground
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Hover, Swing
 from dancetutor_cli.motion.footwork.footfalls import Stand, Trip, WalkSteps, footsteps, stand_at, standing
-from dancetutor_cli.motion.model import Ground
 from dancetutor_cli.motion.plan import FootTrack, Plan
-from dancetutor_cli.play.model import StepKind
+from dancetutor_cli.play.played import StepKind
 
 Array = NDArray[np.float64]
 ARRIVED = 0.04  # seconds at least that a foot stands after a walk before it leaves for the first step

@@ -9,15 +9,15 @@ from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
-from dancetutor_cli.motion.ik.kernels import ArmGoal
+from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import ArmSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.crouch import jump_swing, tempo_factor
+from dancetutor_cli.motion.trajectory.posture import Trajectory
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path, smooth_path

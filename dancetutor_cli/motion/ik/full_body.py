@@ -13,7 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.ik.kernels import ARM, ArmGoal, ArmTargets, LegTargets, Trunk, one_arm, rig_of, solve_frames
+from dancetutor_cli.motion.ik.ik_kernels import (
+    ARM,
+    ArmGoal,
+    ArmTargets,
+    LegTargets,
+    Trunk,
+    one_arm,
+    rig_of,
+    solve_frames,
+)
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Bar
+from dancetutor_cli.motion.baked import Bar
 from dancetutor_cli.motion.settings import BarSettings
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.quaternion import UP

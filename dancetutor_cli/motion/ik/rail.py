@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.baked import Grip
 from dancetutor_cli.motion.bar import grip_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
-from dancetutor_cli.motion.model import Grip
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.quaternion import UP

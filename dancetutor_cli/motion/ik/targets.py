@@ -16,8 +16,8 @@ from dancetutor_cli.motion.ik.knees import Hung, knee_poles, knees_apart
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet
-from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.legs import ankle_of
+from dancetutor_cli.motion.trajectory.posture import Trajectory
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.dimensions import half_hips

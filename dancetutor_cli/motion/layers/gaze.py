@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import Poses
-from dancetutor_cli.motion.trajectory.body import Trajectory
 from dancetutor_cli.motion.trajectory.facing import screen_yaw
+from dancetutor_cli.motion.trajectory.posture import Trajectory
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.rig import quaternion as quat

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.model import Bar, Grip
+from dancetutor_cli.motion.baked import Bar, Grip
 from dancetutor_cli.motion.settings import BarSettings
 from dancetutor_cli.numerics.ease import smooth
 

@@ -4,7 +4,7 @@ import { lastUpTo } from "./maths.js";
 
 export const KIND = { TAP: 1, HOLD: 2, ROLL: 3, MINE: 4, LIFT: 5, FAKE: 6 };
 const STEPS = [KIND.TAP, KIND.HOLD, KIND.ROLL, KIND.LIFT];
-const ROLL_TAP = 5; // play.model.StepKind
+const ROLL_TAP = 5; // play.played.StepKind
 const TICKS = 48;
 /** Moves that a learner has to know: rows with one of them are "tricky". */
 const TRICKY = ["crossover-half", "crossover-full", "spin", "doublestep", "jump-footswitch", "footswitch-up",

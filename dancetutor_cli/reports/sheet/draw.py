@@ -11,9 +11,9 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play.model import Part
-from dancetutor_cli.reports.sheet.places import Layout
-from dancetutor_cli.reports.sheet.style import LETTERS, Style
+from dancetutor_cli.play.played import Part
+from dancetutor_cli.reports.sheet.places import SheetLayout
+from dancetutor_cli.reports.sheet.sheet_style import LETTERS, SheetStyle
 from dancetutor_cli.reports.sheet.svg import number, tag, text, title
 from dancetutor_cli.reports.text_report import clock
 
@@ -29,17 +29,17 @@ class Sheet:
 
     subject: ChartSubject
     findings: Sequence[Finding]
-    layout: Layout
+    layout: SheetLayout
     limbs: Mapping[tuple[int, int], tuple[int, int]]
     arrows: Sequence[float | None]
 
     @property
-    def style(self) -> Style:
+    def style(self) -> SheetStyle:
         """Sizes and colours."""
         return self.layout.style
 
 
-def definitions(style: Style) -> str:
+def definitions(style: SheetStyle) -> str:
     """Shapes used again and again: the arrow (pointing up) and the middle panel, one unit high."""
     arrow = "M0,-.5 L.48,-.02 L.34,.14 L.13,-.06 L.13,.5 L-.13,.5 L-.13,-.06 L-.34,.14 L-.48,-.02 Z"
     shapes = f'<path id="arrow" d="{arrow}"/><rect id="middle" x="-.4" y="-.4" width=".8" height=".8" rx=".15"/>'
@@ -133,7 +133,7 @@ def _arrow(sheet: Sheet, lane: int, at: tuple[float, float], colour: str, opacit
     )  # fmt: skip
 
 
-def _mine(style: Style, x: float, y: float) -> str:
+def _mine(style: SheetStyle, x: float, y: float) -> str:
     r = style.arrow * 0.36
     cross = (
         f"M{number(x - r / 2)},{number(y - r / 2)} l{number(r)},{number(r)} m0,{number(-r)} l{number(-r)},{number(r)}"
@@ -141,7 +141,7 @@ def _mine(style: Style, x: float, y: float) -> str:
     return tag("circle", cx=x, cy=y, r=r, fill=style.colours["mine"]) + tag("path", d=cross, class_="cross")
 
 
-def mark(style: Style, x: float, y: float, limb: int, part: int) -> str:
+def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
     """L in a disc, R in a square, hands in a lozenge: told apart without colours. Toes in small letters."""
     half, colour = style.mark / 2, style.limbs[limb] if limb >= 0 else style.colours["mine"]
     letter = LETTERS[limb] if limb >= 0 else "?"
@@ -189,7 +189,7 @@ def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
             yield badge(sheet.style, x + corner - 1, y - corner + 3, percent)
 
 
-def badge(style: Style, x: float, y: float, percent: float) -> str:
+def badge(style: SheetStyle, x: float, y: float, percent: float) -> str:
     """A confidence in per cent, white on a plate; x, y : its middle."""
     plate = tag("rect", x=x - 7, y=y - 5, width=14, height=10, rx=3, fill=style.colours["unsure"],
                 stroke=style.colours["paper"], stroke_width=0.8)  # fmt: skip

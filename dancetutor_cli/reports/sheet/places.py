@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.reports.sheet.style import Style
+from dancetutor_cli.reports.sheet.sheet_style import SheetStyle
 
 _COMMON_SHARE = 0.1  # a rhythm is common if at least this share of the distances between rows is as short
 _SHRUNK = 0.9  # a beat may be as much lower than the rhythm needs, so that one more measure fits the page
@@ -21,14 +21,14 @@ _TOP = 18.0  # above the first measure of a column and below its last, for half 
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class SheetLayout:
     """Places in CSS pixels: measures in columns, columns in systems, each system a page when printed.
 
     beat : height of a beat; columns : side by side in a system
     heights : for each system, how many measures its columns have
     """
 
-    style: Style
+    style: SheetStyle
     lanes: int
     measures: int
     beat: float
@@ -90,7 +90,7 @@ class Layout:
         return self.top(measure) + inside / TICKS_PER_BEAT * self.beat
 
 
-def lay_out(ticks: NDArray[np.int64], lanes: int, style: Style, last: int = 0) -> Layout:
+def lay_out(ticks: NDArray[np.int64], lanes: int, style: SheetStyle, last: int = 0) -> SheetLayout:
     """A layout for rows at these ticks: a beat as high as the chart's densest common rhythm needs.
 
     last : tick of the last end of a hold
@@ -105,7 +105,7 @@ def lay_out(ticks: NDArray[np.int64], lanes: int, style: Style, last: int = 0) -
     beat = min(room / tallest / 4, high)  # whole measures fill the page
     first = max(1, int((room - style.heading) // (beat * 4)))
     columns = max(1, int((style.page_width - 2 * _EDGE) // (style.margin + lanes * style.lane + style.gutter)))
-    return Layout(style, lanes, measures, beat, columns, tuple(_heights(measures, columns, first, tallest)))
+    return SheetLayout(style, lanes, measures, beat, columns, tuple(_heights(measures, columns, first, tallest)))
 
 
 def _heights(measures: int, columns: int, first: int, tallest: int) -> Iterator[int]:

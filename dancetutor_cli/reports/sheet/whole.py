@@ -14,7 +14,7 @@ from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.sheet.draw import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
 from dancetutor_cli.reports.sheet.places import lay_out
-from dancetutor_cli.reports.sheet.style import Style, sheet_style
+from dancetutor_cli.reports.sheet.sheet_style import SheetStyle, sheet_style
 from dancetutor_cli.reports.sheet.svg import tag, text, title
 from dancetutor_cli.reports.text_report import clock, moment
 
@@ -154,7 +154,7 @@ def _list(findings: Sequence[Finding]) -> str:
     return f'<h2>Findings</h2>\n<div class="{layout}"><table>\n{rows}</table></div>\n'
 
 
-def _svg(style: Style, inside: str, height: float, *, outer: bool = False) -> str:
+def _svg(style: SheetStyle, inside: str, height: float, *, outer: bool = False) -> str:
     width = style.page_width
     colours = style.colours
     css = (
@@ -175,7 +175,7 @@ def _svg(style: Style, inside: str, height: float, *, outer: bool = False) -> st
     return tag("svg", body, xmlns="http://www.w3.org/2000/svg", viewBox=box, width=width, height=height)
 
 
-def _page_css(style: Style) -> str:
+def _page_css(style: SheetStyle) -> str:
     colours = style.colours
     severities = "".join(f"tr.{name} td:first-child {{ color: {colours[name]}; }}\n"
                          for name in ("error", "warning", "info"))  # fmt: skip

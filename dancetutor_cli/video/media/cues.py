@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.media.subtitles import HOLD
 from dancetutor_cli.video.notes import Cue
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
 
 _CROSSED = ("crossover-half", "crossover-full")
 _WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, which they come with

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import Pad
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.ahead import Ahead
     from dancetutor_cli.video.scroll import ScrollSegments
 
@@ -27,7 +27,7 @@ JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or sec
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
 KINDS = 2  # different moves in one call at most: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
-_WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.model.Limb`
+_WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 _SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin

@@ -165,7 +165,7 @@ class SongShape:
     section: tuple[float, float]
 
 
-class Progress:
+class ProgressStrip:
     """The strip with the density of the whole song, the position, and the time."""
 
     def __init__(self, song: SongShape, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.colours import limb_colours
-from dancetutor_cli.play.model import StepKind
+from dancetutor_cli.play.played import StepKind
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import EPSILON, PanelLights
 from dancetutor_cli.video.overlay import shapes, sprites
 from dancetutor_cli.video.overlay.blit import Sprite, blit
 from dancetutor_cli.video.overlay.text import Typeface
-from dancetutor_cli.video.picture import Foot, Frame
+from dancetutor_cli.video.picture import FootFromAbove, Frame
 
 if TYPE_CHECKING:
-    from dancetutor_cli.play.model import Play
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.picture import PadLike
 
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
@@ -28,10 +28,10 @@ LETTER = 0.46  # height of the letters on the soles of those, in sizes of a pane
 
 
 @dataclass(frozen=True, slots=True)
-class StepRows:
+class DiagramRows:
     """The rows with steps of a play; r rows, c columns.
 
-    second : float64 (r,), of the music; limb : int8 (r, c), `play.model.Limb`, NONE where nothing is stepped
+    second : float64 (r,), of the music; limb : int8 (r, c), `play.played.Limb`, NONE where nothing is stepped
     feet : int16 (r, 2), column that each foot stands on after the row, -1 at home
     """
 
@@ -40,13 +40,13 @@ class StepRows:
     feet: NDArray[np.int16]
 
 
-def step_rows(play: Play) -> StepRows:
+def step_rows(play: Play) -> DiagramRows:
     """The rows with steps that a person sees; the virtual taps of rolls are not among them."""
     shown = play.rows.steps != StepKind.NONE
     shown &= play.rows.steps != StepKind.ROLL_TAP
     keep = shown.any(axis=1)
     limb = np.where(shown, play.limb, np.int8(-1))
-    return StepRows(play.rows.second[keep], limb[keep], play.feet[keep])
+    return DiagramRows(play.rows.second[keep], limb[keep], play.feet[keep])
 
 
 class PadView(NamedTuple):
@@ -139,7 +139,7 @@ class FeetDiagram:
     def __init__(self, pads: PadMap, lights: PanelLights, face: Typeface) -> None:
         self.pads, self.lights, self.face = pads, lights, face
 
-    def draw(self, frame: Frame, second: float, feet: tuple[Foot | None, Foot | None]) -> None:
+    def draw(self, frame: Frame, second: float, feet: tuple[FootFromAbove | None, FootFromAbove | None]) -> None:
         """Draw pad and feet; a lifted foot is larger and lighter."""
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))])
         for limb, foot in enumerate(feet):
@@ -178,7 +178,7 @@ class NextRows:
 
     def __init__(
         self,
-        rows: StepRows,
+        rows: DiagramRows,
         view: PadView,
         box: PixelBox,
         count: int,

@@ -158,7 +158,7 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
 def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> Sprite:
     """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
 
-    limb : value of `play.model.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
+    limb : value of `play.played.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
     """
     p = shapes.Painter(size, size)
     paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour

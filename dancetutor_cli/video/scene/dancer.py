@@ -14,7 +14,7 @@ from dancetutor_cli.character.partner import with_partner
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video.clock import Moment
-from dancetutor_cli.video.picture import Foot, Frame
+from dancetutor_cli.video.picture import FootFromAbove, Frame
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import WHOLE, Region, with_pan_range
 from dancetutor_cli.video.scene.follow import Follow, is_wide
@@ -25,7 +25,7 @@ from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.model import Motion
+    from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.video.choices import Quality, RendererKind
     from dancetutor_cli.video.lights import PanelLights
     from dancetutor_cli.video.picture import PadLike
@@ -112,17 +112,17 @@ class Dancer:
         nobody = np.zeros(self.scene.panels)
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
 
-    def feet(self, joints: NDArray[np.float64]) -> tuple[Foot | None, Foot | None]:
+    def feet(self, joints: NDArray[np.float64]) -> tuple[FootFromAbove | None, FootFromAbove | None]:
         """Both feet from above, in panel widths of the pad."""
         left, right = foot_marks(self.scene, joints)
         return self._foot(left), self._foot(right)
 
-    def _foot(self, mark: FootMark | None) -> Foot | None:
+    def _foot(self, mark: FootMark | None) -> FootFromAbove | None:
         if mark is None:
             return None
         cx, cy = self.scene.pad.centre
         heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
-        return Foot(heel, toe, mark.height)
+        return FootFromAbove(heel, toe, mark.height)
 
     def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
         """World matrices (f, j, 4, 4) of the character's joints at f moments.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 
 if TYPE_CHECKING:
-    from dancetutor_cli.motion.model import Bar
+    from dancetutor_cli.motion.baked import Bar
 
 Array = NDArray[np.float64]
 JOINT = "bar"  # name of the joint that the bar hangs on; it never moves

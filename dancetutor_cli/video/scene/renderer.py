@@ -74,7 +74,7 @@ def chosen(kind: RendererKind) -> RendererKind:
 
 
 def _gpu() -> bool:
-    from dancetutor_cli.video.scene.gl.probe import gpu_device
+    from dancetutor_cli.video.scene.gl.available import gpu_device
 
     return gpu_device() is not None
 

@@ -13,7 +13,7 @@ from dancetutor_cli.motion.footwork.planner import Planner
 from dancetutor_cli.motion.footwork.steps import _lift
 from dancetutor_cli.motion.footwork.turning import Facing, body_yaw
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.play.model import Limb, Play
+from dancetutor_cli.play.played import Limb, Play
 
 L, R = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 STEP = default_settings().step

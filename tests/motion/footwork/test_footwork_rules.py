@@ -20,7 +20,7 @@ from dancetutor_cli.motion.footwork.jumps import jump
 from dancetutor_cli.motion.footwork.mines import avoid_mines
 from dancetutor_cli.motion.footwork.planner import NEWEST, Planner
 from dancetutor_cli.motion.footwork.steps import step
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 
 L, R = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 FOLDER = Path(room.__file__).parent

@@ -9,19 +9,19 @@ import pytest
 from bake_plays import context
 
 from dancetutor_cli.bake.settle import _may_rise
+from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
 from dancetutor_cli.motion.footwork.flights import Flight, flown
 from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, NO_TIME, Footing
 from dancetutor_cli.motion.footwork.turning import AHEAD, turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.knees import knee_poles
-from dancetutor_cli.motion.model import Contact
 from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import FootPath, foot_path
 from dancetutor_cli.motion.swing.pace import swung
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.play.model import Part
+from dancetutor_cli.play.played import Part
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.dimensions import half_hips
 from dancetutor_cli.rig.limits import beyond

@@ -7,11 +7,11 @@ import pytest
 from bake_plays import chart, pad, play
 
 from dancetutor_cli.bake import bake
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.layers.additive import eyelids
-from dancetutor_cli.motion.model import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.play.model import Limb
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING

@@ -15,7 +15,7 @@ from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.film_formats import FORMATS
 from dancetutor_cli.video.overlay import sprites
-from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, NextRows, PadView, StepRows
+from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, NextRows, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.scene.scene import Scene
@@ -42,7 +42,7 @@ def test_vertical_keeps_free_what_short_video_apps_lay_buttons_over(columns: int
 def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
     pad, layout = load_pad(steps), load_layout("practice")
     assert pad is not None and layout.next is not None
-    rows = StepRows(np.zeros(0), np.zeros((0, len(pad)), np.int8), np.zeros((0, 2), np.int16))
+    rows = DiagramRows(np.zeros(0), np.zeros((0, len(pad)), np.int8), np.zeros((0, 2), np.int16))
     box = layout.box("next", layout.size, len(pad))
     small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
     assert len(small.pads) >= 2

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.motion.model import Motion
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig.skeleton import dancer_skeleton

@@ -273,7 +273,7 @@ def test_states_that_do_not_fit_are_usage_errors(cpu, scene):
 def test_choosing_a_renderer_imports_neither_numba_nor_opengl():
     program = (
         "import sys; from dancetutor_cli.video.scene import renderer, scene\n"
-        "from dancetutor_cli.video.scene.gl import probe\n"
+        "from dancetutor_cli.video.scene.gl import available\n"
         "print(sorted({'numba', 'OpenGL', 'pyrender', 'scipy'} & set(sys.modules)))"
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

@@ -17,7 +17,7 @@ from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.video.choices import QUALITIES
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import with_pan_range
-from dancetutor_cli.video.scene.gl import probe
+from dancetutor_cli.video.scene.gl import available
 from dancetutor_cli.video.scene.scene import Scene
 
 SIZE = (640, 360)
@@ -44,7 +44,7 @@ def similarity(first, second):
 @pytest.fixture
 def needs_gl():
     try:
-        probe.require_gl()
+        available.require_gl()
     except UnavailableError as error:
         pytest.skip(str(error))
 
@@ -120,22 +120,22 @@ def test_many_triangles_on_one_pixel_of_no_dancer(needs_gl):
 
 
 def test_without_libraries_the_error_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(probe, "_library", lambda name: None)
-    probe.gpu_device.cache_clear()
+    monkeypatch.setattr(available, "_library", lambda name: None)
+    available.gpu_device.cache_clear()
     with pytest.raises(UnavailableError) as caught:
         renderer.create(rs.scene(), SIZE, "good", "gl")
     assert str(caught.value) == (
         "No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1. Or use --renderer cpu."
     )
     assert renderer.create(rs.scene(), SIZE, "good", "auto").name == "cpu"
-    probe.gpu_device.cache_clear()
+    available.gpu_device.cache_clear()
 
 
 def test_auto_takes_the_gpu_only_where_there_is_one(monkeypatch):
-    monkeypatch.setattr(probe, "gpu_device", lambda: None)
+    monkeypatch.setattr(available, "gpu_device", lambda: None)
     assert renderer.create(rs.scene(), SIZE, "good", "auto").name == "cpu"
     asked = []
-    monkeypatch.setattr(probe, "gpu_device", lambda: 0)
+    monkeypatch.setattr(available, "gpu_device", lambda: 0)
     monkeypatch.setattr(renderer, "_create_gl", lambda *arguments: asked.append(arguments))
     renderer.create(rs.scene(), SIZE, "good", "auto")
     assert len(asked) == 1

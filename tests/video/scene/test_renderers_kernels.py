@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.video.scene.cpu.ground import blur
+from dancetutor_cli.video.scene.cpu.floor import blur
 from dancetutor_cli.video.scene.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, Bound, clear, fill, skin
 from dancetutor_cli.video.scene.cpu.stage_colours import arrow_distance
 from dancetutor_cli.video.scene.cpu.standing import quantise

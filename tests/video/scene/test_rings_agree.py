@@ -7,7 +7,7 @@ import re
 import pytest
 
 from dancetutor_cli.resources import PACKAGE
-from dancetutor_cli.video.scene.cpu.ground import LIT, RING
+from dancetutor_cli.video.scene.cpu.floor import LIT, RING
 from dancetutor_cli.video.scene.prepare import PLANTED, _strength
 
 

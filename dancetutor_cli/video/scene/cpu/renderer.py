@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
-from dancetutor_cli.video.scene.cpu.ground import Live, Shadow, blur, draw_ground, occupied
+from dancetutor_cli.video.scene.cpu.floor import Live, Shadow, blur, draw_ground, occupied
 from dancetutor_cli.video.scene.cpu.raster import (
     BACK,
     FRONT,

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.video.scene.gl.probe import MISSING, require_gl
+from dancetutor_cli.video.scene.gl.available import MISSING, require_gl
 
 
 def load_pyrender() -> Any:

@@ -18,10 +18,10 @@ from dancetutor_cli.errors import UnavailableError, UsageError
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import Camera
 from dancetutor_cli.video.scene.geometry import pack
+from dancetutor_cli.video.scene.gl.available import gpu_device
 from dancetutor_cli.video.scene.gl.framebuffers import Target, pyramid, refill, texture
 from dancetutor_cli.video.scene.gl.matrices import bounds_of, camera_matrix, light_matrix, reach, within
 from dancetutor_cli.video.scene.gl.primitive import SkinnedPrimitive
-from dancetutor_cli.video.scene.gl.probe import gpu_device
 from dancetutor_cli.video.scene.gl.programs import Program, ProgramCache
 from dancetutor_cli.video.scene.gl.standing import Standing
 from dancetutor_cli.video.scene.prepare import (

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.engine import Engine, engine_for
-from dancetutor_cli.play.model import Limb, Play, Rows, StepKind
+from dancetutor_cli.play.played import Limb, Play, Rows, StepKind
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.store import EVENTS
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES

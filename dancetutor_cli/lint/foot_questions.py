@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.play.model import Limb, Play, StepKind
+from dancetutor_cli.play.played import Limb, Play, StepKind
 
 _EPSILON = 1e-6
 _BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
@@ -26,21 +26,21 @@ _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.
 
 
 @dataclass(frozen=True, slots=True)
-class Presses:
+class PlayedSteps:
     """Steps that are played, in order of rows and columns; arrays of one length. No virtual taps of rolls."""
 
     row: NDArray[np.int64]
     column: NDArray[np.int64]
     limb: NDArray[np.int8]
 
-    def of(self, limb: int) -> Presses:
+    def of(self, limb: int) -> PlayedSteps:
         """Those of one limb; of a bracket only its first panel."""
         mine = np.flatnonzero(self.limb == limb)
         row = self.row[mine]
         if (row[1:] == row[:-1]).any():
             mine = mine[np.diff(row, prepend=-1) > 0]
             row = self.row[mine]
-        return Presses(row, self.column[mine], self.limb[mine])
+        return PlayedSteps(row, self.column[mine], self.limb[mine])
 
 
 class Feet:
@@ -55,23 +55,23 @@ class Feet:
         self._timing = timing
 
     @cached_property
-    def _pressed(self) -> Presses:
+    def _pressed(self) -> PlayedSteps:
         """All presses, a roll's virtual taps too."""
         limbs = self._play.limb.ravel()
         cell = np.flatnonzero(limbs >= 0)
         row, column = np.divmod(cell, self._play.limb.shape[1])
-        return Presses(row, column, limbs[cell])
+        return PlayedSteps(row, column, limbs[cell])
 
     @cached_property
-    def presses(self) -> Presses:
+    def presses(self) -> PlayedSteps:
         """All presses of the play."""
         p, steps = self._pressed, self._play.rows.steps.ravel()
         kind = steps[p.row * self._play.limb.shape[1] + p.column]
         real = (kind != _NONE) & (kind != _ROLL_TAP)
-        return p if real.all() else Presses(p.row[real], p.column[real], p.limb[real])
+        return p if real.all() else PlayedSteps(p.row[real], p.column[real], p.limb[real])
 
     @cached_property
-    def _of_feet(self) -> tuple[Presses, Presses]:
+    def _of_feet(self) -> tuple[PlayedSteps, PlayedSteps]:
         return self.presses.of(0), self.presses.of(1)
 
     @cached_property

@@ -17,11 +17,11 @@ LETTERS = ("L", "R", "<", ">")  # by limb
 
 
 @dataclass(frozen=True, slots=True)
-class Style:
+class SheetStyle:
     """Sizes in CSS pixels, colours as "#rrggbb".
 
     unsure : per cent; rows whose feet are less sure are marked
-    beat : least and greatest height of a beat; limbs : by `play.model.Limb`
+    beat : least and greatest height of a beat; limbs : by `play.played.Limb`
     quantisation : colour of a note by the coarsest grid it stands on (4 for 4ths ...)
     """
 
@@ -49,16 +49,16 @@ class Style:
 
 
 @cache
-def sheet_style() -> Style:
+def sheet_style() -> SheetStyle:
     """The style of the project's configuration; FileError names what is missing or unknown."""
     path = config_path("sheet.yaml")
     data: dict[str, Any] = read(path).data
     notes = read(config_path("highway.yaml")).data
     data["quantisation"] = {int(grid): str(colour) for grid, colour in notes["quantisation"].items()}
     data["limbs"] = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
-    names = [field.name for field in fields(Style)]
+    names = [field.name for field in fields(SheetStyle)]
     if sorted(data) != sorted(names):
         own = [name for name in names if name not in ("quantisation", "limbs")]
         raise FileError(path, f"must have exactly these keys: {', '.join(own)}")
     data["beat"] = (float(data["beat"][0]), float(data["beat"][1]))
-    return Style(**data)
+    return SheetStyle(**data)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.model import Limb, Rows
+from dancetutor_cli.play.played import Limb, Rows
 from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 
