@@ -289,6 +289,18 @@ class AsideSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class HomeSettings:
+    """When she steps back to where she rests, and how."""
+
+    after: float
+    pause: float
+    step: float
+    near: float
+    facing: float
+    turn: float
+
+
+@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 

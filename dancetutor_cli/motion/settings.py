@@ -16,6 +16,7 @@ from dancetutor_cli.motion.sections import (
     BodySettings,
     HairSettings,
     HandSettings,
+    HomeSettings,
     InertiaSettings,
     JumpSettings,
     KneeSettings,
@@ -42,6 +43,7 @@ __all__ = [
     "BodySettings",
     "HairSettings",
     "HandSettings",
+    "HomeSettings",
     "InertiaSettings",
     "JumpSettings",
     "KneeSettings",
@@ -76,6 +78,7 @@ class MotionSettings:
     bar: BarSettings
     walk: WalkSettings
     aside: AsideSettings
+    home: HomeSettings
     sampling: SamplingSettings
 
 

@@ -124,6 +124,7 @@ class Footing:
 
     lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
     last row, radians
+    resting : feet that stand where she went home, until each steps again
     mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
     """
 
@@ -133,6 +134,7 @@ class Footing:
     normal: float = 0.0
     aim: float = 0.0
     faced: float = 0.0
+    resting: tuple[bool, bool] = (False, False)
     mined: Array = field(default_factory=lambda: np.empty((0, 2)))
     take_offs: tuple[TakeOff, TakeOff] | None = None
 

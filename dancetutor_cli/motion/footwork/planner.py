@@ -15,6 +15,7 @@ from dancetutor_cli.motion.foot_moves import Move, Swing
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
 from dancetutor_cli.motion.footwork.footing import SHORTEST, Footing, Proposal, pair
 from dancetutor_cli.motion.footwork.holding import hold
+from dancetutor_cli.motion.footwork.homing import HomeSteps, faces_as_at_home
 from dancetutor_cli.motion.footwork.jumps import jump
 from dancetutor_cli.motion.footwork.mines import avoid_mines
 from dancetutor_cli.motion.footwork.pressing import press
@@ -37,6 +38,7 @@ class Planner:
         self.footing = Footing.at_home(context, leading_foot(play, context.panels))
         self.begin = self.footing
         self.asides = SideSteps(play, context, self.footing.lead)
+        self.homes = HomeSteps(play, context, self.footing.lead)
         self.facing = Facing(play, self.settings)
         self.previous: float | None = None
         self.moves: tuple[list[Move], list[Move]] = ([], [])  # that no rule changes any more
@@ -78,14 +80,19 @@ class Planner:
         return max([time + MINES_AHEAD, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
     def _feet(self, row: Row) -> None:
-        """One foot steps or both jump, and the body turns with them; before that she may step aside."""
+        """One foot steps or both jump, and the body turns with them; before that she may step aside, or home."""
         time, longest = row.time, self.settings.step.longest
-        aside = None if self.previous is None else self.asides.before(row, self.presses, self.footing)
+        aside = None
+        if self.previous is not None:
+            asked = row, self.presses, self.footing
+            aside = self.asides.before(*asked) or self.homes.before(*asked)
         if aside is not None:
             self._apply(aside)
             self.facing.begin_anew()
             self.previous = max(foot.landed for foot in self.footing.feet)
-        turned = self.facing.turn(row, self.footing)
+        turned = 0.0 if faces_as_at_home(row, self.footing) else self.facing.turn(row, self.footing)
+        left, right = self.footing.resting
+        self.footing = replace(self.footing, resting=(left and 0 not in row.feet, right and 1 not in row.feet))
         # added to what it was, and taken off again: what is left is exactly how far it has turned
         before = self.footing.normal
         aim = float(np.radians(self.facing.aim(row, before + turned, self.footing.lead)))

@@ -59,7 +59,7 @@ class SideSteps:
         whole = 360.0 * round(footing.normal / 360.0)
         if len(self.places) == 1 or row.hands or abs(footing.normal - whole) > settings.aside.facing:
             return None
-        begin = _begin(footing)
+        begin = stand_of(footing)
         following = self._next(row)
         if self._far(begin.balls, following) <= settings.aside.far:
             return None
@@ -68,14 +68,14 @@ class SideSteps:
         busy = (self.mines > start - MINE) & (self.mines < np.nanmax(following.times) + MINE)
         if ready - start < 2 * settings.aside.quick or busy.any():
             return None
-        if _walks(begin, following, (free, time), footing):
+        if walks_there(begin, following.places, (free, time), footing):
             return None
         found = self._goal(begin, following, float(np.radians(whole)), ready - start)
         if found is None:
             return None
         falls, duration = found
         for k, (side, fall) in enumerate(falls):
-            footing = _stepped(footing, footing.feet[side], fall, start + k * duration, duration)
+            footing = stepped(footing, footing.feet[side], fall, start + k * duration, duration)
         turn = Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
         return Proposal(replace(footing, normal=whole, aim=turn.yaw, faced=turn.yaw), start, turn)
 
@@ -136,21 +136,22 @@ class SideSteps:
         return True
 
 
-def _begin(footing: Footing) -> Stand:
+def stand_of(footing: Footing) -> Stand:
+    """How both feet stand."""
     yaws = np.array([footing.toes(foot) for foot in footing.feet])
     return Stand(np.array([foot.ball for foot in footing.feet]), yaws, footing.turned_to())
 
 
-def _walks(begin: Stand, following: _Next, wait: tuple[float, float], footing: Footing) -> bool:
+def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing: Footing) -> bool:
     """Whether there is time to walk, and reason to; wait : from when feet are free to the row, seconds."""
-    if np.isnan(following.places).any():
+    if np.isnan(targets).any():
         return False
     step = footing.settings.step
     ready = wait[1] - step.longest * (1.0 - step.double_support)
-    return walk_there(begin, following.places, (wait[0], ready), "flat", footing.lead, footing.context) is not None
+    return walk_there(begin, targets, (wait[0], ready), "flat", footing.lead, footing.context) is not None
 
 
-def _stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
+def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
     """The footing in which a foot has stepped aside."""
     step = footing.settings.step
     cut = float(reduction(duration, step.fast, step.longest))

@@ -1,0 +1,123 @@
+"""Home: in a long wait she steps back to where one rests: on the pad's middle, feet at hip width, facing the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.footwork.chart_row import Row
+from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
+from dancetutor_cli.motion.footwork.foothold import Pose, legs_crossed
+from dancetutor_cli.motion.footwork.footing import Footing, Proposal
+from dancetutor_cli.motion.footwork.sidesteps import stand_of, stepped, walks_there
+from dancetutor_cli.motion.footwork.walks import places_along
+from dancetutor_cli.motion.plan import Press, Turn
+from dancetutor_cli.motion.swing.clearance import Way, detour
+from dancetutor_cli.play.played import Play
+
+Array = NDArray[np.float64]
+Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
+MOST = 6  # steps in which she turns home
+
+
+class HomeSteps:
+    """Proposes the way home before a row that comes after a long wait."""
+
+    def __init__(self, play: Play, context: Context, lead: int) -> None:
+        self.play, self.panels, self.settings = play, context.panels, context.settings
+        self.places = places_along(context.squares, lead)
+        self.mines = play.rows.second[play.rows.mines.any(axis=1)]
+        self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
+
+    def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
+        """Both feet step home in the wait before a row, the body turns with them; or None: she stays as she stands.
+
+        At the bar she stays, and so she does for a walk to the other pad. presses : of palms, so far
+        """
+        settings, home = self.settings, self.settings.home
+        if row.context.bar is not None or row.hands:
+            return None
+        before = self.mines[: int(np.searchsorted(self.mines, row.time))]
+        free = max(
+            *(foot.free for foot in footing.feet),
+            *(p.end + settings.hands.reach_down for p in presses[-2:]),
+            before[-1] if len(before) else -np.inf,
+        )
+        if row.time - free < home.after or self._walks(row, free, footing):
+            return None
+        begin = stand_of(footing)
+        whole = 360.0 * round(footing.normal / 360.0)
+        goal = stand_at(np.array([self._place(begin), 0.0]), float(np.radians(whole)), settings)
+        falls = self._falls(begin, goal, footing.lead)
+        start = free + home.pause
+        if not falls or start + len(falls) * home.step > row.time - settings.walk.settle:
+            return None
+        for k, (side, fall) in enumerate(falls):
+            footing = stepped(footing, footing.feet[side], fall, start + k * home.step, home.step)
+        turn = Turn(start, start + len(falls) * home.step, goal.heading)
+        footing = replace(footing, normal=whole, aim=goal.heading, faced=goal.heading, resting=(True, True))
+        return Proposal(footing, start, turn)
+
+    def _walks(self, row: Row, free: float, footing: Footing) -> bool:
+        """Whether she will walk to the other pad in this wait."""
+        if len(self.places) == 1:
+            return False
+        places = np.full((2, 2), np.nan)
+        for side in (0, 1):
+            k = int(np.searchsorted(self.steps[side], row.index))
+            if k < len(self.steps[side]):
+                places[side] = self.panels[self.play.limb[self.steps[side][k]] == side].mean(axis=0)
+        return walks_there(stand_of(footing), places, (free, row.time), footing)
+
+    def _place(self, begin: Stand) -> float:
+        """Where along x she waits: the nearest of the places for that."""
+        return float(self.places[np.argmin(np.round(np.abs(self.places - begin.middle[0]), 6))])
+
+    def _falls(self, begin: Stand, goal: Stand, lead: int) -> Falls:
+        """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do."""
+        home = self.settings.home
+        off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
+        if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
+            return []
+        for count in range(2, MOST + 1):
+            ways = [self._way(begin, goal, count, first) for first in (lead, 1 - lead)]
+            free = [way for way in ways if way is not None]
+            if free:
+                return min(free, key=lambda way: way[0])[1]
+        return []
+
+    def _way(self, begin: Stand, goal: Stand, count: int, first: int) -> tuple[tuple[float, float], Falls] | None:
+        """So many steps home, a foot first, and their price: how far legs cross, and how near shoes come."""
+        apart, most = self.settings.step.apart, np.radians(self.settings.home.turn)
+        places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+        falls, crossed, least = [], 0.0, np.inf
+        for k in range(count):
+            side, share = (first + k) % 2, min((k + 1) / (count - 1), 1.0)
+            heading = begin.heading + share * (goal.heading - begin.heading)
+            there = stand_at(begin.middle + share * (goal.middle - begin.middle), heading, self.settings)
+            fall = Footfall(there.balls[side], float(there.yaws[side]), heading)
+            (ball, yaw), other, outward = places[side], places[1 - side], 1.0 - 2.0 * side
+            if abs(fall.yaw - yaw) > most:
+                return None
+            bulge = detour(Way(ball, yaw, fall.ball, fall.yaw), *other, apart, outward)
+            least = min(least, room(places[side], fall, bulge, other))
+            toes = np.array([fall.yaw])
+            crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading)[0])
+            places[side] = (fall.ball, fall.yaw)
+            falls.append((side, fall))
+        return ((round(crossed, 6), -round(least, 6)), falls) if least >= apart - 1e-9 else None
+
+
+def faces_as_at_home(row: Row, footing: Footing) -> bool:
+    """Whether a foot steps on its own side of the one that still rests: the play, which has that one on a panel, would
+    turn her for nothing."""
+    if len(row.feet) != 1 or not footing.resting[1 - row.feet[0]]:
+        return False
+    side = row.feet[0]
+    foot, other = footing.feet[side], footing.feet[1 - side]
+    across = row.context.panels[row.pressed[side]].mean(axis=0)[0] - other.ball[0]
+    return bool(foot.outward * across >= 0.0)
