@@ -14,9 +14,11 @@ from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.make_way import Stay, stay
 from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
+from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, FeetDiagram, NextRows, PadMap, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.scene.dancer import Dancer
 
 BACKGROUND = (11, 12, 22)
-FACING = "she faces you"  # said where the arrows are turned with her
+FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
 BLOCK = 64  # frames whose joints are made at once
 
@@ -90,6 +92,7 @@ class Film:
         self.columns = len(plan.directions)
         self.scale = self.layout.scale(self.size)
         self.face = Typeface(plan.look.font)
+        self._stays: dict[tuple[int, int], Stay] = {}
         self._block, self._block_joints = -1, np.zeros((0, 0, 4, 4))
         self.style = highway_style()
         self.lights = PanelLights(plan.presses, self.columns, self.style.panel_seconds)
@@ -142,7 +145,11 @@ class Film:
             return None
         limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
         return captions.Legend(
-            limbs, self._box("legend"), self.scale * part.text, self.face, FACING if self.turned else ""
+            limbs,
+            self._box("legend"),
+            self.scale * part.text,
+            self.face,
+            FACING if self.turned and not self.layout.highway else "",
         )
 
     @cached_property
@@ -235,12 +242,28 @@ class Film:
             small.draw(picture, second)
         for words in (self._header, self._legend):
             if words:
-                words.draw(picture)
+                words.draw(picture, self._stay(words, run).opacity(second))
         for moving in (self._progress, self._calls):
             if moving:
                 moving.draw(picture, second)
-        self._runs.draw(picture, second, run)
+        self._runs.draw(picture, second, run, self._stay(self._runs, run).opacity(second))
         return picture
+
+    def _stay(self, words: captions.Header | captions.Legend | Runs, run: int) -> Stay:
+        """When these words are in the picture: not while she walks through them."""
+        if (key := (id(words), run)) not in self._stays:
+            self._stays[key] = self._passed(words.boxes, run)
+        return self._stays[key]
+
+    def _passed(self, boxes: list[Box], run: int) -> Stay:
+        if not (self.layout.dancer and self.plan.motions and boxes):
+            return Stay()
+        left, top, _, _ = self._box("dancer")
+        there = [(a - left, b - top, c - left, d - top) for a, b, c, d in boxes]
+        one = self.plan.clock.passes[run]
+        return stay(
+            one, self.plan.presses, lambda seconds, step: self._dancer.walks_behind(there, seconds, step, one.rate)
+        )
 
     def _speed(self, number: int) -> float:
         return 1.0 if self.plan.speeds is None else float(self.plan.speeds[number])

@@ -10,8 +10,8 @@ import numpy as np
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle
-from dancetutor_cli.video.overlay.captions import WHITE, pill, plate
+from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
+from dancetutor_cli.video.overlay.captions import WHITE, box_of, pill, plate
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
 from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
@@ -40,12 +40,20 @@ class Runs:
         speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
         return f"{speed} · {number + 1} of {count}" if count > 1 else speed
 
-    def draw(self, frame: Frame, second: float, run: int) -> None:
-        """Draw at `second` of the music in pass `run`."""
+    def _corner(self, label: Sprite) -> tuple[float, float]:
+        return (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Where the labels stand: left, top, right, bottom."""
+        return [box_of(label, *self._corner(label)) for label in self.labels]
+
+    def draw(self, frame: Frame, second: float, run: int, opacity: float = 1.0) -> None:
+        """Draw at `second` of the music in pass `run`; opacity : of the label."""
         if self.labels:
             label = self.labels[run]
-            x, y = (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
-            blit(frame, label, x, round(y))
+            x, y = self._corner(label)
+            blit(frame, label, x, round(y), opacity)
         one = self.clock.passes[run]
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count

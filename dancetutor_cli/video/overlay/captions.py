@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.overlay import shapes, sprites
-from dancetutor_cli.video.overlay.blit import Sprite, blit, rectangle
+from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
@@ -75,10 +75,20 @@ class Header:
         sprite = self._face.sprite(text, size, SOFT, shadow=1.5 * self._scale)
         return sprite, x, middle - sprite.shape[0] / 2
 
-    def draw(self, frame: Frame) -> None:
-        """Lay the words over the picture."""
-        for sprite, x, y in self.lines:
-            blit(frame, sprite, x, round(y))
+    @property
+    def boxes(self) -> list[Box]:
+        """Where the lines below the title stand: left, top, right, bottom."""
+        return [box_of(*line) for line in self.lines[1:]]
+
+    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
+        """Lay the words over the picture, those below the title by `opacity`."""
+        for number, (sprite, x, y) in enumerate(self.lines):
+            blit(frame, sprite, x, round(y), opacity if number else 1.0)
+
+
+def box_of(sprite: Sprite, x: float, y: float) -> Box:
+    """Left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
+    return x, y, x + sprite.shape[1], y + sprite.shape[0]
 
 
 def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
@@ -146,10 +156,15 @@ class Legend:
         plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
         self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
 
-    def draw(self, frame: Frame) -> None:
+    @property
+    def boxes(self) -> list[Box]:
+        """Where its plate stands: left, top, right, bottom."""
+        return [box_of(*self.lines[0])]
+
+    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
         """Lay the legend over the picture."""
         for sprite, x, y in self.lines:
-            blit(frame, sprite, x, round(y))
+            blit(frame, sprite, x, round(y), opacity)
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from dancetutor_cli.video.scene.follow import Follow, is_wide
 from dancetutor_cli.video.scene.look import default_look
 from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.video.scene.silhouette import Silhouette
 from dancetutor_cli.video.scene.stage import PANEL
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.lights import PanelLights
     from dancetutor_cli.video.picture import PadLike
     from dancetutor_cli.video.scene.camera import Camera
+
+AWAY = 0.3  # metres from where she steps: she walks, and does not sway as she waits
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +69,7 @@ class Dancer:
         partners: Mapping[float, Motion] | None = None,
     ) -> None:
         self.motions, self.partners, self.lights = motions, partners or {}, lights
+        self._size = shot.size
         self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
         floor = -default_look().stage.pad_height
         self.alone = character or load_dancer()
@@ -104,6 +108,23 @@ class Dancer:
         for follow in found.values():  # what stands is drawn once for all of them
             follow.camera = with_pan_range(follow.camera, min(low), max(high))
         return found
+
+    def walks_behind(
+        self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float
+    ) -> NDArray[np.bool_]:
+        """Whether she is where one of `boxes` (pixels of her picture) is, and `AWAY` from where she steps at `step`.
+
+        seconds : float64 (n,), of the music; rate : at which it plays
+        """
+        moments = [Moment(float(second), rate) for second in (*seconds, step)]
+        joints = self.joints(moments)
+        root = joints[:, 0, :3, 3][:, (0, 2)]
+        away = np.hypot(*(root[:-1] - root[-1]).T) > AWAY
+        outline, size = Silhouette(self.scene.character), self._size
+        found = [
+            bool(far) and outline.behind(boxes, joints[k], self.view(moments[k]), size) for k, far in enumerate(away)
+        ]
+        return np.array(found)
 
     def still(self) -> Frame:
         """The room without the dancer."""
