@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from dancetutor_cli.video.picture import Frame
 from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
+TURNED = "she faces you: arrows turned with her"
 FLAG_LEAST = 10.0  # pixels of a label's letters: smaller ones are not read
 
 
@@ -142,6 +143,8 @@ class Highway:
         self._draw_receptors(frame, second, beat)
         self._draw_notes(frame, now)
         self._draw_callouts(frame, now)
+        if self.geometry.turned:
+            self._draw_turned(frame)
 
     def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], now: _Now) -> NDArray[np.float64]:
         """Middle of things at `seconds`/`beats` on the screen, pixels."""
@@ -200,6 +203,22 @@ class Highway:
             return 0.0, 0.0
         far = self.style.mark_aside * self.geometry.lane
         return -far * math.sin(math.radians(direction)), far * math.cos(math.radians(direction))
+
+    def _draw_turned(self, frame: Frame) -> None:
+        """Say that the arrows stand the other way round, in the gap that notes do not come through."""
+        geometry, plate = self.geometry, self._turned
+        _, top, _, bottom = geometry.box
+        edge, half = (bottom, 0.5 * self.size) if geometry.down else (top, -0.5 * self.size)
+        x = geometry.left + (geometry.lane * len(geometry.directions) - plate.shape[1]) / 2
+        blit(frame, plate, x, round((edge + geometry.receptor + half - plate.shape[0]) / 2), 1.0, self._rows)
+
+    @cached_property
+    def _turned(self) -> Sprite:
+        geometry = self.geometry
+        gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
+        size = max(FLAG_LEAST, min(0.5 * gap, 0.25 * geometry.lane))
+        lines, size = fitted(TURNED, size, geometry.lane * len(geometry.directions) - 0.8 * size - 5, self.face, most=1)
+        return sprites.flag(lines, size, self.style.callout["move"], self.face)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0

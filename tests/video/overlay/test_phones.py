@@ -76,6 +76,9 @@ def test_a_badge_leaves_the_tip_of_a_diagonal_arrow_free(direction: float) -> No
     a = np.radians(direction)
     ahead = (x - middle) * np.sin(a) - (y - 50) * np.cos(a) > 0
     assert (alone & ahead & ~badge).sum() > 0.66 * (alone & ahead).sum()
+    tail = (y - 50) * np.cos(a) - (x - middle) * np.sin(a) > 0.26 * highway.size
+    assert tail.any()
+    assert not (badge & tail).any()  # the tail's end is seen whole, no crumbs of it
     assert frame[badge].any()
 
 
@@ -112,6 +115,29 @@ def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: 
     order = np.argsort(np.round(places, 3), kind="stable")
     for a, b in pairwise(order):
         assert lanes[b] > lanes[a] or abs(places[a] - places[b]) < 20
+
+
+@pytest.mark.parametrize("down", [False, True])
+@pytest.mark.parametrize("name", ["side-by-side", "vertical", "practice"])
+def test_from_the_front_the_highway_says_that_its_arrows_are_turned(name: str, down: bool) -> None:
+    """Beyond the receptors, where no note comes, and nowhere else."""
+    plan = film_plan(np.array([1.0, 2.0]))
+    layout = load_layout(name)
+    shown = []
+    for camera in ("back", "front"):
+        look = FilmLook(replace(layout, dancer=replace(layout.dancer, camera=camera)), layout.size, down=down)  # type: ignore[type-var]
+        highway = Film(replace(plan, look=look)).highway
+        assert highway is not None
+        shown.append(highway)
+    geometry = shown[1].geometry
+    assert (shown[0].geometry.turned, geometry.turned) == (False, True)
+    frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
+    shown[1]._draw_turned(frame)
+    rows, columns = np.nonzero(frame.any(2))
+    edge = geometry.receptor + (0.5 if down else -0.5) * shown[1].size
+    assert (rows > edge).all() if down else (rows < edge).all()
+    assert columns.min() >= geometry.left
+    assert columns.max() <= geometry.left + len(geometry.directions) * geometry.lane
 
 
 def test_a_note_that_no_foot_is_left_for_has_a_mark_of_its_own() -> None:
