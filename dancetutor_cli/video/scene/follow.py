@@ -52,7 +52,7 @@ class Follow:
         count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
         regular = self._start + _STEP * np.arange(count)
         places = np.column_stack([np.interp(regular, seconds, roots[:, k]) for k in range(3)])
-        reach = (high[0] - low[0]) / 2 - half
+        reach = min((high[0] - low[0]) / 2 - half, _reach_with_whole_pad(camera, size, low, high))
         # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
         places[:, 0] = _smooth(np.clip(places[:, 0], middle[0] - reach, middle[0] + reach), look.follow.seconds)
         # Her height and depth do not move the camera: the pan is that of a point at waist height over the pad's middle.
@@ -66,6 +66,20 @@ class Follow:
         place = min(max((second - self._start) / _STEP, 0.0), len(self._pans) - 1.0)
         pan = float(np.interp(place, np.arange(len(self._pans)), self._pans))
         return replace(self.camera, pan=pan)
+
+
+def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, high: Array) -> float:
+    """How far from the pad's middle a camera may follow, metres, so that the pad is seen whole; no limit if it is not.
+
+    low, high : corners (3,) of the pad's surface
+    """
+    corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    edges = camera.project(corners, size)[:, 0]
+    spare = min(float(edges.min()), size[0] - float(edges.max()))
+    middle = (low + high) / 2
+    waist = np.array([(middle[0] + x, 0.9, middle[2]) for x in (-0.5, 0.5)])
+    metre = abs(float(np.diff(camera.project(waist, size)[:, 0])[0]))
+    return spare / metre if spare > 0 else np.inf
 
 
 def _smooth(values: Array, seconds: float) -> Array:

@@ -33,7 +33,7 @@ ASKED = [
 ]
 
 
-def dancer(pad_name: str, camera: str, stands: bool = False) -> Dancer:
+def dancer(pad_name: str, camera: str, stands: bool = False, size: tuple[int, int] = (96, 96)) -> Dancer:
     """She stands 0.5 m to +x for ten seconds, then 0.5 m to -x."""
     skeleton, times = dancer_skeleton(), np.arange(0.0, 20.0, 0.1)
     rotations = np.zeros((len(times), len(skeleton.names), 4))
@@ -43,7 +43,7 @@ def dancer(pad_name: str, camera: str, stands: bool = False) -> Dancer:
     assert pad is not None
     lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
     motions = {rate: Motion(skeleton, 10.0, times / rate, rotations, root, ()) for rate in (0.5, 1.0)}
-    return Dancer(motions, pad, lights, Shot((96, 96), camera, "draft", "cpu", stands=stands))
+    return Dancer(motions, pad, lights, Shot(size, camera, "draft", "cpu", stands=stands))
 
 
 @pytest.mark.parametrize("rate", [1.0, 0.5])
@@ -69,6 +69,19 @@ def test_the_camera_goes_with_her_in_doubles(camera: str, rate: float) -> None:
 def test_other_cameras_stand(pad: str, camera: str, stands: bool) -> None:
     who = dancer(pad, camera, stands)
     assert who.view(Moment(2.0)) == who.view(Moment(18.0)) == who.camera
+
+
+@pytest.mark.parametrize("pad_name", ["dance-double", "pump-double"])
+@pytest.mark.parametrize("camera", ["back", "front"])
+def test_the_pad_of_a_double_is_never_cut(pad_name: str, camera: str) -> None:
+    who, size = dancer(pad_name, camera, size=(666, 672)), (666, 672)
+    low, high = who.scene.extent
+    corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    for second in (2.0, 10.0, 18.0):
+        seen = who.view(Moment(second)).project(corners, size)[:, 0]
+        assert seen.min() >= -1
+        assert seen.max() <= size[0] + 1
+    assert who.view(Moment(2.0)).pan != who.view(Moment(18.0)).pan
 
 
 def test_the_followed_frame_is_the_same_whoever_draws_it(tmp_path: Path) -> None:
