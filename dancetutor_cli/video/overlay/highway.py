@@ -216,7 +216,7 @@ class Highway:
     def _turned(self) -> Sprite:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
-        size = max(FLAG_LEAST, min(0.5 * gap, 0.25 * geometry.lane))
+        size = max(FLAG_LEAST, min(0.5 * gap, 0.33 * geometry.lane))
         lines, size = fitted(TURNED, size, geometry.lane * len(geometry.directions) - 0.8 * size - 5, self.face, most=1)
         return sprites.flag(lines, size, self.style.callout["move"], self.face)
 
