@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _BEFORE, _AFTER = 16, 12  # steps to either side of the row, if no rest comes first
 _BREATH = 0.22  # seconds, at least: twice a shorter time is still a run
+_SWUNG = 0.2  # the same where the rule has breaths: the long half of a swing rhythm is one
 _CROSSED = 90.0 + 1e-6  # degrees
 _NEAR = 5  # steps
 _UNKNOWN = -1
@@ -26,7 +27,8 @@ class Freedom(NamedTuple):
     quick : the longest time (s) between steps that the rule takes for quick; rest : seconds that are a breath after a
     quicker step alone, see `is_breath`; switch : from so many seconds the feet may change on a panel that
     is stepped on again; slip : from so many seconds one foot may step twice in a row, once, out of a run of jacks or to
-    the other of two pads; spins : whether the body may turn on round behind
+    the other of two pads; spins : whether the body may turn on round behind; lead : seconds that let either foot begin
+    if the next step comes in half of them
     """
 
     quick: float
@@ -34,6 +36,7 @@ class Freedom(NamedTuple):
     switch: float = math.inf
     slip: float = math.inf
     spins: bool = False
+    lead: float = math.inf
 
 
 class _Stand(NamedTuple):
@@ -90,7 +93,8 @@ def is_breath(subject: ChartSubject, at: int, rest: float = math.inf) -> bool:
     pause = subject.pause(int(rows[at]))
     before = subject.pause(int(rows[at - 1])) if at > 1 else math.inf
     after = subject.pause(int(rows[at + 1])) if at + 1 < len(rows) else math.inf
-    return pause >= _BREATH and pause >= REST * (before if pause >= rest else max(before, after))
+    least = _BREATH if rest == math.inf else _SWUNG
+    return pause >= least and pause >= REST * (before if pause >= rest else max(before, after))
 
 
 def in_groups(subject: ChartSubject, row: int) -> bool:
@@ -132,7 +136,7 @@ class _Step(NamedTuple):
         """The ways to stand after this step, each with its fewest crossed steps; free : with either foot."""
         subject, freedom = self.subject, self.freedom
         pause = subject.pause(int(subject.step_rows[self.at]))
-        free = free or is_breath(subject, self.at, freedom.rest)
+        free = free or is_breath(subject, self.at, freedom.rest) or (pause >= freedom.lead and self._leads(pause))
         again = self.column == self.before
         slips = pause >= freedom.slip and (self._after_jacks() or self._to_other_pad())
         found: dict[_Stand, int] = {}
@@ -162,6 +166,10 @@ class _Step(NamedTuple):
         if not self.freedom.spins and (abs(facing - stand.facing) > 180 or abs(facing) >= 180):
             return None
         return _Stand((left, right), foot, facing, slipped)
+
+    def _leads(self, pause: float) -> bool:
+        rows = self.subject.step_rows
+        return self.at + 1 < len(rows) and pause >= REST * self.subject.pause(int(rows[self.at + 1]))
 
     def _after_jacks(self) -> bool:
         pressed = [self.subject.pressed(int(one)) for one in self.subject.step_rows[max(self.at - 2, 0) : self.at]]

@@ -21,7 +21,7 @@ from dancetutor_cli.play import Play, load_preset, solver
 
 CASES = Path(__file__).parent / "cases"
 KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",
-         "confidence", "options", "found", "says"}  # fmt: skip
+         "confidence", "options", "found", "says", "severity"}  # fmt: skip
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -71,6 +71,8 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pyte
     assert places == expected
     if "says" in case:
         assert case["says"] in found[0].message
+    if "severity" in case:
+        assert {finding.severity for finding in found} == {case["severity"]}
 
 
 def _with(solve: Callable[..., Play], sure: NDArray[np.float64]) -> Callable[..., Play]:

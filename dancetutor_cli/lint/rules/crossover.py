@@ -13,8 +13,10 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.lint.subject import ChartSubject
 
+_LEAD = 0.25  # seconds: with twice the time of the next step, and a novice begins anew
 _SLOW = 0.3  # seconds in which a beginner steps again with whichever foot she likes
 _WALKED = 4  # panels
+_CAME = 2  # steps from the other pad
 _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 
 
@@ -25,9 +27,10 @@ class Crossover(TimedRule):
     dancetutor.yaml may do so for others.
 
     `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
-    but begins anew; nor where the steps from one rest or jump to the next can be danced uncrossed on the other foot,
-    nor in a walk from one pad to the other; nor where at 0.3 s and slower the feet may change on a panel that is
-    stepped on twice, or one foot step twice in a row, once, out of such steps or to the other pad.
+    but begins anew, and so from 0.25 s where the next step takes half the time; nor where the steps from one rest or
+    jump to the next can be danced uncrossed on the other foot, nor in a walk from one pad to the other; nor where at
+    0.3 s and slower the feet may change on a panel that is stepped on twice, or one foot step twice in a row, once, out
+    of such steps or to the other pad. A single crossed step on the way from one pad to the other is an info.
     by-meter: what at most `share` per cent of the charts of a meter have, and 0.4 s at most: who has more moves
     both feet; on two pads, where walking from one to the other crosses the feet, few crossings are so quick.
 
@@ -56,7 +59,7 @@ class Crossover(TimedRule):
         from dancetutor_cli.lint.freely import Freedom, fewest_crossed
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
 
-        slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW)
+        slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
         for first, _ in subject.feet.crossed_runs() if subject.feet else ():
             if fewest_crossed(subject, first, slow) == 0:
                 continue
@@ -64,6 +67,10 @@ class Crossover(TimedRule):
                 continue
             said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"
             yield Happening(first, subject.pause(first), said)
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """Whether a single step crosses on the way from one of two pads to the other."""
+        return all(_in_passing(subject, row) for row in rows)
 
 
 def _walks_over(subject: ChartSubject, row: int) -> bool:
@@ -87,6 +94,21 @@ def _walks_over(subject: ChartSubject, row: int) -> bool:
         if len({*walked}) >= _WALKED and np.ptp(pad.panels[walked, 0]) >= _WIDE:
             return True
     return False
+
+
+def _in_passing(subject: ChartSubject, row: int) -> bool:
+    """Whether only this step is crossed, and the few steps to it come from the other of two pads."""
+    import numpy as np
+
+    feet, pad = subject.feet, subject.pad
+    if feet is None or pad is None or np.ptp(pad.panels[:, 0]) <= _WIDE:
+        return False
+    rows = subject.step_rows
+    at, half = int(rows.searchsorted(row)), len(pad.panels) // 2
+    if at + 1 == len(rows) or feet.crossed(int(rows[at + 1])):
+        return False
+    pads = {column < half for one in rows[max(at - _CAME, 0) : at + 1] for column in subject.pressed(int(one))}
+    return len(pads) > 1
 
 
 def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> bool:

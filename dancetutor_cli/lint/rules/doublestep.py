@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ _BEFORE, _AFTER = 3, 1  # steps
 _CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; so quickly a short crossover is nearer than a doublestep
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 _SHORT = 2  # crossed rows of such a crossover
+_LONG, _LONGER = 0.25, 1.45  # seconds, times the step beside it: a dotted note and longer, after which one begins anew
 _LED = 3  # the same, between two pads
 
 
@@ -31,8 +33,10 @@ class Doublestep(MoveRule):
     reported, nor brackets: both panels at once are no step after the other. Nor those beside two panels that can be
     jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there. Nor those that cross
     the feet, nor 16ths that a short crossover solves, nor groups of steps that go uncrossed if each begins, about twice
-    the time of its steps after the one before, with a foot of its own. Between two pads, to where a panel that is
-    stepped on twice leads the feet across the middle in turn, it is an info.
+    the time of its steps after the one before, with a foot of its own; nor where at 0.25 s and slower a quicker group
+    begins with it, or the next step can be the repeat after a rest. Around the centre of a Pump pad at 0.25 s and
+    slower, where in turn one crossover would lead to a jump, and between two pads, to where a panel that is stepped on
+    twice leads the feet across the middle in turn, it is an info.
 
     `max_seconds`: only steps at most this long after the step before count; after a longer rest players put down
     whichever foot they like. by-meter: what at most `share` per cent of the charts of a meter have, 0.32 s at
@@ -66,12 +70,16 @@ class Doublestep(MoveRule):
             row for row in subject.rows_with(self.move)
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
             and not subject.feet.crossed(row) and not any_foot_near(subject, row)
-            and not _danced_otherwise(subject, row, self.longest(subject))
+            and not _danced_otherwise(subject, row, self.longest(subject)) and not _at_a_pause(subject, row)
             and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(self.longest(subject))) == 0)
         ]  # fmt: skip
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether the feet go in turn between two pads, led there by a panel in the middle that is stepped on twice."""
+        """Whether players expect it: a Pump centre, one crossover to a jump, a way between two pads after a jack."""
+        if all(
+            _round_the_centre(subject, row) or _crosses_to_jump(subject, row, self.longest(subject)) for row in rows
+        ):
+            return True
         if subject.pad is None or not _two(subject.pad.panels):
             return False
         changing = Freedom(self.longest(subject), switch=0.0)
@@ -80,6 +88,47 @@ class Doublestep(MoveRule):
     def message(self, subject: ChartSubject, row: int) -> str:
         """Which foot."""
         return f"the {subject.foot_name(row)} foot steps twice in a row though the other is free"
+
+
+def _at_a_pause(subject: ChartSubject, row: int) -> bool:
+    """Whether a quicker group begins with this step, or the next comes so late that the repeat can wait for it."""
+    from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, standing
+
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    if at + 1 == len(rows):
+        return False
+    pause, after = subject.pause(row), subject.pause(int(rows[at + 1]))
+    if pause >= _LONG - EPSILON and pause >= _LONGER * after:
+        return True
+    waits = after >= _LONG - EPSILON and after >= _LONGER * pause
+    return waits and exchanged_is_uncrossed(subject, rows[at : at + 1], standing(subject, row))
+
+
+def _round_the_centre(subject: ChartSubject, row: int) -> bool:
+    """Whether on a Pump pad one of both panels is the centre, and there is time to twist."""
+    rows = subject.step_rows
+    if not subject.chart.steps_type.startswith("pump") or subject.pause(row) < _LONG - EPSILON:
+        return False
+    before = int(rows[int(rows.searchsorted(row)) - 1])
+    return any(column % 5 == 2 for one in (before, row) for column in subject.pressed(one))
+
+
+def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
+    """Whether in turn the steps cross once, not all round, and then two panels at once set both feet right."""
+    from dancetutor_cli.lint.other_foot import exchanged_facings, segment, standing
+
+    assert subject.feet is not None
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    last = segment(subject, at, quick, forwards_only=True)[1]
+    if last + 1 >= len(rows) or len(subject.pressed(int(rows[last + 1]))) != 2:
+        return False
+    if (subject.feet.down[rows[at : last + 1]] != 1).any() or subject.pause(row) < _CROSSED_RATHER:
+        return False
+    facings = exchanged_facings(subject, rows[at : last + 1], standing(subject, row))
+    crossed = [abs(one) > 90 + EPSILON for one in facings]
+    return max(map(abs, facings)) < 180 and sum(one != two for one, two in pairwise([False, *crossed])) == 1
 
 
 def any_foot_near(subject: ChartSubject, row: int) -> bool:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.foot_questions import SLIP
 from dancetutor_cli.lint.other_foot import standing
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
 
@@ -19,7 +18,11 @@ if TYPE_CHECKING:
 _FEET_STEP = 0.045  # seconds between two rows: 16ths at 333 BPM
 _PASSAGE = 8  # beats
 _SIXTEENTH = 0.13  # seconds: 16ths at 115 BPM
-_HEEL_AND_TOE = 18  # meter of Pump charts from which one foot takes two neighbours with heel and toe
+_HEEL_AND_TOE = 14  # meter of Pump charts from which one foot takes two neighbours with heel and toe
+_GRACE = 0.06  # seconds: two rows closer together are no 16ths
+_AS_ONE = 0.03  # seconds between two rows that look meant as one
+_TAPS_BESIDE = 13  # meter from which a foot that holds a panel taps a neighbour of it
+_NEIGHBOUR = 1.5  # panel widths
 _NUMBERS = {3: "three", 4: "four"}
 _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 
@@ -28,8 +31,9 @@ class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
     Two steps of a flam are none if the other foot is free to take the first, or the second where its hold ends. Three
-    panels among 16ths, and two, one and two again, are told as such. On Pump pads it is an info from meter 18, whose
-    players take neighbours with heel and toe. Rows less than 20 ms apart are told as
+    panels among 16ths, and two, one and two again, are told as such. On Pump pads it is an info from meter 14, whose
+    players take neighbours with heel and toe, and none from meter 13 where the other foot holds a panel and can tap a
+    neighbour of it. Rows less than 30 ms apart are told as
     what they are, a slip of the grid, and three rows or more less than 45 ms apart as a burst, once in two measures.
 
     `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
@@ -57,19 +61,23 @@ class FastStep(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step that is too fast; one for a passage in which the rows are."""
         feet, bursts = subject.feet, []
+        told: set[tuple[int, str]] = set()
         for row, column, way, seconds in self._fast(subject):
             if rows := burst(subject, row):
                 bursts.append(rows)
             elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
-                message = _dense(subject, row)
-                if message is None:
+                place, message = _dense(subject, row)
+                if not message:
                     message = f"the {feet.limb_name(row, column)} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
                 least = {"severity": "info"} if _heel_and_toe(subject, row) else {}
-                if subject.pause(row) < SLIP:
+                if subject.pause(row) < _AS_ONE:
+                    place = row
                     apart = f"{subject.pause(row) * 1000:.0f} ms"
                     message = f"this row comes {apart} after the one before: were they meant as one?"
                     least = {}
-                yield self.finding(message, subject.at_row(row, column), **least)
+                if (place, message) not in told:
+                    yield self.finding(message, subject.at_row(place, column if place == row else None), **least)
+                told.add((place, message))
         end = -math.inf
         for rows in sorted(bursts):
             if subject.beat(rows[0]) > end + _PASSAGE:
@@ -102,8 +110,8 @@ def _heel_and_toe(subject: ChartSubject, row: int) -> bool:
     return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _HEEL_AND_TOE
 
 
-def _dense(subject: ChartSubject, row: int) -> str | None:
-    """What is quick here, where it is not the feet but three panels at once, or two before and after one step."""
+def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
+    """Where and what is quick, if not the feet but three panels at once, or two before and after one step."""
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     for place in range(max(at - 2, 0), at + 1):
@@ -114,14 +122,17 @@ def _dense(subject: ChartSubject, row: int) -> str | None:
             where = f"{1000 * after:.0f} ms before the next step"
             if after >= _SIXTEENTH:
                 where = f"{1000 * before:.0f} ms after the step before"
-            return f"{_NUMBERS.get(panels, panels)} panels in the middle of 16ths, {where}"
+            around = rows[max(place - 1, 0) : place + 3].tolist()
+            sixteenths = sum(_GRACE <= subject.pause(one) < _SIXTEENTH for one in around) > 1
+            among = " in the middle of 16ths" if sixteenths else ""
+            return int(rows[place]), f"{_NUMBERS.get(panels, panels)} panels{among}, {where}"
     for first in (at - 2, at - 1):
         if first >= 0 and first + 2 < len(rows):
             counts = [len(subject.pressed(int(one))) for one in rows[first : first + 3]]
             apart = max(subject.pause(int(one)) for one in rows[first + 1 : first + 3])
             if counts == [2, 1, 2] and apart < _SIXTEENTH:
-                return f"two panels, one and two again in 16ths, {1000 * apart:.0f} ms apart"
-    return None
+                return row, f"two panels, one and two again in 16ths, {1000 * apart:.0f} ms apart"
+    return row, ""
 
 
 def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
@@ -139,6 +150,26 @@ def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
     return bool(x >= -EPSILON)
 
 
+def _taps_beside(subject: ChartSubject, before: int, row: int) -> bool:
+    """Whether the other foot holds a panel and can tap one of two single steps that is beside it, uncrossed."""
+    play, pad = subject.play, subject.pad
+    if play is None or pad is None or subject.chart.meter < _TAPS_BESIDE:
+        return False
+    if any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
+        return False
+    limb, columns = int(play.limb[row].max()), [int(play.limb[one].argmax()) for one in (before, row)]
+    if limb > 1 or (held := standing(subject, before)[1 - limb]) < 0:
+        return False
+    if play.rows.hold_end[:before, held].max(initial=-1) < play.rows.tick[row]:
+        return False
+    for tapped, stepped in (columns, columns[::-1]):
+        beside = np.hypot(*(pad.panels[tapped] - pad.panels[held])) <= _NEIGHBOUR
+        way = (pad.panels[tapped, 0] - pad.panels[stepped, 0]) * (1 if limb == 0 else -1)
+        if beside and way >= -EPSILON:
+            return True
+    return False
+
+
 def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bool:
     """Whether two single steps are a flam for two feet: the other foot has had time to come and takes the first."""
     play, pad, rows = subject.play, subject.pad, subject.step_rows
@@ -146,7 +177,7 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     if play is None or pad is None or subject.feet is None or at < 2:
         return False
     before = int(rows[at - 1])
-    if _let_go(subject, before, row):
+    if _let_go(subject, before, row) or _taps_beside(subject, before, row):
         return True
     if any((play.limb[one] >= 0).sum() != 1 or subject.feet.down[one] != 1 for one in (before, row)):
         return False

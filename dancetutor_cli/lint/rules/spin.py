@@ -24,7 +24,8 @@ class Spin(MoveRule):
     """The pattern goes on round behind the dancer's back, beyond 180 degrees: a spin, or a doublestep to avoid it.
 
     Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot; a rest
-    is about twice the pace of the passage, two panels at once may always be a jump. Nor of a walk along two pads, on
+    is about twice the pace of the passage, or the long half of a swing rhythm; two panels at once may always be a jump.
+    Nor of a walk along two pads, on
     which one foot passes the other; nor where after two panels at once one crossover takes its place, nor in a burst,
     of which DT305 tells. More than four in a chart are one finding. On Pump pads it is an info from meter 20. A spin in
     a jump is DT203.
