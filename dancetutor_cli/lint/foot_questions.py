@@ -18,7 +18,6 @@ from dancetutor_cli.play.played import Limb, Play, StepKind
 _EPSILON = 1e-6
 _BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
 WALL = 3  # mines in a row
-SLIP = 0.02  # seconds between two rows that are meant as one
 HARDLY = 0.15  # seconds since a step in which no foot leaves
 _RIGHT, _NONE, _HOLD, _ROLL_TAP = int(Limb.RIGHT_FOOT), int(StepKind.NONE), int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",

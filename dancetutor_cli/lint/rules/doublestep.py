@@ -6,12 +6,10 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from dancetutor_cli.lint.freely import Freedom, fewest_crossed, in_groups, led_by_a_jack
 from dancetutor_cli.lint.rule import EPSILON, MoveRule
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from dancetutor_cli.lint.subject import ChartSubject
@@ -66,6 +64,8 @@ class Doublestep(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Doublesteps from one panel to another, no mine between them."""
+        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, in_groups
+
         return [
             row for row in subject.rows_with(self.move)
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
@@ -76,6 +76,8 @@ class Doublestep(MoveRule):
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether players expect it: a Pump centre, one crossover to a jump, a way between two pads after a jack."""
+        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
+
         if all(
             _round_the_centre(subject, row) or _crosses_to_jump(subject, row, self.longest(subject)) for row in rows
         ):
@@ -192,4 +194,6 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
 
 def _two(panels: NDArray[np.float64]) -> bool:
     """Whether these are the panels of two pads side by side."""
+    import numpy as np
+
     return float(np.ptp(panels[:, 0])) > ONE_PAD

@@ -6,10 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.other_foot import standing
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
 
 if TYPE_CHECKING:
@@ -137,6 +134,8 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
 
 def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether a hold of the other foot ends between two single steps, and that foot can take the second uncrossed."""
+    from dancetutor_cli.lint.other_foot import standing
+
     play, pad = subject.play, subject.pad
     if play is None or pad is None or any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
         return False
@@ -152,6 +151,10 @@ def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
 
 def _taps_beside(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether the other foot holds a panel and can tap one of two single steps that is beside it, uncrossed."""
+    import numpy as np
+
+    from dancetutor_cli.lint.other_foot import standing
+
     play, pad = subject.play, subject.pad
     if play is None or pad is None or subject.chart.meter < _TAPS_BESIDE:
         return False
@@ -172,6 +175,10 @@ def _taps_beside(subject: ChartSubject, before: int, row: int) -> bool:
 
 def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bool:
     """Whether two single steps are a flam for two feet: the other foot has had time to come and takes the first."""
+    import numpy as np
+
+    from dancetutor_cli.lint.other_foot import standing
+
     play, pad, rows = subject.play, subject.pad, subject.step_rows
     at = int(rows.searchsorted(row))
     if play is None or pad is None or subject.feet is None or at < 2:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.freely import Freedom, fewest_crossed
 from dancetutor_cli.lint.rule import Happening, MoveRule
 from dancetutor_cli.lint.rules.fast_step import burst
 
@@ -60,6 +59,8 @@ class Spin(MoveRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
+        from dancetutor_cli.lint.freely import Freedom, fewest_crossed
+
         play = subject.play
         if play is None:
             return

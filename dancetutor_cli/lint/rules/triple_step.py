@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
 from dancetutor_cli.lint.rule import Happening, TimedRule
 from dancetutor_cli.lint.rules.doublestep import Doublestep, any_foot_near
 
@@ -46,6 +45,8 @@ class TripleStep(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each third step that is quick enough: where a run begins depends on that."""
+        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
+
         spans = self.options["min_seconds"], self.longest(subject)
         for row, seconds in subject.feet.same_foot_runs(3, *spans) if subject.feet else ():
             free = Freedom(self.longest(subject))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.foot_questions import SLIP
 from dancetutor_cli.lint.rule import MoveRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 _GIMMICK = 99  # the meter
+_SLIP = 0.02  # seconds between two rows that are meant as one
 
 
 class Unplayable(MoveRule):
@@ -42,7 +42,7 @@ class Unplayable(MoveRule):
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """A gimmick says so by its meter or its rows."""
-        return subject.chart.meter == _GIMMICK or any(subject.pause(row) < SLIP for row in rows)
+        return subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
