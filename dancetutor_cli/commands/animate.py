@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.commands.chart_options import (
+    TABLE,
     Selection,
     character_option,
     form_option,
@@ -19,6 +20,7 @@ from dancetutor_cli.commands.chart_options import (
     number,
     preset_option,
     push_options,
+    report_option,
     section_option,
     selection_options,
     style_option,
@@ -36,7 +38,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.bake import Asked, BakedDance
 
-_TABLE = "-"  # the value of --report without a file
 _FILE = click.Path(path_type=Path)
 
 
@@ -92,14 +93,7 @@ class Result:
     help="Speed of the music she dances to.",
 )
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
-@click.option(
-    "--report",
-    "report_to",
-    is_flag=False,
-    flag_value=_TABLE,
-    metavar="[FILE.json]",
-    help="Measure the motion (the dancer's, whoever dances).",
-)
+@report_option("Measure the motion (the dancer's, whoever dances).")
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @gait_option
@@ -135,7 +129,7 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
         check_file(output, tuple(FORMATS))
     if result.plot is not None:
         check_file(result.plot, (".svg", ".png"))
-    if result.report_to is not None and result.report_to != _TABLE:
+    if result.report_to is not None and result.report_to != TABLE:
         check_file(Path(result.report_to))
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
@@ -193,7 +187,7 @@ def _report(report: MotionReport, target: str | None, plot: Path | None) -> None
         print_report(report)
         for note in report.notes:
             click.echo(f"note: {note}")
-    if target is not None and target != _TABLE:
+    if target is not None and target != TABLE:
         from dancetutor_cli.files import write_atomic
         from dancetutor_cli.reports.motion_report import as_json
 

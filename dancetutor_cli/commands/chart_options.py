@@ -12,6 +12,7 @@ from dancetutor_cli.commands.names import characters, difficulties, folder, name
 from dancetutor_cli.library.selection import Selection
 
 __all__ = [
+    "TABLE",
     "Selection",
     "character_option",
     "form_option",
@@ -20,10 +21,13 @@ __all__ = [
     "number",
     "preset_option",
     "push_options",
+    "report_option",
     "section_option",
     "selection_options",
     "style_option",
 ]
+
+TABLE = "-"  # the value of --report without a file
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
@@ -105,6 +109,11 @@ def gait_option(command: _Command) -> _Command:
         help="How she walks on and off: flat, heels, or a file as those in configs/gaits.",
     )
     return option(command)
+
+
+def report_option(words: str) -> Callable[[_Command], _Command]:
+    """Adds --report with these words; the function gets `report_to`: a file's name, `TABLE` without one, or None."""
+    return click.option("--report", "report_to", is_flag=False, flag_value=TABLE, metavar="[FILE.json]", help=words)
 
 
 def form_option(command: _Command) -> _Command:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.chart_options import push_options, style_option
+from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_file, one_of
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".glb", ".bvh", ".npz", ".mp4")
 _FILE = click.Path(path_type=Path)
-_TABLE = "-"  # the value of --report without a file
 _CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
 
 
@@ -58,14 +57,7 @@ class RetargetOptions:
     metavar="LIST",
     help="Faults to correct: knees that pop, feet that skate, joints past their limits; or none.",
 )
-@click.option(
-    "--report",
-    "report_to",
-    is_flag=False,
-    flag_value=_TABLE,
-    metavar="[FILE.json]",
-    help="Measure the motion, its faults before and after, and how far the ragdoll was from it.",
-)
+@report_option("Measure the motion, its faults before and after, and how far the ragdoll was from it.")
 @click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
 @into("wanted", RetargetOptions)
 def command(file: Path, wanted: RetargetOptions) -> None:
@@ -81,7 +73,7 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     check_file(wanted.output, SUFFIXES)
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
-    if wanted.report_to is not None and wanted.report_to != _TABLE:
+    if wanted.report_to is not None and wanted.report_to != TABLE:
         check_file(Path(wanted.report_to))
     wishes = wishes_of(wanted.push, wanted.trip, corrections_of(wanted.correct)) or Wishes()
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
@@ -140,7 +132,7 @@ def _report(work: Retargeting, wanted: RetargetOptions) -> None:
         print_report(report)
         for note in report.notes:
             click.echo(f"note: {note}")
-        if wanted.report_to != _TABLE:
+        if wanted.report_to != TABLE:
             from dancetutor_cli.files import write_atomic
 
             write_atomic(Path(wanted.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
