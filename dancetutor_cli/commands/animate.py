@@ -119,7 +119,7 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     capture; .json, only the moves: what moves when, from where to where.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
-    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask
+    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, style_for
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
@@ -135,8 +135,9 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))
     task = BakeTask(one_song(file), selection, **asdict(dance))
-    if (result.physics or dance.push or dance.trip) and task.style is None:
+    if result.physics and task.style is None:
         task = replace(task, style="neutral")
+    task = replace(task, style=style_for(task.style, task.push, task.trip))
     from dancetutor_cli.library.selection import note_bytes
 
     tell_of_compiling(choice_for(task.path, task.preset), note_bytes(task.path, task.selection))

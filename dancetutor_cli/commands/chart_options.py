@@ -150,13 +150,14 @@ def push_options(command: _Command) -> _Command:
             type=float,
             multiple=True,
             metavar="TIME",
-            help="Something catches the foot that swings at this second.",
+            help="Something catches the foot that swings at this second of the song.",
         ),
         click.option(
             "--push",
             multiple=True,
             metavar="TIME:FORCE:DIRECTION",
-            help="Somebody pushes her: second, newtons, and ahead, left, back, right or degrees to her left.",
+            help="Somebody pushes her: second of the song, newtons, and ahead, left, back, right or degrees to her "
+            "left.",
         ),
     ):
         command = option(command)

@@ -16,6 +16,7 @@ from dancetutor_cli.commands.chart_options import (
     gait_option,
     motion_option,
     number,
+    push_options,
     section_option,
     style_option,
 )
@@ -64,6 +65,7 @@ _OPTIONS = (
     form_option,
     motion_option,
     style_option,
+    push_options,
     click.option(
         "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
     ),
@@ -130,6 +132,7 @@ def film_options(command: _Command) -> _Command:
 def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmRequest:
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
+    from dancetutor_cli.jobs.bake import style_for
     from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.video.ahead import parse_ahead
     from dancetutor_cli.video.film_look import FilmLook
@@ -180,7 +183,9 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         gait=options["gait"],
         form=options["form"],
         motion=options["motion"],
-        style=options["style"],
+        style=style_for(options["style"], options["push"], options["trip"]),
+        push=options["push"],
+        trip=options["trip"],
         background=background,
     )
 

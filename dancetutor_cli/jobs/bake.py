@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +42,7 @@ class BakeTask:
     form : name or file of how she stands and turns
     jobs : processes among which the pieces of a long song are shared
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
-    push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds; only with a style
+    push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds of the song; only with a style
     """
 
     path: Path
@@ -117,14 +117,29 @@ def check_style(style: str | None, bar: bool) -> None:
     engine()
 
 
-def wishes_of(push: Sequence[str], trip: Sequence[float], corrections: tuple[str, ...] = ()) -> Wishes | None:
-    """What shall happen to a motion in a ragdoll; None for nothing. UsageError for a push that is none."""
+def style_for(style: str | None, push: Sequence[str], trip: Sequence[float]) -> str | None:
+    """The style that is asked for, and neutral where none is, but something befalls her."""
+    return "neutral" if style is None and (push or trip) else style
+
+
+def wishes_of(
+    push: Sequence[str], trip: Sequence[float], corrections: tuple[str, ...] = (), rate: float = 1.0
+) -> Wishes | None:
+    """What shall happen to a motion in a ragdoll; None for nothing. UsageError for a push that is none.
+
+    rate : of the music; pushes and trips come at seconds of the song, as sections do
+    """
     if not (push or trip or corrections):
         return None
     from dancetutor_cli.physics.pipeline import Wishes
     from dancetutor_cli.physics.pushes import Stumble, parse_push
 
-    return Wishes(corrections, tuple(parse_push(text) for text in push), tuple(Stumble(second) for second in trip))
+    pushes = (parse_push(text) for text in push)
+    return Wishes(
+        corrections,
+        tuple(replace(push, second=push.second / rate) for push in pushes),
+        tuple(Stumble(second / rate) for second in trip),
+    )
 
 
 def bake_asked(asked: Asked, task: BakeTask) -> Motion:
@@ -231,7 +246,7 @@ class BakedDance:
         from dancetutor_cli.bake.styled import styled
         from dancetutor_cli.motion.settings import load_settings
 
-        befalls = wishes_of(self.task.push, self.task.trip)
+        befalls = wishes_of(self.task.push, self.task.trip, rate=self.task.rate)
         settings = load_settings(self.task.motion, self.task.form)
         return styled(bake_asked(self.asked, self.task), self.task.style, settings, befalls)
 

@@ -58,8 +58,9 @@ def danced(request: FilmRequest, subject: Subject) -> Danced:
 
 def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     chart = subject.chart
-    if request.bar or request.play is not None:
-        option = "--bar" if request.bar else "--play"
+    alone = {"--bar": request.bar, "--play": request.play, "--push": request.push, "--trip": request.trip}
+    option = next((name for name, given in alone.items() if given), None)
+    if option is not None:
         raise UsageError(f"{option} is for one dancer, and {chart.label} is for two: choose with --player 1 or 2")
     whole = load_pad(_WHOLE[chart.steps_type])
     assert whole is not None
@@ -123,6 +124,7 @@ def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> di
     from dancetutor_cli.bake import bake
     from dancetutor_cli.bake.rate import at_rate
     from dancetutor_cli.bake.styled import styled
+    from dancetutor_cli.jobs.bake import wishes_of
     from dancetutor_cli.motion.settings import load_settings
 
     settings = load_settings(request.motion, request.form)
@@ -142,6 +144,7 @@ def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> di
             ),
             request.style,
             settings,
+            wishes_of(request.push, request.trip, rate=rate),
         ).motion
         for rate in sorted({one.rate for one in passes})
     }

@@ -37,6 +37,7 @@ class FilmRequest:
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
     background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
+    push, trip : what befalls her, as `jobs.bake.wishes_of` takes it; only with a style
     sync : seconds by which the music plays late against the notes
     """
 
@@ -56,6 +57,8 @@ class FilmRequest:
     motion: Path | None = None
     form: str = USUAL
     style: str | None = None
+    push: tuple[str, ...] = ()
+    trip: tuple[float, ...] = ()
     background: bool = False
 
 
@@ -87,10 +90,11 @@ class Subject:
 def look_up(request: FilmRequest) -> Subject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     if request.look.layout.dancer is not None:
-        from dancetutor_cli.jobs.bake import check_motion, check_style
+        from dancetutor_cli.jobs.bake import check_motion, check_style, wishes_of
 
         check_motion(request.motion, request.gait, request.form)
         check_style(request.style, request.bar)
+        wishes_of(request.push, request.trip)
     song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section, both=True)
     music, missing = (None, None) if request.mute else find_music(song, chart)
     instead = "the film ends after the last note" if request.background else "the film has claps on the steps instead"

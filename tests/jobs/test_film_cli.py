@@ -61,6 +61,8 @@ def test_hostile_files_are_one_line_and_no_film(
         (("-o", "film.avi"), ".mp4"),
         (("-o", "nowhere/film.mp4"), "folder"),
         (("--font", "nofont.ttf", "--section", "4:5"), "nofont.ttf"),
+        (("--push", "9:300:up"), "ahead, left, back, right"),
+        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 9.000 s"),
     ],
 )
 def test_what_does_not_exist_is_refused_with_what_does(

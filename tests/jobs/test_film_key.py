@@ -92,6 +92,8 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "gait": ["heels", str(folder / "strut.yaml")],
         "motion": [folder / "motion.yaml"],
         "style": ["neutral", str(folder / "sway.yaml")],
+        "push": [("1:300:left",)],
+        "trip": [(1.0,)],
         "background": [True],
         "form": ["edge", str(folder / "strut.yaml")],
     }

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, bake_asked
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
@@ -63,3 +63,15 @@ def test_she_falls_in_the_film_as_everybody_does(prepared: Prepared) -> None:
         mass = centre_of_mass(motion.skeleton, *world_transforms(motion.skeleton, rotations, root))
         falls = np.diff(mass[:, 1], n=2) * FPS**2  # in seconds of the film
         assert np.median(np.sort(falls)[:20]) == pytest.approx(-9.81, rel=0.03)
+
+
+def test_a_push_comes_at_its_second_of_the_song_as_in_animate(song: Path) -> None:
+    befalls = {"style": "neutral", "push": ("5:300:left",)}
+    look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
+    practice = Practice((0.5,))
+    request = FilmRequest(song, Selection(), look, fps=FPS, section="4:6", mute=True, practice=practice, **befalls)
+    film = prepare(request, look_up(request))
+    assert any(note.startswith("at rate 0.5, pushed at 10.000 s with 300 N") for note in film.warnings)
+    task = BakeTask(song, Selection(), "thesis", fps=FPS, section="4:6", rate=0.5, **befalls)
+    animated = BakedDance(ask(task), task, load_dancer()).own_motion
+    np.testing.assert_array_equal(film.plan.motions[0.5].root, animated.root)
