@@ -1,8 +1,10 @@
 """Our technique counts beside those that ITGmania wrote: its song cache, or a table in CSV with its names.
 
-A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix, whose charts say where they are
-from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`) and how often the game counts what (`#TECHCOUNTS`): so many numbers for
-each of two players, ten since ITGmania tells half and full crossovers apart, six before.
+A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes, whose charts say
+how often the game counts what (`#TECHCOUNTS`: with six decimals, for each of two players, who get the same) and, last,
+where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania tells half and
+full crossovers apart, six before, and five before it counted doublesteps. The game finds feet for dance-single and
+dance-double only; what it writes for other steps types are zeros that say nothing.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ TEN = (
     "Sideswitches", "Jacks", "Brackets", "Doublesteps",
 )  # fmt: skip
 SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
-_PLAYERS = 2
+FIVE = SIX[:5]
+COUNTED = ("dance-single", "dance-double")  # steps types that the game has a pad for
+_PLAYERS = 2  # of the game: it writes the numbers of both, whatever the chart
 _MOST = 1_000_000  # times that anything happens in a chart
 
 
@@ -83,7 +87,7 @@ def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
             said[tag.name] = _text(data, tag)
             continue
         counts = _counts(said.get("TECHCOUNTS", ""))
-        if counts is not None:
+        if counts is not None and said.get("STEPSTYPE", "").lower() in COUNTED:
             # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
             name = said.get("STEPFILENAME") or path.as_posix()
             description = said.get("DESCRIPTION", "")
@@ -96,13 +100,13 @@ def _text(data: bytes, tag: Tag) -> str:
 
 
 def _counts(text: str) -> dict[str, int] | None:
-    """The first player's numbers by name; None if it is no such list."""
+    """The first player's numbers by name; None if it is no such list: another length, or -1, for not counted."""
     try:
         numbers = [round(float(part)) for part in text.split(",")]
     except (ValueError, OverflowError):
         return None
-    for names in (TEN, SIX):
-        if len(numbers) in (len(names), _PLAYERS * len(names)) and all(0 <= n <= _MOST for n in numbers):
+    for names in (TEN, SIX, FIVE):
+        if len(numbers) == _PLAYERS * len(names) and all(0 <= n <= _MOST for n in numbers):
             return dict(zip(names, numbers, strict=False))
     return None
 
@@ -141,7 +145,7 @@ def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Mapping[str, int]]
             continue
         for subject in solved(song, task.selection.charts(song), task):
             chart, play = subject.chart, subject.play
-            if play is None or chart.player:  # of a couple the game counts both players' steps together
+            if play is None or chart.player:  # the game finds no feet in charts for two
                 continue
             mine = _key(task.path.absolute().as_posix(), chart.steps_type, chart.difficulty, chart.description)
             near = by_chart[mine.song, mine.steps_type, mine.difficulty]

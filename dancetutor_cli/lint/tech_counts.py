@@ -19,7 +19,7 @@ from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Part, Play, StepKind
 
-_JACK, _DOUBLESTEP, _FOOTSWITCH = 176, 235, 300  # milliseconds between two rows, the game's own limits
+_JACK, _DOUBLESTEP, _FOOTSWITCH = 176_000, 235_000, 300_000  # microseconds between two rows, the game's own limits
 _TOE = int(Part.TOE)
 _WRITTEN = np.ones(len(StepKind), dtype=bool)
 _WRITTEN[[StepKind.NONE, StepKind.ROLL_TAP]] = False
@@ -29,7 +29,7 @@ _WRITTEN[[StepKind.NONE, StepKind.ROLL_TAP]] = False
 class _Steps:
     """Rows with steps that a foot presses, n; columns c. -1: none.
 
-    row : of the play; gap : (n - 1,) milliseconds from one to the next, free of float noise; count : steps in the row
+    row : of the play; gap : (n - 1,) microseconds from one to the next, free of float noise; count : steps in the row
     heel, toe : for each foot (n,) the column that it presses
     x : for each foot (n,) its place, NaN without; of a bracket between its panels; heel_x : that of the heel
     cell : steps of feet, in order: row * c + column; foot : who presses it
@@ -90,10 +90,10 @@ def _steps_of(play: Play, pad: Pad) -> _Steps:
         toes.append(toe_of)
         heel_x.append(places[heel])
         x.append(np.where(toe_of >= 0, (heel_x[foot] + places[toe_of]) / 2, heel_x[foot]))
-    waited = np.cumsum(play.rows.milliseconds)[row]
+    gap = np.rint(np.diff(play.rows.second[row]) * 1e6).astype(np.int64)
     feet = (limb == 0) | (limb == 1)
     return _Steps(
-        row, waited[1:] - waited[:-1], np.bincount(number, minlength=len(row)), heels, toes, x, heel_x,
+        row, gap, np.bincount(number, minlength=len(row)), heels, toes, x, heel_x,
         (number * c + column)[feet], limb[feet],
     )  # fmt: skip
 

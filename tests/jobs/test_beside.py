@@ -37,24 +37,62 @@ SONG = """\
 0001
 ;
 """
+# As NotesWriterSSC.cpp of ITGmania 1.0 writes it: no notes, six decimals, both players, the file's name last. The steps
+# type that it has no pad for gets zeros; the last chart is of the version before half and full crossovers.
 CACHE = """\
 #VERSION:0.83;
 #TITLE:Two;
-#STEPFILENAME:/Songs/Pack/Two/two.sm;
+#BPMS:0.000=180.000;
+#BGCHANGES:;
+#KEYSOUNDS:;
+#ATTACKS:
+;
+// cache tags:
+#FIRSTSECOND:0.000000;
+#LASTSECOND:2.333333;
+#SONGFILENAME:/Songs/Pack/Two/two.sm;
+#HASMUSIC:0;
+#HASBANNER:0;
+#MUSICLENGTH:100.000000;
+// end cache tags
+
+//---------------dance-single - me----------------
 #NOTEDATA:;
+#CHARTNAME:;
 #STEPSTYPE:dance-single;
 #DESCRIPTION:me;
+#CHARTSTYLE:;
 #DIFFICULTY:Hard;
 #METER:9;
 #RADARVALUES:0.1,0.2,0.0,0.0,0.0;
+#CREDIT:me;
+// step cache tags:
 #TECHCOUNTS:5.000000,4.000000,1.000000,2.000000,1.000000,1.000000,0.000000,3.000000,0.000000,7.000000,{second};
+#MEASUREINFO:6.000000,8|6.000000,8;
+#GROOVESTATSHASH:0123456789abcdef;
 #STEPFILENAME:/Songs/Pack/Two/two.sm;
+// end step cache tags
+
+//---------------pump-single - me----------------
+#NOTEDATA:;
+#STEPSTYPE:pump-single;
+#DESCRIPTION:me;
+#DIFFICULTY:Hard;
+#METER:9;
+// step cache tags:
+#TECHCOUNTS:{zeros};
+#MEASUREINFO:|;
+#STEPFILENAME:/Songs/Pack/Two/two.sm;
+// end step cache tags
+
+//---------------dance-single - me----------------
 #NOTEDATA:;
 #STEPSTYPE:dance-single;
 #DESCRIPTION:me;
 #DIFFICULTY:Challenge;
-#TECHCOUNTS:1,1,1,1,1,1;
+#TECHCOUNTS:1.000000,1.000000,1.000000,1.000000,1.000000,1.000000,9.000000,9.000000,9.000000,9.000000,9.000000,9.000000;
 #STEPFILENAME:/Songs/Pack/Two/two.sm;
+// end step cache tags
 """
 
 
@@ -65,8 +103,9 @@ def places(tmp_path: Path) -> tuple[Path, Path]:
     songs.mkdir(parents=True)
     cache.mkdir(parents=True)
     (songs / "two.sm").write_text(SONG, encoding="utf-8")
-    second = ",".join(["9.000000"] * 10)
-    (cache / "Songs_Pack_Two").write_text(CACHE.replace("{second}", second), encoding="utf-8")
+    second, zeros = ",".join(["9.000000"] * 10), ",".join(["0.000000"] * 20)
+    text = CACHE.replace("{second}", second).replace("{zeros}", zeros)
+    (cache / "Songs_Pack_Two").write_text(text, encoding="utf-8", newline="\r\n")
     (cache / "index.cache").write_bytes(b"\0\1\2 no song")
     return songs.parent.parent, cache
 
@@ -83,6 +122,22 @@ def test_the_first_players_numbers_are_read_by_name(places: tuple[Path, Path]) -
     assert by_difficulty["Hard"] == dict(zip(TEN, (5, 4, 1, 2, 1, 1, 0, 3, 0, 7), strict=True))
     assert by_difficulty["Challenge"]["Doublesteps"] == 1 and "HalfCrossovers" not in by_difficulty["Challenge"]
     assert {key.song for key in theirs} == {("two", "two.sm")}
+    assert {key.steps_type for key in theirs} == {"dance-single"}  # the zeros of Pump say nothing
+
+
+@pytest.mark.parametrize(
+    ("numbers", "first"),
+    [("1,2,3,4,5,6,7,8,9,10", {"Crossovers": 1, "Footswitches": 2, "Sideswitches": 3, "Jacks": 4, "Brackets": 5}),
+     (",".join(["-1.000000"] * 20), None), ("1,2,3,4,5,6", None), (",".join("1" * 22), None)],
+)  # fmt: skip
+def test_only_lists_that_the_game_writes_are_read(tmp_path: Path, numbers: str, first: dict[str, int] | None) -> None:
+    text = f"#NOTEDATA:;#STEPSTYPE:dance-double;#DIFFICULTY:Hard;#TECHCOUNTS:{numbers};#STEPFILENAME:/Songs/P/T/t.sm;"
+    (tmp_path / "Songs_P_T").write_text(text)
+    if first is None:
+        with pytest.raises(UsageError, match="TECHCOUNTS"):
+            read_theirs(tmp_path)
+    else:
+        assert list(read_theirs(tmp_path).values()) == [first]
 
 
 def test_the_table_tells_ours_theirs_and_both(places: tuple[Path, Path]) -> None:
