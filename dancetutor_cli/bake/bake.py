@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
@@ -23,6 +24,7 @@ from dancetutor_cli.motion.ik.full_body import Poses, solve
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.gaze import look
+from dancetutor_cli.motion.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 from dancetutor_cli.motion.swing.foot_path import both_feet
@@ -53,6 +55,7 @@ class How(TypedDict, total=False):
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
+    let_go : why notes that no limb has in the play are let go, where the caller has decided that
     each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
 
@@ -60,6 +63,7 @@ class How(TypedDict, total=False):
     rate: float
     bar: bool
     gait: str
+    let_go: tuple[LetGo, ...]
     each: Each
 
 
@@ -114,7 +118,8 @@ def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Pla
     def second(tick: int) -> float:
         return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate
 
-    plan = plan_footwork(play, second, how.get("gait", "flat"), context)
+    play, gone = without_unplayable(play, pad, settings.unplayable, how.get("let_go", ()))
+    plan = replace(plan_footwork(play, second, how.get("gait", "flat"), context), let_go=gone)
     return (plan if rail is None else grips_of(plan, _standing(plan), context)), context
 
 
@@ -148,7 +153,9 @@ def bake_plan(plan: Plan, context: Context, fps: float, section: tuple[float, fl
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
     ground = context.ground if plan.walks else None
-    return Motion(context.skeleton, fps, *done.keys, contacts, context.bar, grips, ground, done.notes)
+    gone = tuple(one for one in plan.let_go if start <= one.second <= end)
+    notes = (*((told(gone),) if gone else ()), *done.notes)
+    return Motion(context.skeleton, fps, *done.keys, contacts, context.bar, grips, ground, notes, gone)
 
 
 def bake_piece(piece: Piece) -> BakedPiece:

@@ -161,9 +161,8 @@ def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
 def _write(dance: BakedDance, target: Path, report_to: str | None, plot: Path | None) -> None:
     form = FORMATS[target.suffix.lower()]
     measured = report_to is not None or plot is not None
-    if form.has_motion or measured:
-        for note in dance.own_motion.notes:
-            click.echo(f"warning: {note}", err=True)
+    for note in dance.notes(form.has_motion or measured):
+        click.echo(f"warning: {note}", err=True)
     click.echo(f"{target}: {form.write(target, dance)}, {dance.label}")
     if measured:
         from dancetutor_cli.bake import mines_of, report

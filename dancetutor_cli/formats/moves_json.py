@@ -9,13 +9,15 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
                 "height": 0.05}],
      "turns": [{"start": 1.2, "end": 1.5, "yaw": 20.0}],
      "contacts": [{"limb": "left_foot", "kind": "tap", "part": null, "column": 0, "start": 1.5, "end": 2.1,
-                   "panel": [..]}]}
+                   "panel": [..]}],
+     "let_go": [{"second": 31.2, "column": 3, "why": "leap"}]}
 
 `start` is how she stands before the first of these moves. `from` and `to` are the ball of the foot, or for a hand its
 palm; kind is step, jump, gallop, evade, pivot, aside (a side-step in a wait) or walk (on the floor beside the pad its
 "level" is below 0); of a hand reach, on its way to a panel, `from` null where it hung free, and press, down on it.
 With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
-A reader must survive added keys.
+`let_go` are notes that she does not play, because nobody does: why is limbs (more panels at once than limbs), leap (a
+foot that has just stepped elsewhere) or hand (one that has just been down). A reader must survive added keys.
 """
 
 from __future__ import annotations
@@ -80,6 +82,11 @@ def moves_data(
             }
             for c in plan.contacts
             if start <= c.start <= end
+        ],
+        "let_go": [
+            {"second": _round(one.second), "column": one.column, "why": one.why.name.lower()}
+            for one in plan.let_go
+            if start <= one.second <= end
         ],
     }
 

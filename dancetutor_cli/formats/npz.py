@@ -18,6 +18,7 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | contact_kind | (c,) int8 | 1 tap, 2 lift, 3 hold, 4 roll head, 5 tap of a roll |
 | contact_part | (c,) int8 | 0 whole foot, 1 heel, 2 toe |
 | contact_panel | (c, 2) | (x, z) of the panel's centre in the world |
+| let_go_second, let_go_row, let_go_column, let_go_why | (k,) | notes nobody plays; 0 limbs, 1 leap, 2 hand |
 | ground | (5,) | if she leaves the pad: its corners x0, z0, x1, z1, and how much lower the floor is |
 | bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
 | bar_spans | (k, 2) | x from and to of its pieces |
@@ -38,12 +39,14 @@ import numpy as np
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.baked import Bar, Contact, Grip, Ground, Motion
+from dancetutor_cli.motion.let_go import LetGo, Why
 from dancetutor_cli.rig.skeleton import Skeleton
 
 SCHEMA = 1
 _ARRAYS = ("schema", "names", "parents", "offsets", "fps", "times", "rotations", "root")
 _CONTACTS = ("start", "end", "limb", "column", "kind", "part", "row", "panel")
 _GRIPS = {"start": "f8", "end": "f8", "side": "i1", "x": "f8"}
+_LET_GO = {"second": "f8", "row": "i4", "column": "i4", "why": "i1"}
 _CONTACT_TYPES = {"limb": "i1", "kind": "i1", "part": "i1", "column": "i4", "row": "i4"}
 
 
@@ -64,6 +67,9 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
     if motion.bar is not None:
         arrays |= _bar_arrays(motion.bar, motion.grips)
+    if motion.let_go:
+        for name, kind in _LET_GO.items():
+            arrays[f"let_go_{name}"] = np.array([getattr(one, name) for one in motion.let_go], dtype=kind)
     if motion.ground is not None:
         arrays["ground"] = np.array([*motion.ground.low, *motion.ground.high, motion.ground.drop])
     write_atomic(path, _zipped(arrays))
@@ -122,7 +128,12 @@ def read_npz(path: Path) -> Motion:
     ]
     fps, times = float(arrays["fps"]), arrays["times"]
     parts = (times, arrays["rotations"], arrays["root"], tuple(contacts))
-    return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays))
+    return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays), let_go=_let_go(arrays))
+
+
+def _let_go(arrays: dict[str, Any]) -> tuple[LetGo, ...]:
+    columns = [arrays.get(f"let_go_{name}", np.zeros(0)) for name in _LET_GO]
+    return tuple(LetGo(float(s), int(r), int(c), Why(int(w))) for s, r, c, w in zip(*columns, strict=True))
 
 
 def _zipped(arrays: dict[str, Any]) -> bytes:

@@ -262,6 +262,16 @@ class BakedDance:
 
         return retarget(self.own_motion, self.character)
 
+    def notes(self, of_motion: bool) -> tuple[str, ...]:
+        """What there is to say, for people: of the whole motion, or only of the moves."""
+        if of_motion:
+            return self.own_motion.notes
+        from dancetutor_cli.motion.let_go import told
+
+        start, end = self.section
+        line = told([one for one in self.moves[0].let_go if start <= one.second <= end])
+        return (line,) if line else ()
+
     @cached_property
     def moves(self) -> tuple[Plan, Bar | None]:
         """Only the moves, and the bar that she holds."""

@@ -30,7 +30,8 @@ _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN
 class Danced:
     """A chart as it is danced.
 
-    solved : each player's part, one for most charts; play : what the picture shows, of both; pad : under both
+    solved : each player's part, one for most charts; play : what the picture shows, of both, without the notes that
+    nobody plays at the fastest rate; pad : under both
     motions : at each rate, none where the picture has no dancer; partners : the second player's
     """
 
@@ -53,7 +54,8 @@ def danced(request: FilmRequest, subject: Subject) -> Danced:
         from dancetutor_cli.formats.play_json import read_play
 
         play = read_play(request.play, chart, play.rows, pad)
-    return Danced((solved,), play, pad, _motions(request, replace(subject, chart=chart), play, pad))
+    shown, motions = _motions(request, replace(subject, chart=chart), play, pad)
+    return Danced((replace(solved, play=play),), shown, pad, motions)
 
 
 def _by_two(request: FilmRequest, subject: Subject) -> Danced:
@@ -68,8 +70,8 @@ def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     plays, motions = [], []
     for one in solved:
         play, pad = _known(request, one)
-        plays.append(play)
-        baked = _motions(request, replace(subject, chart=one.chart), play, pad)
+        shown, baked = _motions(request, replace(subject, chart=one.chart), play, pad)
+        plays.append(shown)
         motions.append({rate: _moved(motion, one.chart, pad, whole) for rate, motion in baked.items()})
     return Danced(solved, _together(chart, plays, whole), whole, motions[0], motions[1])
 
@@ -117,23 +119,29 @@ def _together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
     )
 
 
-def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> dict[float, Motion]:
-    """The dancer's motion at each rate of the film, on the clock that is heard there: she falls as fast as all do."""
-    if request.look.layout.dancer is None:
-        return {}
-    from dancetutor_cli.bake import bake
+def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> tuple[Play, dict[float, Motion]]:
+    """The play without what nobody plays at the fastest rate of the film, and the dancer's motion at each of them, on
+    the clock that is heard there: she falls as fast as all do."""
     from dancetutor_cli.bake.rate import at_rate
-    from dancetutor_cli.bake.styled import styled
-    from dancetutor_cli.jobs.bake import wishes_of
+    from dancetutor_cli.motion.let_go import without_unplayable
     from dancetutor_cli.motion.settings import load_settings
 
     settings = load_settings(request.motion, request.form)
     passes = subject.clock.passes
-    return {
+    rates = sorted({one.rate for one in passes})
+    fastest, gone = without_unplayable(at_rate(play, rates[-1]), pad, settings.unplayable)
+    shown = replace(fastest, rows=play.rows)
+    if request.look.layout.dancer is None:
+        return shown, {}
+    from dancetutor_cli.bake import bake
+    from dancetutor_cli.bake.styled import styled
+    from dancetutor_cli.jobs.bake import wishes_of
+
+    return shown, {
         rate: styled(
             bake(
                 subject.chart,
-                at_rate(play, rate),
+                at_rate(shown, rate),
                 pad,
                 fps=request.fps,
                 section=(passes[0].start / rate, passes[-1].end / rate),
@@ -141,10 +149,11 @@ def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> di
                 bar=request.bar,
                 gait=request.gait,
                 settings=settings,
+                let_go=gone,
             ),
             request.style,
             settings,
             wishes_of(request.push, request.trip, rate=rate),
         ).motion
-        for rate in sorted({one.rate for one in passes})
+        for rate in rates
     }

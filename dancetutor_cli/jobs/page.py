@@ -108,6 +108,8 @@ def _content(
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.passages import hardest
     from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.motion.let_go import without_unplayable
+    from dancetutor_cli.motion.settings import load_settings
     from dancetutor_cli.page import Content
     from dancetutor_cli.page.facts import beats_of, ticks_of, words_of
     from dancetutor_cli.page.flips import flips_of
@@ -117,14 +119,16 @@ def _content(
 
     asked, other = both
     song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
+    settings = load_settings(task.bake.motion, task.bake.form)
+    shown, _ = without_unplayable(play, pad, settings.unplayable)
     overrides, ignores, problems = overrides_for(song, chart)
     subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)
     solved = task.bake.play_file is None  # only of the solver's own play can it say what else would cost
     return Content(
         words=words_of(song, chart, preset.name),
-        play=play,
+        play=replace(play, moves=shown.moves),
         pad=pad,
-        notes=note_track(chart, play, parse_segments("")),
+        notes=note_track(chart, shown, parse_segments("")),
         ticks=ticks_of(chart),
         beats=beats_of(chart),
         findings=findings_of(subject),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.let_go import LetGo
 from dancetutor_cli.rig.skeleton import Skeleton
 
 
@@ -82,6 +83,7 @@ class Motion:
     bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
     notes : what there is to say of the bake, for people: where limits of the body had to give way
     ground : pad and floor, None where she stays on the pad and the ground has the height 0 everywhere
+    let_go : notes that she does not play, sorted by second
     """
 
     skeleton: Skeleton
@@ -94,3 +96,4 @@ class Motion:
     grips: tuple[Grip, ...] = ()
     ground: Ground | None = None
     notes: tuple[str, ...] = ()
+    let_go: tuple[LetGo, ...] = ()

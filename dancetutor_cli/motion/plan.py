@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Contact, Grip
 from dancetutor_cli.motion.foot_moves import Move, Swing
+from dancetutor_cli.motion.let_go import LetGo
 
 Array = NDArray[np.float64]
 
@@ -72,6 +73,7 @@ class Plan:
     grips : when her hands rest on the bar behind her, as in `Motion`; walks : in order of time
     lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
         play is danced as the mirror image
+    let_go : notes that she does not play, in order of time
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -83,6 +85,7 @@ class Plan:
     grips: tuple[Grip, ...] = ()
     walks: tuple[Route, ...] = ()
     lead: int = 0
+    let_go: tuple[LetGo, ...] = ()
 
     @property
     def hand(self) -> float:

@@ -301,6 +301,14 @@ class HomeSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class UnplayableSettings:
+    """What no person plays."""
+
+    leap: float
+    hand: float
+
+
+@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 

@@ -25,6 +25,7 @@ from dancetutor_cli.motion.sections import (
     MineSettings,
     SamplingSettings,
     StepSettings,
+    UnplayableSettings,
     WalkSettings,
 )
 from dancetutor_cli.resources import config_path
@@ -53,6 +54,7 @@ __all__ = [
     "MotionSettings",
     "SamplingSettings",
     "StepSettings",
+    "UnplayableSettings",
     "WalkSettings",
     "default_settings",
     "load_settings",
@@ -79,6 +81,7 @@ class MotionSettings:
     walk: WalkSettings
     aside: AsideSettings
     home: HomeSettings
+    unplayable: UnplayableSettings
     sampling: SamplingSettings
 
 

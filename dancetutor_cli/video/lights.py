@@ -1,9 +1,12 @@
-"""How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held."""
+"""How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held.
+
+A note that nobody plays lights nothing."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.notes import Presses
 
 HELD = 0.62  # brightness while held, after the flash of the start
@@ -15,7 +18,8 @@ class PanelLights:
 
     def __init__(self, presses: Presses, columns: int, fade: float) -> None:
         self.presses, self.fade = presses, fade
-        self._columns = [np.flatnonzero(presses.column == c) for c in range(columns)]
+        pressed = presses.limb != Limb.UNPLAYED
+        self._columns = [np.flatnonzero((presses.column == c) & pressed) for c in range(columns)]
         self._starts = [presses.start[mine] for mine in self._columns]
 
     def at(self, column: int, second: float) -> tuple[float, int]:

@@ -27,6 +27,7 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
         Figure("contacts", float(len(errors)), ""),
         Figure("contact error", worst, "ms", 1.0),
         Figure("contacts missed", float(missed.sum()), "", 0.0),
+        Figure("notes let go", float(len(motion.let_go)), ""),
     )
     return figures, errors
 

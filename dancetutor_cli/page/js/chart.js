@@ -3,6 +3,7 @@
 import { lastUpTo } from "./maths.js";
 
 export const KIND = { TAP: 1, HOLD: 2, ROLL: 3, MINE: 4, LIFT: 5, FAKE: 6 };
+export const UNPLAYED = -2; // play.played.Limb: a note that nobody plays
 const STEPS = [KIND.TAP, KIND.HOLD, KIND.ROLL, KIND.LIFT];
 const ROLL_TAP = 5; // play.played.StepKind
 const TICKS = 48;
@@ -13,7 +14,7 @@ const TRICKY = ["crossover-half", "crossover-full", "spin", "doublestep", "jump-
 /**
  * @typedef {object} Step one panel of a row
  * @property {number} column
- * @property {number} limb 0 left foot, 1 right foot, 2 left hand, 3 right hand, -1 nobody
+ * @property {number} limb 0 left foot, 1 right foot, 2 left hand, 3 right hand, -1 nobody, UNPLAYED
  * @property {number} part 0 whole foot, else heel or toe
  * @property {number} note index of its note
  */

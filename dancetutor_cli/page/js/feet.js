@@ -1,5 +1,7 @@
 // What the floor shows of feet and hands: where they are over it, how near, and how strongly they are marked.
 
+import { UNPLAYED } from "./chart.js";
+
 /**
  * @typedef {object} Mark
  * @property {number[]} line heel x, z, toe x, z, metres
@@ -74,7 +76,7 @@ export function lightsAt(chart, second, fade, colours, out) {
  */
 export function lightOf(chart, column, second, fade) {
   const n = chart.lastPress(column, second + 1e-6);
-  if (n < 0) return { level: 0, limb: -1 };
+  if (n < 0 || (chart.limb[n] === UNPLAYED && !chart.given.has(n))) return { level: 0, limb: -1 };
   const start = chart.second[n];
   const end = chart.end[n];
   const fresh = 1 - (second - start) / fade;

@@ -1,10 +1,10 @@
 // The scrolling notes on a 2-D canvas, in the films' colours, with L and R markers.
 
-import { KIND } from "./chart.js";
+import { KIND, UNPLAYED } from "./chart.js";
 import { lightOf } from "./feet.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-import { INK, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, notePath } from "./noteart.js";
+import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, notePath } from "./noteart.js";
 
 /**
  * @typedef {object} Scene
@@ -198,6 +198,8 @@ export class Highway {
       const row = this.rowOf.get(n);
       if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
         drawMarker(c, { limb, colour: style.limbs[limb], changed }, x, top, 0.5 * m.size);
+      } else if (!fake && limb === UNPLAYED) {
+        drawMarker(c, { limb, colour: NOBODY, changed }, x, top, 0.5 * m.size);
       }
       if (n === scene.chosen) {
         c.lineWidth = 3 * m.ratio;

@@ -5,6 +5,7 @@ const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], 
   [-0.62, 0.32], [-0.94, 0]];
 const SQUARE = [[-0.7, -0.7], [0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
 export const INK = "#0a0b14";
+export const NOBODY = "#969aaa"; // of a note that nobody plays
 
 /** @typedef {CanvasRenderingContext2D} Context */
 
@@ -76,7 +77,7 @@ export function drawMine(c, colour, x, y, size) {
 }
 
 /**
- * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring.
+ * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring; nobody a cross.
  * @param {Context} c @param {{limb: number, colour: string, changed: boolean}} who changed: by the author
  * @param {number} x @param {number} y @param {number} size
  */
@@ -90,6 +91,17 @@ export function drawMarker(c, { limb, colour, changed }, x, y, size) {
   c.lineWidth = 0.08 * size;
   c.strokeStyle = changed ? "#fff" : INK;
   c.stroke();
+  if (limb < 0) {
+    c.beginPath();
+    for (const dy of [-1, 1]) {
+      c.moveTo(x - 0.22 * size, y - 0.22 * size * dy);
+      c.lineTo(x + 0.22 * size, y + 0.22 * size * dy);
+    }
+    c.lineWidth = 0.12 * size;
+    c.strokeStyle = INK;
+    c.stroke();
+    return;
+  }
   if (limb >= 2) {
     c.beginPath();
     c.arc(x, y, 0.33 * size, 0, 2 * Math.PI);

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.motion.let_go import MOVE
+from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
@@ -69,16 +71,24 @@ class _Passage:
     def tag(self) -> str:
         """What it begins with, for the narrow place beside the notes, whose markers say which foot it is."""
         said, count = next(iter(self.words.items()))
-        short = said.partition(": ")[2] or said
+        short = said.partition(": ")[2] or said.partition(" (")[0]
         return short if count == 1 else f"{short} ×{count}"
 
 
-def callouts_of(subject: ChartSubject, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
+def callouts_of(
+    subject: ChartSubject, play: Play | None, style: CallStyle, scrolls: ScrollSegments
+) -> tuple[Callout, ...]:
     """Everything to call out, a passage at a time, in order of time.
 
     Moves in a row, such as one crossover after the other, are one passage with a count.
+
+    subject : for the linter; play : what the picture shows of it. Of a row with a note that nobody
+    plays it is always said what the linter finds there.
     """
-    found = [*_moves(subject, style), *(_findings(subject) if style.findings else ())]
+    ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
+    findings = list(_findings(subject)) if style.findings or ticks else []
+    why = {} if style.findings else {tick: said for tick, _, said, _ in findings if tick in ticks}
+    found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
     timing = subject.chart.timing
     told = sorted({tick for first, last, *_ in found for tick in (first, last)})
     seconds = dict(zip(told, timing.seconds(np.array(told, dtype=np.int64)).tolist(), strict=True))
@@ -105,9 +115,11 @@ def callouts_of(subject: ChartSubject, style: CallStyle, scrolls: ScrollSegments
     )
 
 
-def _moves(subject: ChartSubject, style: CallStyle) -> Iterator[tuple[int, int, str, int]]:
-    """First and last tick of each move, what is said, and that it is no finding."""
-    play, pad, words = subject.play, subject.pad, style.words
+def _moves(
+    pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]
+) -> Iterator[tuple[int, int, str, int]]:
+    """First and last tick of each move, what is said, and that it is no finding; why : what is added, by tick."""
+    words = style.words
     if play is None or pad is None:
         return
     ticks = play.rows.tick.tolist()
@@ -124,7 +136,8 @@ def _moves(subject: ChartSubject, style: CallStyle) -> Iterator[tuple[int, int, 
         kind = now
         told = {n for n in names if n in words and n not in _CROSSED}
         for name in sorted(told - _SAID_BY_A_BRACKET if "bracket" in told else told):
-            yield ticks[row], ticks[row], _filled(style, name, play, pad, row), 0
+            reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
+            yield ticks[row], ticks[row], _filled(style, name, play, pad, row) + reason, 0
     if crossed and kind in words:
         yield crossed[0], ticks[-1], words[kind], 0
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.colours import limb_colours
-from dancetutor_cli.play.played import StepKind
+from dancetutor_cli.play.played import Limb, StepKind
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import EPSILON, PanelLights
 from dancetutor_cli.video.overlay import shapes, sprites
@@ -207,8 +207,8 @@ class NextRows:
             for foot, column in enumerate(self.rows.feet[row]):
                 if column >= 0:
                     self._shoe(frame, pads, size, int(column), foot, int(limbs[column]) != foot)
-            for column in np.flatnonzero(limbs >= 2):
-                mark = sprites.marker(max(8, round(0.5 * pads.unit)), int(limbs[column]), self.face)
+            for column in np.flatnonzero((limbs >= 2) | (limbs == Limb.UNPLAYED)):
+                mark = sprites.marker(max(8, round(0.5 * pads.unit)), max(int(limbs[column]), -1), self.face)
                 x, y = pads.place(*pads.panels[column])
                 blit(frame, mark, round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
 

@@ -280,7 +280,7 @@ class Highway:
         stepped = notes.judged[i] and kind not in (Kind.MINE, Kind.FAKE)
         if stepped and (limb >= 0 or self._danced):
             aside, below = self._behind(direction)
-            for mark in (self.mark_shade, self.marks[limb]):
+            for mark in (self.mark_shade, self.marks[max(limb, -1)]):
                 mx, my = self._corner(column, y, mark.shape[0])
                 mx, my = mx + aside, my + below
                 blit(frame, mark, mx, my, 1.0, self._rows)

@@ -40,7 +40,7 @@ def subject(*rows: tuple[float, tuple[str, ...], dict[int, int], dict[int, int]]
 
 
 def called(what: Any, **how: Any) -> tuple[Callout, ...]:
-    return callouts_of(what, CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how), parse_segments(""))
+    return callouts_of(what, what.play, CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how), parse_segments(""))
 
 
 def moves(*beats_and_names: tuple[float, str]) -> Any:

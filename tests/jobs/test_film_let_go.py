@@ -1,0 +1,78 @@
+"""Notes that nobody plays, in a film: a cross, words, the linter's finding, and no light."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.jobs.film_plan import Prepared, prepare
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.play.played import Limb
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.overlay.diagram import NextRows, PadView
+from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.practice import Practice
+
+# the left foot holds, and the right one is asked for up and down 75 ms apart
+TRILL = "2000\n0000\n0000\n0000\n0000\n0000\n0000\n0000\n0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"
+
+
+def prepared(folder: Path, **more: object) -> Prepared:
+    path = folder / "trill.sm"
+    path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{TRILL};\n")
+    look = FilmLook(load_layout("practice"), (320, 180), quality="draft", renderer="cpu")
+    request = FilmRequest(path, Selection(), look, fps=10, mute=True, **more)  # type: ignore[arg-type]
+    return prepare(request, look_up(request))
+
+
+@pytest.fixture(scope="module")
+def film(tmp_path_factory: pytest.TempPathFactory) -> Prepared:
+    return prepared(tmp_path_factory.mktemp("trill"))
+
+
+def test_the_notes_are_marked_and_light_nothing(film: Prepared) -> None:
+    left = film.plan.notes.limb == Limb.UNPLAYED
+    assert left.sum() == 2 and (film.plan.notes.column[left] == 1).all()
+    lights = PanelLights(film.plan.presses, 4, 0.3)
+    for second in film.plan.notes.second[left]:
+        assert lights.at(1, float(second)) == (0.0, -1)
+    assert lights.at(0, float(film.plan.notes.second[0]))[0] > 0.5
+    assert film.warnings[0].startswith("2 notes let go")
+
+
+def test_words_say_it_and_what_the_linter_finds_there(film: Prepared) -> None:
+    """Without --show-findings; what it finds in rows that can be played is for authors."""
+    (one,) = (one for one in film.plan.callouts if "no foot left" in one.text)
+    assert one.text == "no foot left (fast step) ×2" and one.tag == "no foot left ×2"
+    assert all(one.severity == "move" for one in film.plan.callouts)
+
+
+def test_a_small_pad_has_a_cross_where_no_foot_comes(film: Prepared) -> None:
+    rows = film.plan.rows
+    assert rows is not None
+    row = int(np.flatnonzero((rows.limb == Limb.UNPLAYED).any(axis=1))[0])
+    face, pad = Typeface(None), film.plan.pad
+    assert pad is not None
+    frame = np.zeros((120, 120, 3), np.uint8)
+    view = PadView(pad, pad.directions)
+    small = NextRows(rows, view, (0, 0, 120, 120), 1, face)
+    small.draw(frame, float(rows.second[row]) - 0.01)
+    x, y = small.pads[0].place(*pad.panels[1])
+    grey = frame[round(y) - 8 : round(y) + 8, round(x) - 8 : round(x) + 8].astype(int)
+    assert (np.abs(grey - sprites.NOBODY).sum(axis=2) < 30).sum() > 20
+
+
+def test_runs_at_all_rates_let_the_same_notes_go(tmp_path: Path) -> None:
+    """At half speed she could play them; but the picture marks one play."""
+    two = prepared(tmp_path, practice=Practice(rates=(0.5, 1.0)))
+    assert sorted(two.plan.motions) == [0.5, 1.0]
+    for motion in two.plan.motions.values():
+        assert len(motion.let_go) == 2 and len({one.why for one in motion.let_go}) == 1
+    slow = prepared(tmp_path, practice=Practice(rates=(0.5,)))
+    assert not slow.plan.motions[0.5].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
