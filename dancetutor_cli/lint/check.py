@@ -34,19 +34,34 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
 
 def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about one chart, in order of line and rule; none about the lights of a cabinet, which nobody dances."""
-    findings: list[Finding] = []
-    chart = subject.chart
-    if is_lights(chart.steps_type):
+    if is_lights(subject.chart.steps_type):
         return ()
-    rules = settings.for_chart(subject.song.path.absolute(), chart.written_type, chart.difficulty, chart.meter)
-    for code, options in rules.items():
-        if code in _rules_of_charts():
-            findings += _rules_of_charts()[code](options).check(subject)
-    if chart.player > 1:  # what is true of the chart as a whole is told with the first player's
-        findings = [finding for finding in findings if finding.beat is not None]
-    findings = [finding for finding in findings if not _silenced(finding, subject)]
+    rules = rules_of(subject, settings)
+    findings = [finding for code in rules for finding in _found(code, rules, subject)]
     told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
     return _in_order(finding for finding in told if not _silenced(finding, subject))
+
+
+def rules_of(subject: ChartSubject, settings: Settings) -> Mapping[str, Options]:
+    """The rules that run on a chart, with their options."""
+    chart = subject.chart
+    rules = settings.for_chart(subject.song.path.absolute(), chart.written_type, chart.difficulty, chart.meter)
+    return {code: options for code, options in rules.items() if code in _rules_of_charts()}
+
+
+def check_rule(
+    code: str, rules: Mapping[str, Options], subject: ChartSubject, settings: Settings
+) -> tuple[Finding, ...]:
+    """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is told again."""
+    told = _as_sure_as_they_are(_found(code, rules, subject), subject, settings, rules.get(_AMBIGUITY))
+    return tuple(finding for finding in told if not _silenced(finding, subject))
+
+
+def _found(code: str, rules: Mapping[str, Options], subject: ChartSubject) -> list[Finding]:
+    """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
+    found = _rules_of_charts()[code](rules[code]).check(subject)
+    about_all = subject.chart.player <= 1
+    return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:

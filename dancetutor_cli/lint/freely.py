@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.lint.other_foot import REST, begins_anew, standing
+from dancetutor_cli.lint.beginnings import REST
+from dancetutor_cli.lint.other_foot import standing
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -67,7 +68,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
     if ((play.limb[phrase] >= 0).sum(axis=1) != 1).any() or (feet.down[phrase] != 1).any():
         return math.inf
     columns = play.limb[phrase].argmax(axis=1).tolist()
-    anew = begins_anew(subject, first, freedom.quick)
+    anew = bool(subject.beginnings.anew(freedom.quick)[first])
     ways = _starts(subject, first, anew=anew)
     before = int(play.limb[int(rows[first - 1])].argmax()) if first and not anew else _UNKNOWN
     for place, column in enumerate(columns):
@@ -79,7 +80,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
 
 def _begins(subject: ChartSubject, at: int, freedom: Freedom) -> bool:
     """Whether a phrase begins with the `at`-th row with a step; where a rest is one for the rule, a breath is one."""
-    if begins_anew(subject, at, freedom.quick):
+    if subject.beginnings.anew(freedom.quick)[at]:
         return True
     return freedom.rest < math.inf and is_breath(subject, at, freedom.rest)
 
@@ -160,9 +161,7 @@ class _Step(NamedTuple):
             left, right = (left, _UNKNOWN) if foot == 0 else (_UNKNOWN, right)
         facing = 0.0
         if min(left, right) >= 0:
-            assert self.subject.pad is not None
-            x, y = self.subject.pad.panels[right] - self.subject.pad.panels[left]
-            facing = float(np.degrees(np.arctan2(y, x)))
+            facing = self.subject.angles[left][right]
         if not self.freedom.spins and (abs(facing - stand.facing) > 180 or abs(facing) >= 180):
             return None
         return _Stand((left, right), foot, facing, slipped)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
+from dancetutor_cli.lint.beginnings import Beginnings
 from dancetutor_cli.lint.foot_questions import Feet
 from dancetutor_cli.lint.note_questions import Notes
 from dancetutor_cli.pads import Pad
@@ -121,6 +122,20 @@ class ChartSubject:
         if self.play is not None:
             found[rows[1:]] = np.diff(self.play.rows.second[rows])
         return found
+
+    @cached_property
+    def angles(self) -> list[list[float]]:
+        """Degrees that the body is turned with the left foot on one panel and the right foot on another."""
+        assert self.pad is not None
+        x, y = np.moveaxis(self.pad.panels[None] - self.pad.panels[:, None], -1, 0)
+        angles: list[list[float]] = np.degrees(np.arctan2(y, x)).tolist()
+        return angles
+
+    @cached_property
+    def beginnings(self) -> Beginnings:
+        """Where the dancer may begin anew; for charts with a play."""
+        assert self.play is not None
+        return Beginnings(self.play, self.step_rows, self._pauses[self.step_rows])
 
     def pause(self, row: int) -> float:
         """Seconds since the row with a step before this one; endless for the first."""

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
-from dancetutor_cli.lint.check import check_chart
+from dancetutor_cli.lint.check import check_rule, rules_of
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play import Play, Rows, StepKind, solve
+from dancetutor_cli.play import Play, StepKind, solve
 from dancetutor_cli.play.engine import engine_for
+from dancetutor_cli.play.one_tap import OneTap, Outline, moved_tap
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.solver import forced_limbs
 from dancetutor_cli.play.vocabulary import EVENTS
@@ -89,8 +90,8 @@ class _Trial:
     settings: Settings
     preset: Preset
     before: set[_Place]
-    _outlines: dict[_Edit, tuple[int, NDArray[np.int64]]] = field(default_factory=dict)
-    _found: dict[_Edit, set[_Place]] = field(default_factory=dict)
+    _outlines: dict[_Edit, Outline] = field(default_factory=dict)
+    _edited: dict[_Edit, _Edited] = field(default_factory=dict)
 
     def good(self, edits: Iterable[_Edit], place: _Place) -> Iterator[_Edit]:
         """The edits with plays cheaper than now that lack the finding at a place and bring no other, cheapest first.
@@ -103,35 +104,57 @@ class _Trial:
                 return
             if self._still_happens(edit, place):
                 continue
-            if edit not in self._found:
-                self._found[edit] = self._places_after(edit)
-            if place not in self._found[edit] and self._found[edit] <= self.before:
+            if edit not in self._edited:
+                self._edited[edit] = _Edited(self._subject_after(edit), self.settings, self.before)
+            if self._edited[edit].lacks(place):
                 yield edit
 
     def _total(self, edit: _Edit) -> int:
-        return self._outline(edit)[0]
+        return self._outline(edit).total
 
-    def _outline(self, edit: _Edit) -> tuple[int, NDArray[np.int64]]:
+    def _outline(self, edit: _Edit) -> Outline:
         if edit not in self._outlines:
-            play, pad = self.subject.play, self.subject.pad
-            assert play is not None and pad is not None
-            rows, engine = _edited(play.rows, edit), engine_for(pad, self.preset)
-            self._outlines[edit] = engine.outline(rows, forced_limbs(rows, self.subject.overrides))
+            self._outlines[edit] = self._one_tap.moved(edit.row, edit.column, edit.to)
         return self._outlines[edit]
+
+    @cached_property
+    def _one_tap(self) -> OneTap:
+        play, pad, overrides = self.subject.play, self.subject.pad, self.subject.overrides
+        assert play is not None and pad is not None
+        return OneTap(engine_for(pad, self.preset), play.rows, lambda rows: forced_limbs(rows, overrides))
 
     def _still_happens(self, edit: _Edit, place: _Place) -> bool:
         rule, beat = place
         if rule not in _MOVES or beat is None or self.subject.play is None:
             return False
         row = self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT))
-        return bool(self._outline(edit)[1][row] >> EVENTS.index(_MOVES[rule]) & 1)
+        new, bit = self._outline(edit), EVENTS.index(_MOVES[rule])
+        if new.first <= row < new.first + len(new.events):
+            return bool(new.events[row - new.first] >> bit & 1)
+        return _MOVES[rule] in self.subject.play.moves[row]
 
-    def _places_after(self, edit: _Edit) -> set[_Place]:
+    def _subject_after(self, edit: _Edit) -> ChartSubject:
         subject = self.subject
         assert subject.play is not None and subject.pad is not None
-        rows = _edited(subject.play.rows, edit)
-        play = solve(rows, subject.pad, self.preset, subject.overrides, margins=True)
-        return _places(check_chart(replace(subject, play=play), self.settings))
+        rows = moved_tap(subject.play.rows, edit.row, edit.column, edit.to)
+        return replace(subject, play=solve(rows, subject.pad, self.preset, subject.overrides, margins=True))
+
+
+class _Edited:
+    """An edited chart, of which the rules are asked one by one, until one tells what was not found before."""
+
+    def __init__(self, subject: ChartSubject, settings: Settings, before: set[_Place]) -> None:
+        self._subject, self._settings, self._before = subject, settings, before
+        self._rules = rules_of(subject, settings)
+        self._to_ask = list(self._rules)
+        self._found: set[_Place] = set()
+
+    def lacks(self, place: _Place) -> bool:
+        """Whether nothing is found at a place any more, nor anything at places where nothing was found before."""
+        self._to_ask.sort(key=lambda code: code != place[0])
+        while self._to_ask and place not in self._found and self._found <= self._before:
+            self._found |= _places(check_rule(self._to_ask.pop(0), self._rules, self._subject, self._settings))
+        return place not in self._found and self._found <= self._before
 
 
 def _places(findings: Sequence[Finding]) -> set[_Place]:
@@ -154,12 +177,6 @@ def _edits(finding: Finding, play: Play, chart: Chart) -> Iterator[_Edit]:
         for column in np.flatnonzero(rows.steps[row] == StepKind.TAP).tolist():
             for to in np.flatnonzero(free).tolist():
                 yield _Edit(row, column, to)
-
-
-def _edited(rows: Rows, edit: _Edit) -> Rows:
-    steps = rows.steps.copy()
-    steps[edit.row, edit.to], steps[edit.row, edit.column] = steps[edit.row, edit.column], StepKind.NONE
-    return replace(rows, steps=steps)
 
 
 def _in_words(edit: _Edit, subject: ChartSubject) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +17,9 @@ from dancetutor_cli.play.jit import INTERPRETED
 from dancetutor_cli.play.kernel import PRICE, run
 from dancetutor_cli.play.played import Limb, Rows
 from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.store import Found, RowArrays, RowStates, Tables
-from dancetutor_cli.play.tables import MOST_MOVES, Rules, geometry, moves
+from dancetutor_cli.play.store import Found, RowArrays, RowStates
+from dancetutor_cli.play.table_room import empty_tables, grown
+from dancetutor_cli.play.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Rules, geometry, moves
 from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
@@ -46,7 +46,9 @@ class Engine:
             np.array(pad.home, dtype=np.int64),
         )
         self._moves = moves(len(preset.weights))
-        self.tables = _empty_tables(len(preset.weights))
+        self.tables = empty_tables(len(preset.weights))
+        self.era = 0  # numbers of the tables hold as long as this stays
+        self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
         self._scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
 
@@ -60,10 +62,48 @@ class Engine:
         """
         return self._run(_arrays(rows, forced), margins)[0]
 
-    def outline(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
-        """What the cheapest way through rows costs in all, and what happens in each, (n,) bits of `EVENTS`."""
-        found, nodes = self._run(_arrays(rows, forced), False)
-        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[found.move, store.EVENTS] & store.EVENT_BITS
+    def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
+        """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
+        return np.asarray(self.tables.wide[path, store.EVENTS] & store.EVENT_BITS)
+
+    def solved(
+        self, rows: Rows, forced: NDArray[np.int64] | None = None
+    ) -> tuple[RowArrays, RowStates, NDArray[np.int32]]:
+        """All that the programme found out on the way through rows, to go on from it, and the moves of the way."""
+        arrays = _arrays(rows, forced)
+        found, nodes = self._run(arrays, False)
+        return arrays, nodes._replace(node=nodes.node[: nodes.row[len(rows) + 1, store.FIRST]].copy()), found.move
+
+    def keeps(self, era: int) -> bool:
+        """Whether numbers of an era still hold, and there is room for more."""
+        return self.era == era and not self._is_full()
+
+    def pattern_with(self, pattern: int, column: int, to: int, forced: int) -> int:
+        """Number of the pattern that a row has if its tap in a column is in another one; forced : see `RowArrays`."""
+        word, more = self.tables.pattern[pattern].tolist()
+        word ^= 1 << TAPS + column | 1 << TAPS + to
+        more = more & ~((1 << EARLIER) - 1) | forced << FORCED
+        count, known = int(self.tables.counts[store.PATTERNS]), self._numbers
+        known |= {(a, b): len(known) + n for n, (a, b) in enumerate(self.tables.pattern[len(known) : count].tolist())}
+        if (word, more) in known:
+            return known[word, more]
+        if count + 1 > len(self.tables.pattern) or 2 * (count + 1) > len(self.tables.pattern_hash):
+            self.tables = grown(self.tables, store.MORE_PATTERNS, 1)
+        t = self.tables
+        t.pattern[count] = word, more
+        t.counts[store.PATTERNS] += 1
+        t.pattern_hash[:] = -1
+        store.fill_patterns(t.pattern, count + 1, t.pattern_hash)
+        return count
+
+    def room(self, rows: int) -> RowStates:
+        """Room for the nodes of a few rows, until the next are asked for."""
+        return _nodes(rows, self._node)
+
+    def go_on(self, arrays: RowArrays, nodes: RowStates) -> None:
+        """Nodes of all rows but the first, for which they are filled in."""
+        n, c = arrays.steps.shape
+        self._until_done(1, arrays, nodes, self._found(n, c, margins=False))
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
@@ -101,10 +141,22 @@ class Engine:
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, RowStates]:
         n, c = arrays.steps.shape
+        if self._is_full():
+            self.tables = empty_tables(len(self.preset.weights))
+            self.era += 1
+            self._numbers.clear()
+        found = self._found(n, c, margins=margins)
+        wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
+        nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
+        self._until_done(0, arrays, nodes, found)
+        return found, nodes
+
+    def _is_full(self) -> bool:
         counts = self.tables.counts
-        if counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
-            self.tables = _empty_tables(len(self.preset.weights))
-        found = Found(
+        return bool(counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
+
+    def _found(self, n: int, c: int, *, margins: bool) -> Found:
+        return Found(
             np.empty(n, dtype=np.int32),
             np.empty((n, c), dtype=np.int8),
             np.empty((n, c), dtype=np.uint8),
@@ -112,9 +164,10 @@ class Engine:
             np.empty(n if margins else 0, dtype=np.uint8),
             self._scratch,
         )
-        wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
-        nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
-        row, wanted = 0, -1
+
+    def _until_done(self, row: int, arrays: RowArrays, nodes: RowStates, found: Found) -> None:
+        """Run the kernel from a row on, and give it what it asks for."""
+        wanted = -1
         while wanted != store.DONE:
             row, wanted = self._call(arrays, row, nodes, found)
             if wanted == store.UNEXPLORED:
@@ -122,8 +175,7 @@ class Engine:
             elif wanted == store.MORE_NODES:
                 _make_room(nodes, row)
             elif wanted != store.DONE:
-                self.tables = _grown(self.tables, wanted, n)
-        return found, nodes
+                self.tables = grown(self.tables, wanted, len(arrays.tick))
 
     def _explore_from(self, row: int, arrays: RowArrays, nodes: RowStates) -> None:
         """Meet every state from a row on, so that the programme can go on there."""
@@ -133,7 +185,7 @@ class Engine:
             with _wrapping():
                 wanted = self._explore(row, np.int64(before), arrays.pattern, self.tables, self.rules, self._moves)
             if wanted != store.DONE:
-                self.tables = _grown(self.tables, wanted, len(arrays.tick))
+                self.tables = grown(self.tables, wanted, len(arrays.tick))
 
 
 def _wrapping() -> AbstractContextManager[object]:
@@ -199,87 +251,3 @@ def engine_for(pad: Pad, preset: Preset) -> Engine:
     if not kept:
         kept.append(Engine(pad, preset))
     return kept[0]
-
-
-def _longer(array: NDArray[Any], least: int = 0) -> NDArray[Any]:
-    """At least twice the room; what is new is not touched, so that it takes no memory before it is used."""
-    longer = np.empty((max(2 * len(array), least), *array.shape[1:]), dtype=array.dtype)
-    longer[: len(array)] = array
-    return longer
-
-
-def _grown(t: Tables, wanted: int, rows: int) -> Tables:
-    """The tables with more room for what is wanted."""
-    if wanted == store.MORE_STATES:
-        table = np.full(2 * len(t.state_hash), -1, dtype=np.int32)
-        store.fill_numbers(t.state_key, t.counts[store.STATES], table)
-        return t._replace(state_key=_longer(t.state_key), state_hash=table)
-    if wanted == store.MORE_PATTERNS:
-        least = 1 << int(len(t.pattern) + rows).bit_length()
-        table = np.full(4 * least, -1, dtype=np.int32)
-        store.fill_patterns(t.pattern, t.counts[store.PATTERNS], table)
-        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=table)
-    if wanted == store.MORE_PAIRS:
-        pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
-        store.fill_pairs(t.pair, pair)
-        return t._replace(pair=pair)
-    if wanted == store.MORE_TERMS:
-        table = np.full(2 * len(t.terms_hash), -1, dtype=np.int32)
-        store.fill_terms(t.terms, t.counts[store.TERMS_KNOWN], table)
-        return t._replace(terms=_longer(t.terms), terms_hash=table)
-    if wanted == store.MORE_FACTS:
-        table = np.full(2 * len(t.timed_hash), -1, dtype=np.int32)
-        store.fill_numbers(t.timed_key, t.counts[store.FACTS_KNOWN], table)
-        return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
-    if wanted == store.MORE_TIMED:
-        cost = np.zeros((store.MOST_MS + 1, 2 * int(t.counts[store.FACTS_KNOWN])), dtype=np.int32)
-        known = np.flatnonzero(t.timed_cost.any(axis=1))
-        cost[known, : t.timed_cost.shape[1]] = t.timed_cost[known]
-        return t._replace(timed_cost=cost)
-    if wanted == store.MORE_LAYERS:
-        table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
-        store.fill_numbers(t.layer_key, t.counts[store.LAYERS], table)
-        return t._replace(layer=_longer(t.layer), layer_key=_longer(t.layer_key), layer_hash=table)
-    if wanted == store.MORE_TRANSITIONS:
-        table = np.full(2 * len(t.transition_hash), -1, dtype=np.int32)
-        store.fill_numbers(t.transition_key, t.counts[store.TRANSITIONS], table)
-        return t._replace(
-            transition=_longer(t.transition), transition_key=_longer(t.transition_key), transition_hash=table
-        )
-    if wanted == store.MORE_LAYER_STATES:
-        return t._replace(layer_state=_longer(t.layer_state))
-    if wanted == store.MORE_EDGES:
-        return t._replace(ends=_longer(t.ends), edge_cost=_longer(t.edge_cost), edge_move=_longer(t.edge_move))
-    return t._replace(move=_longer(t.move), wide=_longer(t.wide))
-
-
-def _empty_tables(weights: int) -> Tables:
-    """Room for what a few hundred charts need: what is not touched takes no memory, and to grow copies all there is."""
-    states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
-    edges, facts = 1 << 21, 1 << 9
-    whole, small = np.int64, np.int32
-    return Tables(
-        counts=np.zeros(10, dtype=whole),
-        state_key=np.zeros(states, dtype=whole),
-        state_hash=np.full(2 * states, -1, dtype=small),
-        pattern=np.zeros((patterns, 2), dtype=whole),
-        pattern_hash=np.full(4 * patterns, -1, dtype=small),
-        pair=np.full((pairs, 2), -1, dtype=whole),
-        move=np.zeros((moves, 3), dtype=small),
-        wide=np.zeros((moves, 2), dtype=whole),
-        terms=np.zeros((costs, weights), dtype=small),
-        terms_hash=np.full(4 * costs, -1, dtype=small),
-        timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
-        timed_hash=np.full(1 << 15, -1, dtype=small),
-        timed_cost=np.zeros((store.MOST_MS + 1, facts), dtype=small),
-        layer=np.zeros((layers, 2), dtype=small),
-        layer_state=np.zeros(16 * layers, dtype=small),
-        layer_key=np.zeros(layers, dtype=whole),
-        layer_hash=np.full(4 * layers, -1, dtype=small),
-        transition=np.zeros((2 * layers, 3), dtype=small),
-        transition_key=np.zeros(2 * layers, dtype=whole),
-        transition_hash=np.full(8 * layers, -1, dtype=small),
-        ends=np.zeros(edges, dtype=whole),
-        edge_cost=np.zeros(edges, dtype=small),
-        edge_move=np.zeros(edges, dtype=small),
-    )

@@ -11,13 +11,16 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.lint.suggest import _edits
+from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.lint.suggest import _Edited, _edits
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.play.engine import engine_for
+from dancetutor_cli.play.store import BASE
 from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import charts_path
 
@@ -80,15 +83,33 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
 
     tried: list[object] = []
     checked: list[object] = []
-    edited, places_after = suggest._edited, suggest._Trial._places_after
-    monkeypatch.setattr(suggest, "_edited", lambda rows, edit: (tried.append(edit), edited(rows, edit))[1])
+    moved, subject_after = suggest.OneTap.moved, suggest._Trial._subject_after
+    monkeypatch.setattr(suggest.OneTap, "moved", lambda self, *edit: (tried.append(edit), moved(self, *edit))[1])
     monkeypatch.setattr(
-        suggest._Trial, "_places_after", lambda self, edit: (checked.append(edit), places_after(self, edit))[1]
+        suggest._Trial, "_subject_after", lambda self, edit: (checked.append(edit), subject_after(self, edit))[1]
     )
     result = analysed([*SPIN, *SPIN, *SPIN, *SPIN], tmp_path)
     assert sum(finding.suggestion is not None for finding, _ in result.all_findings()) >= 2
-    assert len(checked) == len(set(checked)) < len(set(tried)) / 2
-    assert len(tried) == len(set(tried)) + len(checked)
+    assert len(tried) == len(set(tried))
+    assert len(checked) == len(set(checked)) < len(tried) / 2
+
+
+def test_rules_are_asked_until_one_tells_what_matters(tmp_path: Path) -> None:
+    """First the rule that is to fall silent; and none any more when one has told what nobody told before."""
+    path = tmp_path / "x.sm"
+    notes = "\n".join([*SPIN, *SPIN])
+    path.write_text(f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n{notes}\n;\n")
+    song, settings = load(path), load_configuration(None).settings
+    subject = solved_chart(song, song.charts[0], load_preset("thesis"))
+    spin = next(finding for finding in check_chart(subject, settings) if finding.rule == "DT202")
+    edited = _Edited(subject, settings, {("DT202", spin.beat)})
+    asked = len(edited._to_ask)
+    assert not edited.lacks(("DT202", spin.beat))
+    assert len(edited._to_ask) == asked - 1 and "DT202" not in edited._to_ask
+    assert not edited.lacks(("DT201", 0.0))  # the other spins are new to it
+    assert len(edited._to_ask) == asked - 1
+    other = _Edited(subject, settings, set())
+    assert not other.lacks(("DT209", 0.0)) and other._to_ask
 
 
 @pytest.mark.parametrize("preset", ["itg", "thesis", "pump"])
@@ -98,8 +119,10 @@ def test_the_outline_of_a_way_is_that_of_the_whole_solve(preset: str) -> None:
         pad, chosen = load_pad(chart.steps_type), load_preset(preset)
         play = solve_chart(chart, chosen)
         assert pad is not None and play is not None
-        total, events = engine_for(pad, chosen).outline(play.rows)
-        assert total == play.total
+        engine = engine_for(pad, chosen)
+        _, nodes, path = engine.solved(play.rows)
+        assert int(nodes.row[len(play.rows), BASE]) == play.total
+        events = engine.events(path)
         for name in ("doublestep", "spin"):
             bit = EVENTS.index(name)
             assert (events >> bit & 1).tolist() == [name in moves for moves in play.moves]

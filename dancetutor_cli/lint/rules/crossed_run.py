@@ -43,13 +43,13 @@ class CrossedRun(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run that is too long, at its first row."""
-        from dancetutor_cli.lint.other_foot import begins_anew, exchanged_is_uncrossed, segment
+        from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, segment
 
         longest, most = self.options["max_seconds"] + EPSILON, self.options["max_rows"]
         for rows in subject.feet.crossed_rows(most + 1) if subject.feet else ():
             start = int(subject.step_rows.searchsorted(rows[0]))
             slow = [n for n, row in enumerate(rows) if n and subject.pause(row) > longest]
-            anew = [n for n in range(1, len(rows)) if begins_anew(subject, start + n, longest)]
+            anew = [n for n in range(1, len(rows)) if subject.beginnings.anew(longest)[start + n]]
             for first, after in pairwise(sorted({0, *slow, *anew, len(rows)})):
                 begun = segment(subject, start + first, longest)[0]
                 danced = subject.step_rows[begun : start + after]

@@ -135,8 +135,6 @@ def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
 
 def any_foot_near(subject: ChartSubject, row: int) -> bool:
     """Whether two panels that can be jumped, a wall of mines or a hold that changes feet is near."""
-    from dancetutor_cli.lint.other_foot import after_wall
-
     assert subject.play is not None
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
@@ -144,19 +142,19 @@ def any_foot_near(subject: ChartSubject, row: int) -> bool:
         one = int(rows[place])
         pair = subject.brackets(one) and len(subject.pressed(one)) == 2 and not subject.is_jump(one)
         switched = one < row and "holdswitch" in subject.play.moves[one]
-        if pair or switched or (place <= at and after_wall(subject, place)):
+        if pair or switched or (place <= at and subject.beginnings.after_walls[place]):
             return True
     return False
 
 
 def _danced_otherwise(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether people rather begin on the other foot before or after it, where there is time, or cross for a moment."""
-    from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, is_rest, segment, standing
+    from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, segment, standing
 
     assert subject.play is not None and subject.feet is not None
     rows, pause = subject.step_rows, subject.pause(row)
     at = int(rows.searchsorted(row))
-    if is_rest(subject, at):
+    if subject.beginnings.rests[at]:
         return True
     before, last = segment(subject, at - 1, quick)[0], segment(subject, at, quick, forwards_only=True)[1]
     foot = int(subject.play.limb[row].max())

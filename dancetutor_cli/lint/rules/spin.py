@@ -78,13 +78,13 @@ class Spin(MoveRule):
 
     def _begun_otherwise(self, subject: ChartSubject, row: int) -> bool:
         """Whether the steps around the spin, or those up to the rest before it, go uncrossed on the other foot."""
-        from dancetutor_cli.lint.other_foot import begins_anew, exchanged_is_uncrossed, goes_on_the_other_foot, segment
+        from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, goes_on_the_other_foot, segment
 
         quick, rows = self.longest(subject), subject.step_rows
         if goes_on_the_other_foot(subject, row, quick):
             return True
         at = int(rows.searchsorted(row))
-        if not at or not begins_anew(subject, at, quick):
+        if not at or not subject.beginnings.anew(quick)[at]:
             return False
         first, last = segment(subject, at, quick)
         return goes_on_the_other_foot(subject, int(rows[at - 1]), quick) and exchanged_is_uncrossed(
