@@ -26,7 +26,7 @@ from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.gaze import look
 from dancetutor_cli.motion.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.motion.plan import Plan
-from dancetutor_cli.motion.settings import MotionSettings, default_settings
+from dancetutor_cli.motion.settings import MotionSettings, WalkSettings, default_settings
 from dancetutor_cli.motion.swing.foot_path import both_feet
 from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.motion.trajectory.posture import Trajectory, stepping
@@ -39,9 +39,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
-LEAD_IN, LEAD_OUT = 2.0, 2.5  # seconds of standing before the first and after the last step
 BEATS_AFTER = 16  # beats after the last row that she still hears
-STANDS = 0.4  # seconds of standing after she has walked off
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
@@ -94,8 +92,11 @@ def bake(
     DancetutorError if the play has no steps or the section is empty.
     """
     plan, context = planned(chart, play, pad, **how)
-    left = max((walk.end for walk in plan.walks), default=-np.inf) + STANDS
-    start, end = section or (min(0.0, plan.first - LEAD_IN), max(plan.last + LEAD_OUT, left))
+    left = max((walk.end for walk in plan.walks), default=-np.inf) + context.settings.walk.gone
+    start, end = section or (
+        min(0.0, plan.first - context.settings.walk.lead_in),
+        max(plan.last + context.settings.walk.lead_out, left),
+    )
     if not start < end:
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
@@ -120,13 +121,13 @@ def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Pla
 
     play, gone = without_unplayable(play, pad, settings.unplayable, how.get("let_go", ()))
     plan = replace(plan_footwork(play, second, how.get("gait", "flat"), context), let_go=gone)
-    return (plan if rail is None else grips_of(plan, _standing(plan), context)), context
+    return (plan if rail is None else grips_of(plan, _standing(plan, context.settings.walk), context)), context
 
 
-def _standing(plan: Plan) -> tuple[float, float]:
+def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
     """When she has arrived and when she leaves, seconds."""
-    arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - LEAD_IN)
-    return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + LEAD_OUT)
+    arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - walk.lead_in)
+    return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
 
 
 def mines_of(play: Play, pad: Pad) -> Array:
@@ -164,7 +165,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
     skeleton, settings = context.skeleton, context.settings
     rate = settings.sampling.work_rate
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
-    body = settle(plan, grid, both_feet(plan.feet, grid, settings.step.heel_drop), context).trajectory
+    body = settle(plan, grid, both_feet(plan.feet, grid, settings), context).trajectory
     at = key_times(plan, piece.fps, *piece.baked)
     keys = (at, *posed(plan, body, at, context))
     for _ in range(REFINEMENTS):
@@ -188,7 +189,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     poses = solve(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
-    feet = both_feet(plan.feet, at, context.settings.step.heel_drop)
+    feet = both_feet(plan.feet, at, context.settings)
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
     free *= 1.0 - hold_share(plan.grips, at, context.settings.bar.reach_time).max(axis=1)
     doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last)

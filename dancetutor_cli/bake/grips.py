@@ -29,13 +29,9 @@ from dancetutor_cli.rig.soles import SIDES
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 RATE, BODY_RATE = 30.0, 60.0  # looks per second at whether the rail is within reach, and samples of the body's path
-AHEAD = 1.0  # seconds over which the place of a grip is a mean
-EARLY = 0.12  # seconds that a hand leaves before its arm gets uncomfortable, and comes after
 PART, MARGIN = 60.0, 4.0  # seconds of a song that are looked at together, and beyond which they begin and end
 BESIDE = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
 LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
-INWARD = 0.13  # metres that a wrist is nearer to the other side than its shoulder, at most: no arm goes across the back
-ROOM = 4.0  # degrees that a joint keeps from its limits: the path looked at is not yet the final one
 TRUNK_ASIDE, TRUNK_DEEP = 0.195, 0.155  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # of the forearm and the hand, where they are looked at
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
@@ -96,7 +92,7 @@ def _part(plan: Plan, at: Array, context: Context) -> _Trunk:
     """The upper body at the times `at`, by a rough bake without the hands on the bar."""
     skeleton = context.skeleton
     grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
-    feet = both_feet(plan.feet, grid, context.settings.step.heel_drop)
+    feet = both_feet(plan.feet, grid, context.settings)
     body = body_trajectory(plan, grid, feet, context)
     targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
     poses = solve(skeleton, targets, context.settings.body.reach)
@@ -128,13 +124,13 @@ class _Arm:
         wrist, hand = rest_on_bar(bar, side, x, skeleton, self.settings.bar)
         near = np.linalg.norm(wrist - shoulder, axis=1) <= self.settings.bar.let_go
         aside = quat.rotate(quat.from_axis_angle(UP, -trunk.yaw[when]), wrist - shoulder)[:, 0]
-        near &= (aside if side == 0 else -aside) > -INWARD
+        near &= (aside if side == 0 else -aside) > -self.settings.bar.inward  # no arm goes across the back
         elbow = elbows_on_bar(chest, self.settings.bar)[:, side]
         hands = np.tile(hand, (len(wrist), 1))
         joints = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
         names = [f"{SIDES[side]}_{n}" for n in ("shoulder", "elbow", "radiocarpal")]
         for name, rotation in zip(names, joints, strict=True):
-            near &= beyond(skeleton, name, rotation) < -ROOM if name[2:] != "elbow" else True
+            near &= beyond(skeleton, name, rotation) < -self.settings.bar.comfort if name[2:] != "elbow" else True
         upper = skeleton.offsets[skeleton.index(names[1])]
         joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
@@ -160,7 +156,7 @@ def _pieces(times: Array, arm: _Arm, bar: BarSettings) -> Iterator[Grip]:
     """Grips in the stretches in which the rail is within reach, divided where the body has gone on along it."""
     least, pause = max(1, round(bar.shortest * RATE)), max(1, round(bar.reach_time * RATE))
     last = 0
-    for first, end in _runs(_firm(arm.fits(arm.place, slice(None)))):
+    for first, end in _runs(_firm(arm.fits(arm.place, slice(None)), bar.early)):
         start = max(first, last)
         while end - start >= least:
             x, stop = _longest(arm, start, end)
@@ -173,14 +169,14 @@ def _pieces(times: Array, arm: _Arm, bar: BarSettings) -> Iterator[Grip]:
 
 def _longest(arm: _Arm, start: int, end: int) -> tuple[float, int]:
     """Where a hand that takes the rail at look `start` may stay longest, and the look at which it must have gone."""
-    soon = arm.place[start : min(start + round(AHEAD * RATE), end)].mean()
+    soon = arm.place[start : min(start + round(arm.settings.bar.place_time * RATE), end)].mean()
     best, stop = float(soon), start
     for aside in BESIDE:
         x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar, arm.settings.bar.from_end)[0])
         k = start
         while k < end:
             until = min(k + round(LOOK * RATE), end)
-            free = _firm(arm.fits(np.full(until - k, x), slice(k, until)))
+            free = _firm(arm.fits(np.full(until - k, x), slice(k, until)), arm.settings.bar.early)
             k += _first(~free)
             if k < until:
                 break
@@ -194,9 +190,9 @@ def _first(flags: Flags) -> int:
     return int(np.argmax(flags)) if flags.any() else len(flags)
 
 
-def _firm(free: Flags) -> Flags:
-    """Free also shortly before and after."""
-    width = max(1, round(EARLY * RATE))
+def _firm(free: Flags, early: float) -> Flags:
+    """Free also so many seconds before and after."""
+    width = max(1, round(early * RATE))
     held = np.concatenate((np.repeat(free[:1], width), free, np.repeat(free[-1:], width)))
     return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
 

@@ -30,9 +30,6 @@ ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body 
 TIGHTENED = 2  # rounds of tightening the limits of her balance in the last of those
 COARSE = 4  # every so many samples of the path are baked in a round
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
-HEEL_SMOOTH = 0.06  # seconds over which heels rise for their ankles' sake
-MOST_HEEL = np.radians(20.0)  # a heel rises at most so much in a round for its ankle's sake
-HEEL_DOWN = 0.06  # seconds in which a heel comes down to press a panel
 AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
 
 
@@ -58,7 +55,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
     body = body_trajectory(plan, times, feet, context)
     coarse, ones = times[::COARSE], np.ones(len(times))
     deeper, heels = np.zeros(len(plan.presses)), np.zeros((len(times), 2))
-    may_rise, residuals = _may_rise(plan, times), []
+    may_rise, residuals = _may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
     for number in range(rounds):
         targets = targets_at(plan, body, coarse, context)
@@ -70,7 +67,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         above = smooth_path(cubic(coarse, offset, times), ones, rate, OFFSET_SMOOTH)
         deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
         heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
-        heels = np.maximum(smooth_path(heels, ones, rate, HEEL_SMOOTH), 0.0) * may_rise
+        heels = np.maximum(smooth_path(heels, ones, rate, settings.step.ankle_time), 0.0) * may_rise
         last = number == rounds - 1
         known = Known(body, above, deeper, keep=number > 0 and not last, tightened=TIGHTENED if last else 0)
         body = replace(body_trajectory(plan, times, feet, context, known), heels=heels)
@@ -80,7 +77,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
 def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:
     """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
     up = sample_path(body.heels, body.times, at)
-    feet = both_feet(plan.feet, at, context.settings.step.heel_drop)
+    feet = both_feet(plan.feet, at, context.settings)
     left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
     return ik_targets(plan, body, (left, right), at, context)
 
@@ -102,19 +99,22 @@ def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context
 
 def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
     """How far (f,) each heel must rise so that its ankle does not bend beyond what ankles can, radians."""
-    limit = np.radians(context.settings.step.ankle_limit)
+    limit, most = np.radians((context.settings.step.ankle_limit, context.settings.step.ankle_most))
     out = []
     for side in "lr":
         q = rotations[:, context.skeleton.index(f"{side}_talocrural")]
         q = np.where(q[:, :1] < 0, -q, q)
-        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, MOST_HEEL))
+        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, most))
     return out[0], out[1]
 
 
-def _may_rise(plan: Plan, times: Array) -> Array:
-    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel."""
+def _may_rise(plan: Plan, times: Array, down: float) -> Array:
+    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel.
+
+    down : seconds in which it comes down for that
+    """
     out = np.ones((len(times), 2))
     for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
         away = np.maximum(contact.start - times, times - contact.end)
-        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / HEEL_DOWN))
+        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / down))
     return out

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.motion.plan import Plan, Route
-from dancetutor_cli.motion.settings import numbers
+from dancetutor_cli.motion.settings import WalkSettings, numbers
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.rig import quaternion as quat
@@ -26,10 +26,6 @@ from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
 STANCE = 0.6  # part of a cycle that a foot stands
-SINKING = 0.55  # part of a step in which the body sinks at a plant and comes up again
-HANDS_BACK = 0.06  # metres that hands hang farther back than in a dance
-FADE = 0.45  # seconds over which standing becomes walking and walking standing
-GAZE_AHEAD = 0.35  # seconds by which the gaze is ahead of the walk
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +65,7 @@ class GaitPose:
     sink: Array
 
 
-def gait_pose(gait: Gait, phase: Array) -> GaitPose:
+def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
     """The pose of a gait at normalised times (f,)."""
     angle = 2 * np.pi * phase
     ones = np.ones_like(phase)
@@ -78,22 +74,22 @@ def gait_pose(gait: Gait, phase: Array) -> GaitPose:
     forward = np.cos(angle)  # 1 as the left foot lands, far ahead
     step = (2 * phase) % 1.0
     low = half_hips(dancer_skeleton()) * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
-    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / SINKING, 1.0)) ** 2
+    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / walk.sinking, 1.0)) ** 2
     return GaitPose(
         roll,
         -np.radians(gait.pelvis_yaw) * forward,
         np.radians(gait.chest_yaw) * forward,
         np.radians(gait.hips) * ones,
         np.radians(gait.arch) * ones,
-        gait.arms * np.column_stack((-forward, forward)) - HANDS_BACK,
+        gait.arms * np.column_stack((-forward, forward)) - walk.hands_back,
         ones,
         sink,
     )
 
 
-def blended_pose(slow: Gait, quick: Gait, share: float, phase: Array) -> GaitPose:
+def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, walk: WalkSettings) -> GaitPose:
     """Both gaits' poses at the same normalised times (f,), `share` (0 to 1) of the quick one."""
-    a, b = gait_pose(slow, phase), gait_pose(quick, phase)
+    a, b = (gait_pose(gait, phase, walk) for gait in gaits)
     mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
     return GaitPose(*mixed)
 
@@ -124,7 +120,7 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
     return numbers(source, "slow", Gait), numbers(source, "quick", Gait)
 
 
-def walking(walks: tuple[Route, ...], times: Array) -> GaitPose | None:
+def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
     """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
     total: GaitPose | None = None
     for walk in walks:
@@ -132,12 +128,12 @@ def walking(walks: tuple[Route, ...], times: Array) -> GaitPose | None:
         if first_at == end_at:
             continue
         near = slice(int(first_at), int(end_at))
-        fade = smooth((times[near] - walk.start) / FADE) * smooth((walk.end - times[near]) / FADE)
+        fade = smooth((times[near] - walk.start) / settings.fade) * smooth((walk.end - times[near]) / settings.fade)
         landings = np.array([walk.start, *walk.landings])
         first = 0.5 if walk.first == 1 else 1.0
         phases = first + np.array([STANCE - 1.0, *(0.5 * np.arange(len(walk.landings)))])
         phase = np.interp(times[near], landings, phases)
-        pose = blended_pose(*load_gait(walk.gait), walk.share, phase)
+        pose = blended_pose(load_gait(walk.gait), walk.share, phase, settings)
         total = total or _standing_pose(len(times))
         for f in fields(GaitPose):
             value = getattr(pose, f.name)
@@ -145,10 +141,10 @@ def walking(walks: tuple[Route, ...], times: Array) -> GaitPose | None:
     return total
 
 
-def gaze_ahead(plan: Plan, times: Array) -> Array:
+def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
     """How much (f,) of her look is where she goes and not at the screen: on her way to the pad and from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
-    gait = walking(walks, times + GAZE_AHEAD)
+    gait = walking(walks, times + settings.gaze_ahead, settings)
     return np.zeros(len(times)) if gait is None else gait.own
 
 

@@ -1,88 +1,8 @@
-"""The sections of `configs/motion.yaml`, one class each; every name is explained in that file."""
+"""The sections of `configs/motion.yaml` about the body, one class each; every name is explained in that file."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class StepSettings:
-    """How a foot steps; metres, seconds, degrees."""
-
-    longest: float
-    double_support: float
-    double_support_fast: float
-    double_support_near: float
-    double_support_far: float
-    hasty: float
-    height_slow: float
-    height_fast: float
-    fast: float
-    jack_height: float
-    edge: float
-    edge_margin: float
-    on_the_way: float
-    lift_pitch: float
-    swing_pitch: float
-    land_pitch: float
-    stream_pitch: float
-    heel_drop: float
-    yaw_to_normal: float
-    toe_out: float
-    foot_turn: float
-    let_go: float
-    ankle_limit: float
-    crossover_turn: float
-    turn_rate: float
-    turn_crossed: float
-    apart: float
-    leap: float
-    leap_beside: float
-    pivot_from: float
-    pivot_to: float
-    pivot_pitch: float
-    home: float
-    stand: float
-    least_swing: float
-    overlap: float
-    following: float
-    staying: float
-    body_turn: float
-
-
-@dataclass(frozen=True, slots=True)
-class JumpSettings:
-    """How she jumps."""
-
-    apex_near: float
-    apex_far: float
-    apex_hands: float
-    far: float
-    flight_share: float
-    tuck: float
-    lift_pitch: float
-    land_pitch: float
-    yaw_to_normal: float
-    gallop: float
-    gallop_wait: float
-    crouch: float
-    follow: float
-    fold: float
-    lean: float
-    push: float
-    catch: float
-    drive: float
-    quick_flat: float
-    crouch_before: float
-    crouch_time: float
-    follow_after: float
-    follow_time: float
-    no_time: float
-    full_time: float
-    arms_after: float
-    arms_time: float
-    lean_before: float
-    lean_after: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +27,10 @@ class BodySettings:
     lean_time: float
     pelvis_lean: float
     pelvis_bend: float
+    deep_bend: float
+    stream_time: float
+    farthest: float
+    heel_carries: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +49,9 @@ class HandSettings:
     slap: float
     follow_in: float
     follow_out: float
+    slap_time: float
+    look_from: float
+    held: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +84,17 @@ class ArmSettings:
     twist_fastest: float
     wander_slow: float
     wander_quick: float
+    wander_share: float
+    swing_most: float
+    swing_time: float
+    swing_up: float
+    elbow_out: float
+    elbow_down: float
+    elbow_back: float
+    bend_from: float
+    bend_full: float
+    bend_out: float
+    bend_ahead: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,16 +108,7 @@ class KneeSettings:
     straddle_most: float
     straddle_out: float
     give: float
-
-
-@dataclass(frozen=True, slots=True)
-class MineSettings:
-    """How a foot gets out of the way of a mine."""
-
-    before: float
-    rise: float
-    hop: float
-    height: float
+    room: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,52 +184,6 @@ class HairSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class WalkSettings:
-    """When she walks, and from where to where."""
-
-    least: float
-    settle: float
-    pause: float
-    leave: float
-    beside: float
-    floor: float
-    width: float
-    turn: float
-    sideways: float
-    far: float
-    wait: float
-    ahead: float
-    early: float
-    rest: float
-
-
-@dataclass(frozen=True, slots=True)
-class AsideSettings:
-    """When she steps aside to the other pad, and how."""
-
-    far: float
-    gain: float
-    travel: float
-    pause: float
-    quick: float
-    slow: float
-    comfortable: float
-    facing: float
-
-
-@dataclass(frozen=True, slots=True)
-class HomeSettings:
-    """When she steps back to where she rests, and how."""
-
-    after: float
-    pause: float
-    step: float
-    near: float
-    facing: float
-    turn: float
-
-
-@dataclass(frozen=True, slots=True)
 class UnplayableSettings:
     """What no person plays."""
 
@@ -338,3 +221,7 @@ class BarSettings:
     elbows_in: float
     lift: float
     leave: float
+    early: float
+    comfort: float
+    place_time: float
+    inward: float

@@ -8,25 +8,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from dancetutor_cli.marked_yaml import MarkedYaml, read
+from dancetutor_cli.motion.foot_sections import (
+    AsideSettings,
+    HomeSettings,
+    JumpSettings,
+    MineSettings,
+    StepSettings,
+    WalkSettings,
+)
 from dancetutor_cli.motion.forms import USUAL, form_file
 from dancetutor_cli.motion.sections import (
     ArmSettings,
-    AsideSettings,
     BarSettings,
     BodySettings,
     HairSettings,
     HandSettings,
-    HomeSettings,
     InertiaSettings,
-    JumpSettings,
     KneeSettings,
     LayerSettings,
     LookSettings,
-    MineSettings,
     SamplingSettings,
-    StepSettings,
     UnplayableSettings,
-    WalkSettings,
 )
 from dancetutor_cli.resources import config_path
 

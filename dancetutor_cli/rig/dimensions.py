@@ -12,6 +12,15 @@ from dancetutor_cli.rig.soles import SOLE
 
 BALL_AHEAD = 0.046  # metres by which the ball of the foot lies before the middle of the sole
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
+SOLE_HALF_WIDTH = 0.022  # metres, of the part of a sole that may carry the whole weight
+SOLE_FRONT, SOLE_BACK_TOES, SOLE_BACK_HEEL = (
+    0.065,
+    -0.012,
+    -0.125,
+)  # its ends before the ball: on toes, with the heel down
+# about the vertical, square metres per mass of the body: pelvis and belly; chest, head and arms
+PELVIS_INERTIA, CHEST_INERTIA = 0.0031, 0.0100
+SPINE_SHARES = (0.34, 0.67)  # how far the bones under vt10 and vt4 are turned from the pelvis to the chest
 # corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
 SHOE_OUTLINE = np.array(
     [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),

@@ -63,11 +63,11 @@ def test_the_note_is_reached_by_a_step(wait: float) -> None:
 def test_the_near_foot_goes_first_and_the_other_follows(way: float) -> None:
     settings = default_settings()
     begin, goal = (stand_at(np.array([x, 0.0]), 0.0, settings) for x in (-0.42 * way, 0.42 * way))
-    falls = footfalls(begin, goal, 0.5)
+    falls = footfalls(begin, goal, 0.5, settings.aside)
     assert [side for side, _ in falls] == [0 if way > 0 else 1, 1 if way > 0 else 0] * 3
     for side in (0, 1):
         np.testing.assert_allclose([f.ball for k, f in falls if k == side][-1], goal.balls[side])
-    assert not footfalls(begin, goal, 0.3), "more than three pairs"
+    assert not footfalls(begin, goal, 0.3, settings.aside), "more than three pairs"
 
 
 def test_feet_come_no_farther_apart_than_a_straddle() -> None:

@@ -11,6 +11,7 @@ from bake_plays import Event, L, R, chart, pad, play, stream
 from dancetutor_cli.bake import bake, mines_of, plan_of, report
 from dancetutor_cli.motion.foot_moves import Hover, Pivot
 from dancetutor_cli.motion.plan import Plan, airborne
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.height import LEAST_PHASE
 from dancetutor_cli.play.played import Part, Play
@@ -48,7 +49,7 @@ def test_a_step_waits_until_the_other_foot_is_down_from_its_mine(after: float) -
     steps = danced([*ROWS, (2.5, {}), (2.5 + after, {2: L}), (3.5, {3: R})], {2: [3]})
     plan = planned(steps)
     assert len(flights(plan)) == 0
-    over = foot_path(plan.feet[1], np.linspace(2.431, 2.569, 30), 0.09)
+    over = foot_path(plan.feet[1], np.linspace(2.431, 2.569, 30), default_settings())
     assert over.ball[:, 1].min() >= 0.03
     meets(steps)
 

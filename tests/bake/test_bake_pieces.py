@@ -15,6 +15,7 @@ from dancetutor_cli.character import load_dancer
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.jobs.bake import _shared
 from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.rig.kinematics import world_transforms
 
@@ -73,7 +74,7 @@ def test_a_trimmed_plan_says_the_same() -> None:
     times = np.linspace(20.0, 30.0, 500)
     assert len(part.feet[0].moves) < len(plan.feet[0].moves) / 2
     for cut, full in zip(part.feet, plan.feet, strict=True):
-        a, b = foot_path(cut, times, 0.09), foot_path(full, times, 0.09)
+        a, b = foot_path(cut, times, default_settings()), foot_path(full, times, default_settings())
         np.testing.assert_array_equal(a.ball, b.ball)
         np.testing.assert_array_equal(a.pitch, b.pitch)
         np.testing.assert_array_equal(a.down, b.down)

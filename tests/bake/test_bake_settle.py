@@ -14,7 +14,7 @@ from dancetutor_cli.motion.swing.foot_path import both_feet
 def settled(events: list, until: float) -> Settled:  # type: ignore[type-arg]
     plan, context = planned(chart(), play(events), pad())
     grid = np.arange(240.0, 240.0 * until) / 240.0
-    return settle(plan, grid, both_feet(plan.feet, grid, context.settings.step.heel_drop), context)
+    return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)
 
 
 @pytest.mark.parametrize(("events", "rounds"), [(stream(2.0, 16, 0.25), ROUNDS), (MEDLEY, ROUNDS_WITH_PALMS)])

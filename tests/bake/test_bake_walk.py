@@ -11,8 +11,9 @@ from dancetutor_cli.chart import load
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.foot_moves import Walk
 from dancetutor_cli.motion.footwork.walks import side_of
-from dancetutor_cli.motion.gait import FADE, blended, blended_pose, gait_pose, load_gait, walking
+from dancetutor_cli.motion.gait import blended, blended_pose, gait_pose, load_gait, walking
 from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.resources import charts_path
@@ -20,6 +21,7 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import points_in_world, sole_points
 
+WALK = default_settings().walk
 EVENTS = stream(3.0, 12, 0.4)
 OVER = [
     *[(3.0 + 0.4 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(6)],
@@ -87,8 +89,8 @@ def test_both_gaits_are_blended_at_one_normalised_time() -> None:
     phase = np.linspace(0.0, 2.0, 41)
     for share in (0.0, 0.3, 1.0):
         assert blended(slow, quick, share).period == pytest.approx((quick.period - slow.period) * share + slow.period)
-        mixed = blended_pose(slow, quick, share, phase)
-        first, last = gait_pose(slow, phase), gait_pose(quick, phase)
+        mixed = blended_pose((slow, quick), share, phase, WALK)
+        first, last = gait_pose(slow, phase, WALK), gait_pose(quick, phase, WALK)
         np.testing.assert_allclose(mixed.roll, (1 - share) * first.roll + share * last.roll, atol=1e-12)
         np.testing.assert_allclose(mixed.hands, (1 - share) * first.hands + share * last.hands, atol=1e-12)
 
@@ -105,10 +107,10 @@ def test_a_walk_goes_through_its_cycle_at_an_even_pace() -> None:
     plan = plan_of(chart(), play(EVENTS), pad())
     walk = plan.walks[0]
     period = blended(*load_gait("flat"), walk.share).period
-    at = np.arange(walk.start + FADE, walk.end - FADE, 0.01)
+    at = np.arange(walk.start + WALK.fade, walk.end - WALK.fade, 0.01)
     phase = (1.0 if walk.first == 0 else 0.5) + (at - walk.landings[0]) / period
-    wanted = blended_pose(*load_gait("flat"), walk.share, phase)
-    seen = walking((walk,), at)
+    wanted = blended_pose(load_gait("flat"), walk.share, phase, WALK)
+    seen = walking((walk,), at, WALK)
     assert seen is not None and (at < walk.landings[0]).any()
     np.testing.assert_allclose(seen.hands, wanted.hands, atol=1e-9)
     np.testing.assert_allclose(seen.roll, wanted.roll, atol=1e-9)

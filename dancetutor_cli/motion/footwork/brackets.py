@@ -6,11 +6,10 @@ import numpy as np
 
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import FootState
+from dancetutor_cli.motion.swing.panels import PANEL
 from dancetutor_cli.play.played import Part
 
-LET_GO = 0.02  # seconds; a hold that ends so shortly before a note still has its foot
-NEIGHBOURS = 0.45  # metres between panels that one foot can press together
-ALTERNATING = 0.3  # seconds between taps of heel and toes for which the foot stays over both panels
+NEIGHBOURS = 1.6 * PANEL  # metres between panels that one foot can press together
 
 
 def under_the_foot(row: Row, foot: FootState) -> list[int]:
@@ -22,7 +21,7 @@ def under_the_foot(row: Row, foot: FootState) -> list[int]:
     if len(columns) != 1 or row.play.part[row.index, columns[0]] == Part.WHOLE:
         return columns
     here = panels[columns[0]]
-    held = [c for c, end in foot.holds if end > row.time - LET_GO and c != columns[0]]
+    held = [c for c, end in foot.holds if end > row.time - row.context.settings.step.bracket_late and c != columns[0]]
     near = [c for c in held if np.linalg.norm(panels[c] - here) < NEIGHBOURS]
     return columns + (near[-1:] or _other_part(row, foot.side, columns[0]))
 
@@ -31,7 +30,7 @@ def _other_part(row: Row, side: int, column: int) -> list[int]:
     """The panel beside one that a heel or toe taps alone, where the other end of the foot taps soon: two rolls."""
     rows, part, i, panels = row.play.rows, row.play.part, row.index, row.context.panels
     for j in (i + 1, i - 1, i + 2, i - 2):
-        if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > ALTERNATING:
+        if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > row.context.settings.step.bracket_between:
             continue
         for c in np.flatnonzero(row.play.limb[j] == side):
             other = part[j, c] not in (Part.WHOLE, part[i, column]) and c != column

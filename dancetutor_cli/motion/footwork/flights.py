@@ -11,12 +11,12 @@ from dancetutor_cli.motion.foot_moves import Jump
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.foothold import Pitches, around, heel_up
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal, pair
+from dancetutor_cli.motion.settings import JumpSettings
 from dancetutor_cli.motion.swing.jump_ways import jump_ways
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
-HEEL_UP = 0.12  # seconds on the ground that a heel needs to come down and rise again for a jump
-LONGER = 0.03  # metres; a foot with so much the longer way leaves first in quick jumps
+FARTHER = 1.5  # parts of `jump.far`; feet that travel farther are pulled up no more
 Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
 
 
@@ -42,15 +42,15 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
     before = np.array([footing.toes(f) for f in feet])
     after = np.array([footing.toes(f, yaw) for f, (_, yaw) in zip(feet, goals, strict=True)])
     turn = float(np.radians(flight.turned))
-    share, aside = jump_ways(starts, before, ends, after, turn, footing.settings.step.apart)
+    share, aside = jump_ways(starts, before, ends, after, turn, footing.settings)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = flight.eased * tuck_for(far, jump.tuck, jump.far)
+    tuck = flight.eased * tuck_for(far, jump)
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):
         lift = min(flight.first[side], flight.take_off)
         height = GRAVITY * (flight.land - lift) ** 2 / 8
         # heels that have just come down do not get up so far again
-        up = float(np.clip((lift - foot.landed) / HEEL_UP, 0.0, 1.0))
+        up = float(np.clip((lift - foot.landed) / jump.heel_time, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)
         swing = Jump(
@@ -85,7 +85,7 @@ def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[f
     out = [take_off, take_off]
     early = max(foot.earliest(time), time - row.duration * (1.0 - step.double_support_fast))
     straight = around(footing, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
-    if straight and ways[side] > ways[1 - side] + LONGER:
+    if straight and ways[side] > ways[1 - side] + footing.settings.jump.farther:
         out[side] -= row.cut * max(take_off - early, 0.0)
     return out[0], out[1]
 
@@ -98,6 +98,6 @@ def take_off_for(footing: Footing, time: float, flight: float) -> float:
     return max(take_off, *(f.rested(time) for f in feet))
 
 
-def tuck_for(distance: float, tuck: float, far: float) -> float:
+def tuck_for(distance: float, jump: JumpSettings) -> float:
     """How much more feet are pulled up that go so far: legs that reach far must not lock."""
-    return tuck * (1.0 + 1.5 * min(distance / far, 1.5) ** 2)
+    return jump.tuck * (1.0 + jump.tuck_far * min(distance / jump.far, FARTHER) ** 2)

@@ -21,8 +21,6 @@ from dancetutor_cli.numerics.ease import smooth
 Array = NDArray[np.float64]
 SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
 ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
-SIDESTEP = 0.4  # length of a step aside as a part of one ahead
-OVER_EDGE = 0.02  # metres that a foot rises more to get over the edge of the pad
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +138,8 @@ def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Foo
     along = float(np.arctan2(travel[0], travel[1]))
     # steps across the way she faces are short, or ankles would bend aside
     ahead = np.maximum(np.cos(np.array([begin.heading, *ways, goal.heading]) - along), 0.0)
-    lengths = np.cumsum(SIDESTEP + (1.0 - SIDESTEP) * np.minimum(ahead[1:], ahead[:-1]))
+    aside = settings.walk.sidestep
+    lengths = np.cumsum(aside + (1.0 - aside) * np.minimum(ahead[1:], ahead[:-1]))
     steps = []
     for k in range(1, count + 1):
         side = (first + k - 1) % 2
@@ -148,8 +147,8 @@ def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Foo
             steps.append(Footfall(goal.balls[side], float(goal.yaws[side]), goal.heading))
             continue
         way = ways[k - 1]
-        aside = (settings.walk.width if side == 0 else -settings.walk.width) * np.array([np.cos(way), -np.sin(way)])
-        middle = begin.middle + travel * lengths[k - 1] / lengths[-1] + aside
+        off = (settings.walk.width if side == 0 else -settings.walk.width) * np.array([np.cos(way), -np.sin(way)])
+        middle = begin.middle + travel * lengths[k - 1] / lengths[-1] + off
         yaw = way + (out if side == 0 else -out)
         steps.append(Footfall(ball_of(_on_one_level(middle, yaw, ground), yaw), yaw, way))
     return steps
@@ -188,7 +187,7 @@ def room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float],
 
 
 def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
-    begin, pace, ground = trip.begin, how.gait, context.ground
+    begin, pace, ground, walk = trip.begin, how.gait, context.ground, context.settings.walk
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
     swings: tuple[list[Walk], list[Walk]] = ([], [])
@@ -198,23 +197,23 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
         land = trip.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
         lift = land - (1.0 - STANCE) * pace.period
         far = float(np.linalg.norm(step.ball - places[side][0]))
-        share = min(far / (0.6 * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
-        pitches = (0.8 * share * push, max(share, 0.3) * push, -share * heel, 0.0)
+        share = min(far / (walk.short * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
+        pitches = (walk.push_share * share * push, max(share, 0.3) * push, -share * heel, 0.0)
         (ball, yaw), (other, standing) = places[side], places[1 - side]
         way = Way(ball, yaw, step.ball, step.yaw)
-        bulge = detour(way, other, standing, context.settings.step.apart, 1.0 - 2.0 * side)
+        bulge = detour(way, other, standing, context.settings.step, 1.0 - 2.0 * side)
         least = min(least, room(places[side], step, bulge, places[1 - side]))
         level = ground.level(*middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
         target = (float(step.ball[0]), float(step.ball[1]))
-        height = pace.height + OVER_EDGE * edge
+        height = pace.height + walk.over_edge * edge
         swings[side].append(Walk(lift, land, target, step.yaw, pitches, height, bulge, level))
         places[side] = (step.ball, step.yaw)
         turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
         before = step.heading
         landings.append(land)
-    walk = Route(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
-    return WalkSteps(walk, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
+    route = Route(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
+    return WalkSteps(route, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 
 def _joined(turns: list[Turn]) -> list[Turn]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.baked import Ground
 from dancetutor_cli.motion.footwork.footing import Footing, FootState
 from dancetutor_cli.motion.settings import StepSettings
-from dancetutor_cli.motion.swing.clearance import ANKLE, CROSSED, SHARES, Way, detour, gaps_at, headings, over
+from dancetutor_cli.motion.swing.clearance import ANKLE, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
 from dancetutor_cli.play.played import Part
@@ -23,10 +23,8 @@ _ACROSS = np.arange(-5, 6) / 5
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
-LANDING = np.radians(30.0)  # legs that stand cross so much less than they may on the way
 CROSSED_PRICE = 3e3  # of a radian that legs cross too far
 EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
-PLACE_PRICE, TURN_PRICE = 0.05, np.radians(18.0)  # metres and radians off the wanted landing that count the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +75,7 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     if len(goal.columns) > 1:
         return _bracket(footing, foot, goal)
     panels, following = footing.context.panels, goal.following
-    panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0])
+    panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
     cut = max(goal.cut, step.edge)
     ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
@@ -112,22 +110,25 @@ def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: floa
 
     Nor do the legs cross there farther than they must.
     """
-    apart, still = footing.settings.step.apart, other.toes + foot.outward * footing.toe_out
+    step, air = footing.settings.step, footing.settings.mines.keep_off
+    apart, still = step.apart, other.toes + foot.outward * footing.toe_out
     body = footing.turned_to((yaw, still) if foot.side == 0 else (still, yaw))
     toes = np.array([footing.toes(foot, yaw)])
     free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
-    crossed = legs_crossed(foot.outward, ball[None], toes, other, body)[0]
-    if free and crossed <= 0.0 and not over(footing.mined, ball[None], toes)[0]:
+    crossed = legs_crossed(foot.outward, ball[None], toes, other, body, step)[0]
+    if free and crossed <= 0.0 and not over(footing.mined, ball[None], toes, air)[0]:
         return ball, yaw
     balls = spot.centre + spot.room * PLACES * [foot.outward, 1.0]
     turned = np.array([footing.limited(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
     grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
     gaps = gaps_at(grid, yaws + foot.outward * footing.toe_out, other.ball, other.toes)
-    price = np.sum((grid - ball) ** 2, axis=1) / PLACE_PRICE**2 + ((yaws - yaw) / TURN_PRICE) ** 2
+    price = np.sum((grid - ball) ** 2, axis=1) / step.place_off**2 + ((yaws - yaw) / np.radians(step.turn_off)) ** 2
     price += np.maximum(apart - gaps, 0.0) * 1e6
-    price += CROSSED_PRICE * legs_crossed(foot.outward, grid, toes, other, body)  # whichever way the foot is turned
+    price += CROSSED_PRICE * legs_crossed(
+        foot.outward, grid, toes, other, body, step
+    )  # whichever way the foot is turned
     price += EDGE_PRICE * beyond_the_edge(footing.context.ground, grid)
-    price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out) * 1e4
+    price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out, air) * 1e4
     best = int(np.argmin(price))
     return grid[best], float(yaws[best])
 
@@ -139,7 +140,7 @@ def beyond_the_edge(ground: Ground, balls: Array) -> Array:
     return np.asarray(np.maximum(near, 0.0).sum(axis=1))
 
 
-def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float) -> Array:
+def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float, step: StepSettings) -> Array:
     """How much farther (k,) legs cross than they may, radians, as a foot stands at balls (k, 2) with its toes (k,) so.
 
     outward : as of the foot; body : yaw of the hips
@@ -147,7 +148,8 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
     own = balls - (BALL_AHEAD + ANKLE) * headings(toes)
     line = outward * (own - (other.ball - (BALL_AHEAD + ANKLE) * headings(np.array(other.toes))))
     angle = np.arctan2(-line[:, 1], line[:, 0]) - body
-    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - CROSSED + LANDING, 0.0))
+    most = np.radians(step.cross - step.stand_cross)
+    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - most, 0.0))
 
 
 def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
@@ -170,7 +172,14 @@ def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: floa
     rest = step.stream_pitch * cut
     if len(columns) > 1:
         land = rest = 0.0  # heel and toes of a bracket come down together
-    out = np.radians([lift * (1.0 - 0.4 * cut), most * (1.0 - 0.6 * cut), land + 0.3 * rest, rest])
+    out = np.radians(
+        [
+            lift * (1.0 - step.lift_flat * cut),
+            most * (1.0 - step.swing_flat * cut),
+            land + step.land_stream * rest,
+            rest,
+        ]
+    )
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
@@ -183,11 +192,11 @@ def around(
     footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
 ) -> tuple[float, float]:
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
-    apart = footing.settings.step.apart
+    step = footing.settings.step
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
     way = Way(foot.ball, footing.toes(foot), target, footing.toes(foot, yaw), (footing.faced, after))
     if max(other.landed, other.turned) <= span[0]:
-        return detour(way, other.ball, footing.toes(other), apart, foot.outward)
+        return detour(way, other.ball, footing.toes(other), step, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
-    there = foot_path(other.track(LATEST), times, footing.settings.step.heel_drop)
-    return detour(way, there.ball[:, [0, 2]], there.yaw, apart, foot.outward)
+    there = foot_path(other.track(LATEST), times, footing.settings)
+    return detour(way, there.ball[:, [0, 2]], there.yaw, step, foot.outward)

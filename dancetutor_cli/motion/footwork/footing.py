@@ -13,15 +13,13 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Move, Pivot
 from dancetutor_cli.motion.plan import FootTrack, Turn
-from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.settings import MotionSettings, StepSettings
 from dancetutor_cli.motion.swing.clearance import gaps_at, over
-from dancetutor_cli.motion.swing.foot_path import NO_TIME
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
 
 Array = NDArray[np.float64]
 SHORTEST = 0.02  # seconds; no swing is shorter
 FREE_WINDOW = 0.001
-SHORTEST_PIVOT = 0.04  # seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +38,7 @@ class FootState:
 
     yaw : without toe-out, radians; start, start_toes : where it stood before the first of `moves`, the newest ones
     free : it may not leave before; landed : when it came down; turned : when it last ended a pivot, seconds
-    least_stand : seconds that it stays down after landing, if its next note leaves it the time
+    step : the numbers of how it steps
     holds : columns that it holds, each with until when; evading : until its next step
     """
 
@@ -49,7 +47,7 @@ class FootState:
     yaw: float
     start: tuple[float, float]
     start_toes: float
-    least_stand: float
+    step: StepSettings
     free: float = -np.inf
     landed: float = -np.inf
     turned: float = -np.inf
@@ -64,7 +62,7 @@ class FootState:
 
     def moved(self, move: Move, target: Array, yaw: float) -> FootState:
         """The foot after one more move, standing at its target."""
-        if self.moves and move.lift - self.moves[-1].land < NO_TIME:
+        if self.moves and move.lift - self.moves[-1].land < self.step.heel_stays:
             heel = self.moves[-1].pitches[2]
             move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
         return replace(
@@ -107,7 +105,7 @@ class FootState:
 
     def rested(self, time: float) -> float:
         """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
-        return max(self.landed + min(self.least_stand, (time - self.landed) / 3), self.turned + FREE_WINDOW)
+        return max(self.landed + min(self.step.stand, (time - self.landed) / 3), self.turned + FREE_WINDOW)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,14 +204,14 @@ class Footing:
         yaws = foot.yaw + np.linspace(1.0, 0.0, 9) * (wanted - foot.yaw)
         balls, toes = np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out
         gaps = gaps_at(balls, toes, other, other_toes)
-        mined = over(self.mined, balls, toes)
+        mined = over(self.mined, balls, toes, self.settings.mines.keep_off)
         clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
         return float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
 
     def pivoted(self, foot: FootState, yaw: float, start: float, time: float) -> Footing:
         """The footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""
         begin = max(start, foot.moves[-1].land + FREE_WINDOW if foot.moves else start)
-        if yaw == foot.yaw or begin > time - SHORTEST_PIVOT:
+        if yaw == foot.yaw or begin > time - self.settings.step.pivot_least:
             return self
         up = float(np.radians(self.settings.step.pivot_pitch))
         rest = foot.moves[-1].pitches[3] if foot.moves else 0.0
@@ -239,7 +237,7 @@ def _at_home(side: int, settings: MotionSettings) -> FootState:
     out = 1.0 if side == 0 else -1.0
     toes = out * float(np.radians(settings.step.toe_out))
     ball = ball_of(np.array([out * settings.step.home, 0.0]), toes)
-    return FootState(side, ball, 0.0, pair(ball), toes, settings.step.stand)
+    return FootState(side, ball, 0.0, pair(ball), toes, settings.step)
 
 
 def pair(v: Array) -> tuple[float, float]:

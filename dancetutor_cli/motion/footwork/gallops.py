@@ -10,8 +10,6 @@ from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import Footing, TakeOff
 from dancetutor_cli.rig.mass import GRAVITY
 
-SHORTEST_FLIGHT = 0.12  # seconds; a gallop with less is two steps
-
 
 def galloping(row: Row, side: int, footing: Footing) -> Footing:
     """The footing in which both feet are about to take off together, if a gallop begins with the row's step."""
@@ -25,7 +23,7 @@ def galloping(row: Row, side: int, footing: Footing) -> Footing:
         return footing
     flight = min(float(np.sqrt(8 * jump.apex_near / GRAVITY)), jump.flight_share * row.duration)
     take_off = max(row.time - flight, *(f.earliest(row.time) for f in footing.feet))
-    if take_off > row.time - SHORTEST_FLIGHT:
+    if take_off > row.time - jump.gallop_flight:
         return footing
     both = TakeOff(i, take_off), TakeOff(i + 1, take_off)
     return replace(footing, take_offs=both if side == 0 else both[::-1])

@@ -21,7 +21,6 @@ from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
 Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
-MOST = 6  # steps in which she turns home
 
 
 class HomeSteps:
@@ -83,7 +82,7 @@ class HomeSteps:
         off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
         if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
             return []
-        for count in range(2, MOST + 1):
+        for count in range(2, int(home.most) + 1):
             ways = [self._way(begin, goal, count, first) for first in (lead, 1 - lead)]
             free = [way for way in ways if way is not None]
             if free:
@@ -103,10 +102,10 @@ class HomeSteps:
             (ball, yaw), other, outward = places[side], places[1 - side], 1.0 - 2.0 * side
             if abs(fall.yaw - yaw) > most:
                 return None
-            bulge = detour(Way(ball, yaw, fall.ball, fall.yaw), *other, apart, outward)
+            bulge = detour(Way(ball, yaw, fall.ball, fall.yaw), *other, self.settings.step, outward)
             least = min(least, room(places[side], fall, bulge, other))
             toes = np.array([fall.yaw])
-            crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading)[0])
+            crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, self.settings.step)[0])
             places[side] = (fall.ball, fall.yaw)
             falls.append((side, fall))
         return ((round(crossed, 6), -round(least, 6)), falls) if least >= apart - 1e-9 else None

@@ -99,8 +99,7 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Cont
 
 
 def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> tuple[float, float]:
-    numbers = context.settings.step
     start = standing(feet, step.lift)
-    there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), numbers.heel_drop)
+    there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
     way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw)
-    return detour(way, there.ball[:, [0, 2]], there.yaw, numbers.apart, 1.0 - 2.0 * side)
+    return detour(way, there.ball[:, [0, 2]], there.yaw, context.settings.step, 1.0 - 2.0 * side)

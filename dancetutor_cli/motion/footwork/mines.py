@@ -14,19 +14,13 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.foot_moves import Hover
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import Flight, flown
-from dancetutor_cli.motion.footwork.foothold import Spot, around, beside, landing_ball, pose
+from dancetutor_cli.motion.footwork.foothold import Pitches, Spot, around, beside, landing_ball, pose
 from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, SHORTEST, Evading, Footing, FootState, Proposal, pair
-from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.settings import MineSettings, MotionSettings
 from dancetutor_cli.motion.swing.clearance import over
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, room_on
 
 Array = NDArray[np.float64]
-PITCHES = (0.1, 0.2, 0.05, 0.0)  # radians, heel up
-ROAM = 0.04  # metres that it gives way there for the other foot
-FAR_HOME = 0.30  # metres; the middle of the pad is too far from a foot that stands farther away
-STEEP = 0.02  # seconds in which a foot in a hurry gets up high enough, or down from there
-HASTE = 0.06  # seconds; a step that may last so long waits until the other foot is down
-PUSH = 0.03  # seconds that a foot stands between a mine and a jump
 
 
 def avoid_mines(row: Row, footing: Footing) -> Proposal:
@@ -43,7 +37,7 @@ def avoid_mines(row: Row, footing: Footing) -> Proposal:
         for f in footing.feet
         if f.side not in row.pressed
         and not f.holding(time)
-        and over(mined, f.ball[None], np.array([footing.toes(f)]))[0]
+        and over(mined, f.ball[None], np.array([footing.toes(f)]), footing.settings.mines.keep_off)[0]
     ]
     if len(threatened) == 2:
         return Proposal(_hopped(footing, time))
@@ -61,7 +55,12 @@ def _hopped(footing: Footing, time: float) -> Footing:
     goals = [_home(footing, foot) for foot in footing.feet]
     for foot in footing.feet:
         footing = footing.with_foot(replace(foot, evading=None))
-    return flown(footing, Flight(take_off, time + half), goals, [PITCHES, PITCHES])
+    return flown(footing, Flight(take_off, time + half), goals, [_pitches(footing.settings.mines)] * 2)
+
+
+def _pitches(mines: MineSettings) -> Pitches:
+    lift, most, land = np.radians((mines.lift_pitch, mines.swing_pitch, mines.land_pitch)).tolist()
+    return lift, most, land, 0.0
 
 
 def _home(footing: Footing, foot: FootState) -> tuple[Array, float]:
@@ -95,22 +94,22 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
     target, yaw = _beside_the_mines(footing, foot, column)
     bulge = around(footing, foot, (lift, time + half), target, yaw, other)
     toes = footing.toes(foot, yaw)
-    up = foot.moved(Hover(lift, time + half, pair(target), toes, PITCHES, mines.height, bulge), target, yaw)
+    up = foot.moved(Hover(lift, time + half, pair(target), toes, _pitches(mines), mines.height, bulge), target, yaw)
     up = replace(up, evading=Evading(first, time, foot.ball, foot.yaw))
     return _one_after_the_other(footing.with_foot(up), up, other)
 
 
 def _beside_the_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
     """Where a foot comes down that is up over a mine on a column, -1 for none, and its yaw."""
-    panels, other = footing.context.panels, footing.other(foot)
+    panels, other, mines = footing.context.panels, footing.other(foot), footing.settings.mines
     there = panels[column] if column >= 0 else None
     if there is None or (len(footing.mined) and (np.abs(footing.mined - there).max(axis=1) < HALF_PANEL).any()):
         target, yaw = _home(footing, foot)
-        spot = Spot(target, np.full(2, ROAM))
-        if np.linalg.norm(target - foot.ball) > FAR_HOME:  # off the mines is enough
-            target, yaw, spot = foot.ball, foot.yaw, Spot(foot.ball, np.full(2, FAR_HOME))
+        spot = Spot(target, np.full(2, mines.roam))
+        if np.linalg.norm(target - foot.ball) > mines.far_home:  # off the mines is enough
+            target, yaw, spot = foot.ball, foot.yaw, Spot(foot.ball, np.full(2, mines.far_home))
     else:
-        spot, yaw = Spot(there, room_on(panels, column)), foot.yaw
+        spot, yaw = Spot(there, room_on(panels, column, footing.settings.step)), foot.yaw
         middle, edge = pose(footing, other).middle, footing.settings.step.edge_margin
         target = landing_ball(spot, footing.toes(foot), middle, 1.0, edge)
     return beside(footing, foot, spot, target, yaw, pose(footing, other))
@@ -119,7 +118,7 @@ def _beside_the_mines(footing: Footing, foot: FootState, column: int) -> tuple[A
 def _one_after_the_other(footing: Footing, foot: FootState, other: FootState) -> Footing:
     """A foot goes up over a mine only when the other one is down from its step or its own mine, if it can wait."""
     settings = footing.settings
-    need = settings.mines.before + STEEP
+    need = settings.mines.before + settings.mines.steep
     swing, evading = foot.moves[-1], foot.evading
     if evading is None or not swing.lift < other.landed:
         return footing
@@ -133,7 +132,7 @@ def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float
     """A foot that evades goes up not before `lift` and is down at `land`, as far as its mines allow."""
     evading, swing = foot.evading, foot.moves[-1]
     assert evading is not None
-    need = settings.mines.before + STEEP
+    need = settings.mines.before + settings.mines.steep
     lift = max(swing.lift, min(lift, evading.first - need))
     land = min(swing.land, max(land, evading.last + need))
     sooner = foot.moved_otherwise(replace(swing, lift=lift, land=land))
@@ -147,8 +146,8 @@ def left_standing(other: FootState, settings: MotionSettings, lift: float, time:
     """
     if other.evading is None or other.landed <= lift or not isinstance(other.moves[-1], Hover):
         return other, lift
-    need = settings.mines.before + STEEP
-    if other.evading.last + need > time - HASTE:  # no time: both are in the air for a moment
+    need = settings.mines.before + settings.mines.steep
+    if other.evading.last + need > time - settings.mines.haste:  # no time: both are in the air for a moment
         return _hurried(other, settings, other.evading.first - need, time), lift
     sooner = _hurried(other, settings, lift, max(lift, other.evading.last + need))
     return sooner, max(lift, sooner.landed)
@@ -170,11 +169,12 @@ def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tupl
 
     Returns the foot, and when both take off at the latest.
     """
-    evading, need = foot.evading, settings.mines.before + STEEP
-    if evading is None or foot.landed <= time - HASTE - PUSH or not isinstance(foot.moves[-1], Hover):
+    evading, need = foot.evading, settings.mines.before + settings.mines.steep
+    ready = time - settings.mines.haste - settings.mines.push
+    if evading is None or foot.landed <= ready or not isinstance(foot.moves[-1], Hover):
         return replace(foot, evading=None), time
-    if evading.last + need <= time - HASTE - PUSH:
-        return replace(_hurried(foot, settings, foot.moves[-1].lift, time - HASTE - PUSH), evading=None), time
+    if evading.last + need <= ready:
+        return replace(_hurried(foot, settings, foot.moves[-1].lift, ready), evading=None), time
     swing = foot.moves[-1]
     up = foot.not_moved(evading)
     up = replace(up, landed=up.moves[-1].land if up.moves else -np.inf, free=min(swing.lift, foot.free))

@@ -26,7 +26,6 @@ from dancetutor_cli.motion.plan import Plan, Press, Turn
 from dancetutor_cli.play.played import Limb, Play, StepKind
 
 Array = NDArray[np.float64]
-MINES_AHEAD = 0.7  # seconds for which a landing foot keeps off panels with mines
 NEWEST = 8  # moves of a foot that rules may still look at or change
 
 
@@ -77,7 +76,7 @@ class Planner:
     def _stays(self, i: int, time: float) -> float:
         """Until when mines matter to the feet that land at row i: for a while, and as long as they hold."""
         held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
-        return max([time + MINES_AHEAD, *(self.second(int(tick)) for tick in held if tick >= 0)])
+        return max([time + self.settings.mines.ahead, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
     def _feet(self, row: Row) -> None:
         """One foot steps or both jump, and the body turns with them; before that she may step aside, or home."""
@@ -102,7 +101,7 @@ class Planner:
         found = jump(row, self.footing) if len(row.feet) == 2 else step(row, row.feet[0], self.footing)
         yaw = found.footing.turned_to()
         far = abs(yaw - self.turns[-1].yaw) if self.turns else abs(yaw)
-        turn = Turn(turn_start(time, duration, found.leaves, float(np.degrees(far))), time, yaw)
+        turn = Turn(turn_start((time, duration), found.leaves, float(np.degrees(far)), self.settings.step), time, yaw)
         self._apply(replace(found, footing=replace(found.footing, faced=yaw), turn=turn))
         self.previous = time
 

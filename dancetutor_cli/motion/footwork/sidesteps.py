@@ -20,16 +20,13 @@ from dancetutor_cli.motion.footwork.foothold import around, heel_up
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal, pair
 from dancetutor_cli.motion.footwork.walks import places_along, walk_there
 from dancetutor_cli.motion.plan import Press, Turn
+from dancetutor_cli.motion.settings import AsideSettings
 from dancetutor_cli.motion.swing.pace import reduction
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
-SPREADS = np.arange(0.34, 0.67, 0.04)  # metres between the feet as she steps aside, smallest first
-SAME = 0.05  # metres; a foot so near its place stays where it is
-MOST = 6  # steps: three to the side, three to close
-MINE = 0.2  # seconds around a mine
-AHEAD = 2.0  # seconds; a foot whose next note is later may stand anywhere
+SPREAD_STEP = 0.04  # metres between the ways of stepping aside that are tried
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +62,9 @@ class SideSteps:
             return None
         free = max([*(foot.free for foot in footing.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
         start, ready = free + settings.aside.pause, time - settings.walk.settle
-        busy = (self.mines > start - MINE) & (self.mines < np.nanmax(following.times) + MINE)
+        busy = (self.mines > start - settings.aside.mine) & (
+            self.mines < np.nanmax(following.times) + settings.aside.mine
+        )
         if ready - start < 2 * settings.aside.quick or busy.any():
             return None
         if walks_there(begin, following.places, (free, time), footing):
@@ -87,7 +86,7 @@ class SideSteps:
             if k < len(self.steps[side]):
                 found = int(self.steps[side][k])
                 times[side] = row.time if found == row.index else rows.second[found]
-                if times[side] < row.time + AHEAD:
+                if times[side] < row.time + self.settings.aside.soon:
                     places[side] = self.panels[self.play.limb[found] == side].mean(axis=0)
         return _Next(times, places, tuple(row.feet))
 
@@ -119,9 +118,9 @@ class SideSteps:
     def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
         """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
         aside = self.settings.aside
-        few = len(footfalls(begin, goal, aside.comfortable)) or MOST
-        for spread in SPREADS:
-            falls = footfalls(begin, goal, float(spread))
+        few = len(footfalls(begin, goal, aside.comfortable, aside)) or aside.most
+        for spread in np.arange(aside.narrow, aside.wide + 1e-6, SPREAD_STEP):
+            falls = footfalls(begin, goal, float(spread), aside)
             if 0 < len(falls) <= few and time / len(falls) >= aside.quick and self._free(begin, falls):
                 return falls, min(aside.slow, time / len(falls))
         return None
@@ -170,31 +169,32 @@ def _between(places: Array) -> Array:
     return np.asarray(middle + way * HALF_PANEL * (np.arange(count + 1) - count / 2))
 
 
-def footfalls(begin: Stand, goal: Stand, spread: float) -> list[tuple[int, Footfall]]:
+def footfalls(begin: Stand, goal: Stand, spread: float, aside: AsideSettings) -> list[tuple[int, Footfall]]:
     """Steps to the side along x: the near foot goes, at most `spread` from the other one, which follows.
 
-    Returns foot (0 left) and footfall of each; none if more than `MOST` are needed.
+    Returns foot (0 left) and footfall of each; none if more than `aside.most` are needed.
     """
     way = float(np.sign(goal.middle[0] - begin.middle[0]))
     near = 0 if way > 0 else 1
     at, to = way * begin.balls[:, 0], way * goal.balls[:, 0]
     close = to[near] - to[1 - near]
     out: list[tuple[int, Footfall]] = []
-    for k in range(2 * MOST):
+    for k in range(2 * int(aside.most)):
         side = near if k % 2 == 0 else 1 - near
         reach = at[1 - near] + spread if side == near else at[near] - close
-        place = to[side] if to[side] - reach < SAME else reach
+        place = to[side] if to[side] - reach < aside.same else reach
         last = place == to[side]
-        if place > at[side] + SAME or (last and _off(begin, goal, side, out)):
+        if place > at[side] + aside.same or (last and _off(begin, goal, out, (side, aside.same))):
             ball = np.array([way * place, goal.balls[side, 1]])
             out.append((side, Footfall(ball, float(goal.yaws[side]), goal.heading)))
             at[side] = place
-        if all(not _off(begin, goal, s, out) for s in (0, 1)):
-            return out if len(out) <= MOST else []
+        if all(not _off(begin, goal, out, (s, aside.same)) for s in (0, 1)):
+            return out if len(out) <= aside.most else []
     return []
 
 
-def _off(begin: Stand, goal: Stand, side: int, falls: list[tuple[int, Footfall]]) -> bool:
-    """Whether a foot is not yet where it shall be."""
+def _off(begin: Stand, goal: Stand, falls: list[tuple[int, Footfall]], foot: tuple[int, float]) -> bool:
+    """Whether a foot is not yet where it shall be. foot : which, and how near is there, metres"""
+    side, same = foot
     done = [fall.ball for s, fall in falls if s == side]
-    return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > SAME)
+    return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > same)

@@ -19,7 +19,6 @@ from dancetutor_cli.motion.footwork.mines import left_standing, resumed
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
-ON_THE_SPOT = 0.05  # metres; a step not so far is a tap on the foot's own panel
 
 
 def step(row: Row, side: int, footing: Footing) -> Proposal:
@@ -56,7 +55,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
     if isinstance(swing, Jump):
         jump = footing.settings.jump
-        tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump.tuck, jump.far)
+        tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump)
         swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
     return Proposal(footing.with_foot(foot.moved(swing, target, yaw)), lift)
 
@@ -82,7 +81,7 @@ def _kind(row: Row, footing: Footing, foot: FootState, target: Array, hovering: 
     """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time."""
     numbers, mines = footing.settings.step, footing.settings.mines
     height = numbers.height_slow + row.cut * (numbers.height_fast - numbers.height_slow)
-    if np.linalg.norm(target - foot.ball) < ON_THE_SPOT:
+    if np.linalg.norm(target - foot.ball) < numbers.on_the_spot:
         height = max(height * numbers.jack_height, numbers.height_fast)
     kind: type[Swing] = Step
     if hovering:

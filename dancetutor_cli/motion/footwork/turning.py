@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footing import Footing
-from dancetutor_cli.motion.settings import MotionSettings
+from dancetutor_cli.motion.settings import MotionSettings, StepSettings
 from dancetutor_cli.numerics.ease import STEEPEST
 from dancetutor_cli.play.played import Limb, Play
 
 Array = NDArray[np.float64]
-AHEAD = 10.0  # degrees that a turning body is at most ahead of a foot that turns with it
-WIDE, LATE = 120.0, 0.03  # degrees beyond which a turn begins later, and by how many seconds at most
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
 ALL_ROUND = 180.0  # degrees; farther apart in time than the body takes for it, rows know nothing of each other
@@ -36,12 +34,13 @@ def body_yaw(normal: float, settings: MotionSettings) -> float:
     """Which way the body faces for a feet normal, degrees both: crossed feet turn it less."""
     whole = 360.0 * round(normal / 360.0)
     rest = abs(normal - whole)
-    k = settings.step.crossover_turn
-    if rest > 135.0:
-        at_135 = 90.0 + 45.0 * k
-        rest = at_135 + (rest - 135.0) / 45.0 * (180.0 - at_135)
-    elif rest > 90.0:
-        rest = 90.0 + (rest - 90.0) * k
+    step = settings.step
+    first, last = step.crossover_from, step.crossover_to
+    there = first + (last - first) * step.crossover_turn
+    if rest > last:
+        rest = there + (rest - last) / (180.0 - last) * (180.0 - there)
+    elif rest > first:
+        rest = first + (rest - first) * step.crossover_turn
     return float(whole + np.copysign(rest, normal - whole))
 
 
@@ -100,11 +99,17 @@ class Facing:
             yield float(second[j]), body_yaw(normal, self.settings)
 
 
-def turn_start(time: float, duration: float, leaves: float, far: float) -> float:
+def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepSettings) -> float:
     """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
-    ground that body and foot would ever be turned much farther from each other than they are anyway."""
-    ahead = 2.0 * AHEAD / (STEEPEST * max(far, AHEAD)) * (time - leaves)
-    late = LATE * float(np.clip(far / WIDE - 1.0, 0.0, 1.0))  # for the body's path is smooth: it turns before it begins
+    ground that body and foot would ever be turned much farther from each other than they are anyway.
+
+    move : when it lands, and how long it lasts; leaves : when a foot does, seconds
+    """
+    time, duration = move
+    ahead = 2.0 * step.turn_ahead / (STEEPEST * max(far, step.turn_ahead)) * (time - leaves)
+    late = step.turn_late * float(
+        np.clip(far / step.turn_wide - 1.0, 0.0, 1.0)
+    )  # for the body's path is smooth: it turns before it begins
     return max(time - duration, leaves - ahead + late)
 
 

@@ -21,8 +21,6 @@ from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.play.played import StepKind
 
 Array = NDArray[np.float64]
-ARRIVED = 0.04  # seconds at least that a foot stands after a walk before it leaves for the first step
-NARROWER = 0.01  # metres that shoes may be nearer to each other in a walk than in a step
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +50,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     heading = (side - 0.5) * np.pi
     away = np.array([_beside(ground, side, walk.beside), goal.middle[1]])
     begin = stand_at(away, heading, settings)
-    ready = min(plan.first - walk.settle, busy - walk.settle - ARRIVED)
+    ready = min(plan.first - walk.settle, busy - walk.settle - walk.arrived)
     steps = footsteps(Trip(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
     return None if steps is None else WalkProposal(steps, goal, begin)
 
@@ -122,7 +120,7 @@ def walk_there(
     goal = stand_at(np.array([_nearest(places_along(context.squares, lead), targets), 0.0]), whole, settings)
     way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
     steps = footsteps(Trip(begin, goal, way, wait[0] + walk.pause, wait[1] - walk.rest), gait, lead, context)
-    if steps is None or steps.room < settings.step.apart - NARROWER:
+    if steps is None or steps.room < settings.step.apart - walk.narrower:
         return None
     return WalkProposal(steps, goal)
 

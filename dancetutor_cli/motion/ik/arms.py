@@ -29,11 +29,9 @@ from dancetutor_cli.rig.soles import SIDES, palm_points
 Array = NDArray[np.float64]
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
-HELD = 0.3  # seconds of a long press in which its palm is laid with ease
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
-AWAY = np.array([[0.10, 0.0, 0.06], [-0.10, 0.0, 0.06]])  # metres that a free hand keeps farther aside in deep bends
-SHALLOW, DEEP = np.radians(25.0), np.radians(100.0)  # of bends, in which the other arm goes along
 BEHIND = (0.37, 0.23)  # how much of a slow and a quick wave each hand and axis is behind the last
+WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
 
 
@@ -41,15 +39,17 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     """Targets at times `at` (f,); torso : at the same times, as the IK will be asked for it."""
     lean, upright = quat.swing_twist(torso.chest, UP)
     hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
+    arms = context.settings.arms
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
-    bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - SHALLOW) / (DEEP - SHALLOW))
-    along = quat.multiply(
-        quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, context.settings.arms.bend_hang * bent), upright
+    first, last = np.radians((arms.bend_from, arms.bend_full))
+    bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - first) / (last - first))
+    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, arms.bend_hang * bent), upright)
+    hang = hang + bent[:, None, None] * np.array(
+        [[arms.bend_out, 0.0, arms.bend_ahead], [-arms.bend_out, 0.0, arms.bend_ahead]]
     )
-    hang = hang + bent[:, None, None] * AWAY
     wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
-    wrists[..., 1] = np.maximum(wrists[..., 1], context.settings.arms.lowest)
-    out = np.array([[1.0], [-1.0]]) * np.array([0.45, 0.0, 0.0]) + np.array([0.0, -0.25, -0.9])
+    wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
+    out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
     elbows = quat.rotate(upright[:, None], out)
     free = np.tile(quat.IDENTITY, (len(at), 2, 1))
     hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
@@ -70,7 +70,7 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     rate = 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
     hang[..., 0] = np.array([1.0, -1.0]) * arms.out
-    hang[..., 1] = -arms.down + 0.25 * np.abs(swing) + arms.stream_up * effort
+    hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort
     hang[..., 2] = arms.forward + swing + arms.stream_forward * effort
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
@@ -120,7 +120,7 @@ def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
     hands = np.arange(6).reshape(2, 3)
     waves = zip((arms.wander_slow, arms.wander_quick), BEHIND, strict=True)
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
-    ways = np.asarray((slow + 0.6 * fast) / 1.3 + ASKEW)
+    ways = np.asarray((slow + arms.wander_share * fast) / WAVES + ASKEW)
     return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
 
@@ -129,15 +129,15 @@ def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
     front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
     ahead, lifted = [], []
     for track in plan.feet[::-1]:  # the left hand goes with the right foot
-        path = foot_path(track, body.times, settings.step.heel_drop)
+        path = foot_path(track, body.times, settings)
         ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
         lifted.append(np.sin(np.pi * path.progress))
-    both = settings.arms.swing * np.clip(np.column_stack(ahead), -0.35, 0.35)
+    both = settings.arms.swing * np.clip(np.column_stack(ahead), -settings.arms.swing_most, settings.arms.swing_most)
     both += settings.arms.step * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
-    gait = walking(plan.walks, body.times)
+    gait = walking(plan.walks, body.times, settings.walk)
     if gait is not None:
         both = (1.0 - gait.own[:, None]) * both + gait.hands
-    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), 0.07)
+    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), settings.arms.swing_time)
 
 
 def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, context: Context) -> None:
@@ -160,7 +160,7 @@ def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, contex
     free = wrists[near, side]
     goal = free + across[:, None] * (wrist - free)
     ahead = np.maximum(press.start - t, 0.0)
-    slap = numbers.slap * ahead * np.exp(-((ahead / 0.1) ** 2))
+    slap = numbers.slap * ahead * np.exp(-((ahead / numbers.slap_time) ** 2))
     goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
     wrists[near, side] = goal
     hands.rotation[near, side] = hand
@@ -176,7 +176,11 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
     Of many ways the one that is easiest for shoulder and wrist as the body is at the note and as the palm leaves, and
     then the one whose fingers point most from the body to the panel.
     """
-    when, side, skeleton = np.array([press.start, min(press.end, press.start + HELD)]), press.side, context.skeleton
+    when, side, skeleton = (
+        np.array([press.start, min(press.end, press.start + context.settings.hands.held)]),
+        press.side,
+        context.skeleton,
+    )
     ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
     yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
     pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import inner_kernel, njit
+from dancetutor_cli.rig.dimensions import SPINE_SHARES
 from dancetutor_cli.rig.limb import (
     Quat,
     Vec,
@@ -30,6 +31,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
+LOW, HIGH = SPINE_SHARES
 ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
 PULL_LEGS = 60  # rounds of pulling the root until both legs reach
 PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
@@ -186,15 +188,15 @@ def _torso(
     ro = add(_vec(offsets[joints[ARM + 4]]), _vec(offsets[joints[ARM + 5]]))
     rest_mid = scale(add(lo, ro), 0.5)
     p1 = add(root, qrot(pelvis, _vec(offsets[joints[VL5]])))
-    q1, q2 = qlerp(pelvis, chest, 0.34), qlerp(pelvis, chest, 0.67)
+    q1, q2 = qlerp(pelvis, chest, LOW), qlerp(pelvis, chest, HIGH)
     # a back that is pushed together always rounds backward: without this it would snap from side to side
     p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
     p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
     middle = scale(add(left, right), 0.5)
     p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
     q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
-    q1 = _aim(qlerp(pelvis, q3, 0.34), o10, sub(p2, p1))
-    q2 = _aim(qlerp(pelvis, q3, 0.67), o4, sub(p3, p2))
+    q1 = _aim(qlerp(pelvis, q3, LOW), o10, sub(p2, p1))
+    q2 = _aim(qlerp(pelvis, q3, HIGH), o4, sub(p3, p2))
     return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
 
 

@@ -16,7 +16,6 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
-ROOM = 0.004  # metres between the legs from which on knees give way
 LOOKED = 0.03  # metres; legs farther apart are left alone
 TRIED = np.radians(1.5)  # how far a knee is turned to see what that does
 FLAT = 1e-4  # square metres per radian; where turning a knee does less it is no use
@@ -55,16 +54,15 @@ def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSett
     return np.stack(out, axis=1)
 
 
-def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, give: float) -> Array:
+def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
     """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
 
-    give : degrees that a knee gives way at most
     Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
     """
     hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
     hips = hung.pelvis[:, None] + quat.rotate(hung.rotation[:, None], hips)
     bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
-    near, most = np.arange(len(poles)), np.radians(give)
+    near, most = np.arange(len(poles)), np.radians(knees.give)
     given = np.zeros((len(poles), 2))
     for _ in range(ROUNDS):
         legs = _Legs(hips[near], hung.ankles[near], poles[near], (bones[0], bones[1]))
@@ -74,7 +72,7 @@ def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, give: float) -> Ar
         if not len(near):
             break
         slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
-        need = np.maximum(deep + ROOM, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
+        need = np.maximum(deep + knees.room, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
         given[near] = np.clip(given[near] - need[:, None] * slope, -most, most)
     out = poles.copy()
     moved = np.abs(given).max(axis=1) > 0.0

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.settings import BodySettings
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.dimensions import SPINE_SHARES
 from dancetutor_cli.rig.quaternion import leaning
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import SIDES
 
 Array = NDArray[np.float64]
-DEEP = np.radians(75.0)  # a bend by so much is a deep one
-SPINE = (0.0, 0.34, 0.67)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
+SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
 def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array, settings: BodySettings) -> tuple[Array, Array, Array]:
@@ -22,7 +22,7 @@ def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array, settings: BodySet
 
     And how deep (f,) that bend is, 0 to 1.
     """
-    bent = smooth(np.linalg.norm(tilt, axis=1) / DEEP)
+    bent = smooth(np.linalg.norm(tilt, axis=1) / np.radians(settings.deep_bend))
     share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
     return leaning(share[:, None] * tilt, yaw), leaning(tilt, chest_yaw), bent
 

@@ -34,7 +34,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
-    gait = walking(plan.walks, at)
+    gait = walking(plan.walks, at, context.settings.walk)
     if gait is not None:
         pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
@@ -48,7 +48,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
         for t, f in zip(straight, feet, strict=True)
     ]
     poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
-    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles, context.settings.knees.give)
+    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles, context.settings.knees)
     return Targets(
         pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,

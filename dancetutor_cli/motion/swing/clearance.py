@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import inner_kernel, njit
+from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, ball_to_ankle
@@ -18,11 +19,9 @@ Array = NDArray[np.float64]
 _ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
 _WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
 _WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
-OVER = 0.004  # metres that a shoe keeps from a panel with a mine
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
-CROSSED = np.radians(112.0)  # legs may cross so far: the line between the ankles, as seen from that between the hips
-WRONG = 0.10  # metres of room that a radian beyond it counts as
+WRONG = 0.10  # metres of room that a radian of legs crossed too far counts as
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
@@ -40,8 +39,8 @@ class Way:
     hips: tuple[float, float] | None = None
 
 
-def detour(way: Way, other: Array, other_yaw: Array | float, apart: float, outward: float) -> tuple[float, float]:
-    """(x, z) to add in the middle of a straight path, so that the shoes stay `apart` between their middle lines.
+def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> tuple[float, float]:
+    """(x, z) to add in the middle of a straight path, so that the shoes stay `step.apart` between their middle lines.
 
     And so that legs do not go through each other: it leads around the other foot on the side on which the hips turn.
 
@@ -49,31 +48,31 @@ def detour(way: Way, other: Array, other_yaw: Array | float, apart: float, outwa
     ----------
     way : of the swinging foot
     other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
-    apart : metres; where no detour is enough, the best one is taken
+    step : how feet step; where no detour is enough, the best one is taken
     outward : 1 for the left foot, -1 for the right one: of equal detours each takes the other's mirror image
     """
     start, start_yaw, path = way.start, way.start_yaw, way.end - way.start
     length = float(np.linalg.norm(path))
     axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
     axes = axes * [[outward], [1.0]]
-    e, ahead = travelled(SHARES), headings(start_yaw + swung(SHARES) * (way.end_yaw - start_yaw))
+    e, ahead = travelled(SHARES, step), headings(start_yaw + swung(SHARES, step) * (way.end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
     still = shoe_line(other - BALL_AHEAD * aim, aim)
     gaps = segment_gaps(*shoe_line(straight, ahead), *still)
-    need = enough(gaps, e, apart) - 1e-3
+    need = enough(gaps, e, step.apart) - 1e-3
     aside = outward * (other - BALL_AHEAD * aim - ANKLE * aim)
-    free = wrung(way, outward * (straight - ANKLE * ahead) - aside)
+    free = wrung(way, outward * (straight - ANKLE * ahead) - aside, step)
     if (gaps >= need).all() and free <= 0.0:
         return 0.0, 0.0
     places = straight + bend(e)[:, None] * (_WAYS @ axes)[:, None]
     room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
-    room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside)
+    room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside, step)
     chosen = _WAYS[np.argmax(room >= min(0.0, room.max()))] @ axes
     return float(chosen[0]), float(chosen[1])
 
 
-def wrung(way: Way, line: Array) -> Array:
+def wrung(way: Way, line: Array, step: StepSettings) -> Array:
     """How much farther (...) than legs may cross they do on the way, radians, 0 for not at all.
 
     line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start on:
@@ -81,11 +80,12 @@ def wrung(way: Way, line: Array) -> Array:
     """
     if way.hips is None:
         return np.zeros(line.shape[:-2])
-    hips = way.hips[0] + swung(SHARES) * (way.hips[1] - way.hips[0])
+    hips = way.hips[0] + swung(SHARES, step) * (way.hips[1] - way.hips[0])
     angle = np.arctan2(-line[..., 1], line[..., 0]) - hips
     angle[..., 0] = (angle[..., 0] + np.pi) % (2 * np.pi) - np.pi
     most = np.abs(np.unwrap(angle, axis=-1)).max(axis=-1)
-    return np.asarray(np.maximum(most - max(CROSSED, abs(float(angle.reshape(-1, len(hips))[0, 0]))), 0.0))
+    allowed = max(np.radians(step.cross), abs(float(angle.reshape(-1, len(hips))[0, 0])))
+    return np.asarray(np.maximum(most - allowed, 0.0))
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
@@ -116,12 +116,12 @@ def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
     return segment_gaps(*shoe_line(middle, ahead), *shoe_line(rest, still))
 
 
-def over(panels: Array, balls: Array, toes: Array) -> NDArray[np.bool_]:
-    """Which of the shoes with balls (k, 2) and toes (k,), radians, reach over one of some panels (p, 2)."""
+def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.bool_]:
+    """Which shoes, balls (k, 2) and toes (k,) in radians, are nearer than `air`, metres, to some panels (p, 2)."""
     ahead = headings(toes)
     across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
     points = balls[:, None] + SHOE_OUTLINE[:, :1] * ahead[:, None] + SHOE_OUTLINE[:, 1:] * across[:, None]
-    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + OVER
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + air
     return np.asarray(inside.any(axis=(1, 2)))
 
 

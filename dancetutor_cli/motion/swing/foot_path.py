@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
+from dancetutor_cli.motion.settings import MotionSettings, WalkSettings
 from dancetutor_cli.motion.swing.clearance import bend
 from dancetutor_cli.motion.swing.jump_ways import turning
 from dancetutor_cli.motion.swing.pace import swung, travelled
@@ -16,13 +17,8 @@ from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig.dimensions import dancer_foot
 
 Array = NDArray[np.float64]
-EDGE, DOWN = 0.27, 0.24  # parts of a swing in which a foot rises to the level of the pad or sinks from it
 HEEL_BACK, BALL_UP = dancer_foot()
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
-WALKING_RISE = 0.22  # the same in a walk: the body is far ahead before the toes leave
-RISING = 1.2  # power of a swing's time: feet come down a little quicker than they rise, but are off the ground at once
-NO_TIME = 0.03  # seconds on the ground in which a heel stays as it has landed
-HEEL_RISE = 0.08  # seconds that the heel rises before the toes leave the ground
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +40,14 @@ class FootPath:
 Feet = tuple[FootPath, FootPath]  # left and right
 
 
-def both_feet(tracks: tuple[FootTrack, FootTrack], times: Array, heel_drop: float) -> Feet:
+def both_feet(tracks: tuple[FootTrack, FootTrack], times: Array, settings: MotionSettings) -> Feet:
     """Sample both feet at `times` (f,), seconds."""
-    return foot_path(tracks[0], times, heel_drop), foot_path(tracks[1], times, heel_drop)
+    return foot_path(tracks[0], times, settings), foot_path(tracks[1], times, settings)
 
 
-def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
+def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootPath:
     """Sample a foot at `times` (f,), seconds."""
-    moves = track.moves
+    moves, step = track.moves, settings.step
     lift = np.array([m.lift for m in moves])
     land = np.array([m.land for m in moves])
     place = np.array([track.start, *(m.target for m in moves)])
@@ -65,22 +61,22 @@ def foot_path(track: FootTrack, times: Array, heel_drop: float) -> FootPath:
         return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
-    ground = np.where(swinging[:, None], _ground(track, place, i, s), place[done])
+    ground = np.where(swinging[:, None], _ground(track, place, i, travelled(s, step)), place[done])
     level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
-    up = np.where(swinging, _height(track, i, s) + _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s), 0.0)
+    climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
+    up = np.where(swinging, _height(track, i, s, step.rising) + climb, 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
-    turned = yaw[i] + swung(s) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
-    pitch = np.where(swinging, _swing_pitch(track, i, s), _stand_pitch(track, times, done, lift, land, heel_drop))
+    turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    pitch = np.where(swinging, _swing_pitch(track, i, s, step.pitch_top), _stand_pitch(track, times, done, settings))
     pivoting = swinging & _are(track, Pivot)[i]
     turned = np.where(swinging, turned, yaw[done])
     return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
 
 
-def _climb(before: Array, after: Array, s: Array) -> Array:
+def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:
     """Height of the ground under a swing: up at once, down late, for between levels there is an edge."""
-    return np.asarray(
-        before + np.where(after > before, smooth(s / EDGE), smooth((s - 1.0 + DOWN) / DOWN)) * (after - before)
-    )
+    up, down = smooth(s / walk.edge_up), smooth((s - 1.0 + walk.edge_down) / walk.edge_down)
+    return np.asarray(before + np.where(after > before, up, down) * (after - before))
 
 
 def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
@@ -99,9 +95,11 @@ def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
     return np.array([isinstance(move, kinds) for move in track.moves])
 
 
-def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> Array:
-    """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet."""
-    e = travelled(s)
+def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> Array:
+    """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet.
+
+    e : as of `travelled`
+    """
     start, end = place[i], place[i + 1]
     straight = start + e[:, None] * (end - start)
     bulge = np.array([m.bulge if isinstance(m, Swing) else (0.0, 0.0) for m in track.moves])[i] * bend(e)[:, None]
@@ -113,7 +111,7 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], s: Array) -> A
     return np.asarray((1 - share) * straight + share * round_ + bulge)
 
 
-def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+def _height(track: FootTrack, i: NDArray[np.int64], s: Array, rising: float) -> Array:
     """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
     height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
     tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
@@ -121,31 +119,30 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
     # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
-    step = np.sin(np.pi * s**RISING)
+    step = np.sin(np.pi * s**rising)
     shape = np.where(_are(track, Hover, Gallop)[i], hover, step)
     return np.asarray(np.where(_are(track, Jump)[i], jump, height * shape))
 
 
-def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array) -> Array:
+def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array, top: float) -> Array:
     lift, most, land, _ = np.array([m.pitches for m in track.moves])[i].T
-    up = lift + smooth(s / 0.4) * (most - lift)
-    return np.asarray(up + smooth((s - 0.4) / 0.6) * (land - most))
+    up = lift + smooth(s / top) * (most - lift)
+    return np.asarray(up + smooth((s - top) / (1.0 - top)) * (land - most))
 
 
-def _stand_pitch(
-    track: FootTrack, times: Array, done: NDArray[np.int64], lift: Array, land: Array, heel_drop: float
-) -> Array:
+def _stand_pitch(track: FootTrack, times: Array, done: NDArray[np.int64], settings: MotionSettings) -> Array:
     """Heel of a standing foot: comes down after landing, rises before the next swing."""
-    pitches = np.array([m.pitches for m in track.moves])
-    landed = np.concatenate(([-1e9], land))[done]
+    step, moves = settings.step, track.moves
+    pitches = np.array([m.pitches for m in moves])
+    landed = np.array([-1e9, *(m.land for m in moves)])[done]
     rest = np.concatenate(([0.0], pitches[:, 3]))[done]
     touch = np.concatenate(([0.0], pitches[:, 2]))[done]
-    leaves = np.concatenate((lift, [1e9]))[done]
+    leaves = np.array([*(m.lift for m in moves), 1e9])[done]
     leave = np.concatenate((pitches[:, 0], [0.0]))[done]
     stood = leaves - landed
-    rest = np.where(stood < NO_TIME, touch, rest)
-    drop = np.minimum(heel_drop, 0.6 * stood)
-    early = np.array([WALKING_RISE if isinstance(m, Walk) else HEEL_RISE for m in track.moves] + [HEEL_RISE])[done]
-    rise = np.minimum(early, 0.4 * stood)
+    rest = np.where(stood < step.heel_stays, touch, rest)
+    drop = np.minimum(step.heel_drop, step.heel_drop_share * stood)
+    early = [settings.walk.heel_rise if isinstance(m, Walk) else step.heel_rise for m in moves]
+    rise = np.minimum(np.array([*early, step.heel_rise])[done], step.heel_rise_share * stood)
     falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
     return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.clearance import SHARES, bend, enough, headings, segment_gaps, shoe_line
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.rig.dimensions import BALL_AHEAD
 
 Array = NDArray[np.float64]
-TURNING = 0.5  # part of a jump's way that turns about the middle between the feet; the rest is straight
-_ROUND = (TURNING, 0.75, 1.0)
+_ROUND = (0.75, 1.0)  # more of a way that goes round, where `jump.round` brings shoes together
 _SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
 
 
@@ -31,28 +31,29 @@ def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array,
 
 
 def jump_ways(
-    starts: Array, start_yaws: Array, ends: Array, end_yaws: Array, turn: float, apart: float
+    starts: Array, start_yaws: Array, ends: Array, end_yaws: Array, turn: float, settings: MotionSettings
 ) -> tuple[float, Array]:
-    """How much of a jump's way goes round, and (2, 2) x and z that each foot goes aside, so that shoes stay `apart`.
+    """How much of a jump's way goes round, and (2, 2) x and z that each foot goes aside, so that shoes stay apart.
 
     Parameters
     ----------
     starts, ends : (2, 2) balls of the left and the right foot before and after; yaws : (2,) of their toes, radians
     turn : radians that the line between the feet turns
-    apart : metres between the middle lines of the shoes; where it cannot be had, the most that can
+    settings : of them `step.apart`; where it cannot be had, the most that can
     """
-    e, turned = travelled(SHARES), swung(SHARES)
+    step, least = settings.step, settings.jump.round
+    e, turned = travelled(SHARES, step), swung(SHARES, step)
     aim = headings(start_yaws[:, None] + turned * (end_yaws - start_yaws)[:, None])
     straight = starts[:, None] + e[:, None] * (ends - starts)[:, None]
     middles = starts.mean(axis=0), ends.mean(axis=0)
     round_ = np.stack([turning(a, b, middles, np.array(turn), e) for a, b in zip(starts, ends, strict=True)])
-    need = enough(_gaps(straight, aim), e, apart)
+    need = enough(_gaps(straight, aim), e, step.apart)
     across = round_[0, len(e) // 2] - round_[1, len(e) // 2]
     across = across / max(float(np.linalg.norm(across)), 1e-9)
-    best, found = -np.inf, (TURNING, np.zeros((2, 2)))
+    best, found = -np.inf, (least, np.zeros((2, 2)))
     for spread in _SPREAD:
         aside = np.outer((spread, -spread), across)
-        for share in _ROUND:
+        for share in (least, *(more for more in _ROUND if more > least)):
             places = (1.0 - share) * straight + share * round_ + bend(e)[:, None] * aside[:, None]
             room = float((_gaps(places, aim) - need).min())
             if room > best + 1e-6:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.numerics.ease import smooth
 
 Array = NDArray[np.float64]
-OFF_GROUND = 0.025  # part of a swing before the foot is so high that it may move aside
-TURNED = 0.95  # part of a swing after which the foot points where it lands
 
 
 def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
@@ -19,15 +18,15 @@ def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
     return np.asarray(s**3)
 
 
-def travelled(s: ArrayLike) -> Array:
+def travelled(s: ArrayLike, step: StepSettings) -> Array:
     """How far over the ground a swing has come at each part of its time: slow at both ends.
 
     A cubic: of the ways from rest to rest that were tried its quick parts throw the body aside least.
     """
-    free = np.clip((np.asarray(s, dtype=np.float64) - OFF_GROUND) / (1.0 - OFF_GROUND), 0.0, 1.0)
+    free = np.clip((np.asarray(s, dtype=np.float64) - step.off_ground) / (1.0 - step.off_ground), 0.0, 1.0)
     return np.asarray(free * free * (3.0 - 2.0 * free))
 
 
-def swung(s: ArrayLike) -> Array:
+def swung(s: ArrayLike, step: StepSettings) -> Array:
     """How far a foot has turned at each part of its swing: a little sooner than it lands."""
-    return smooth(np.asarray(s, dtype=np.float64) / TURNED)
+    return smooth(np.asarray(s, dtype=np.float64) / step.turned)

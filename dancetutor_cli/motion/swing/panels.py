@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.rig.dimensions import BALL_AHEAD
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
-BALL_MARGIN = 0.024  # the middle of the ball stays so far inside the panel: more than half of it presses
-NEIGHBOUR_MARGIN = 0.044  # and so far from an edge behind which there is another panel, perhaps with a mine
 
 
 def panels_on_ground(pad: Pad) -> Array:
@@ -46,8 +45,8 @@ def middle_of(ball: Array, yaw: float) -> Array:
     return np.asarray(ball - BALL_AHEAD * heading(yaw))
 
 
-def room_on(panels: Array, column: int) -> Array:
+def room_on(panels: Array, column: int, step: StepSettings) -> Array:
     """How far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
     away = np.abs(panels - panels[column])
     beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
-    return HALF_PANEL - np.where(beside, NEIGHBOUR_MARGIN, BALL_MARGIN)
+    return HALF_PANEL - np.where(beside, step.neighbour_margin, step.ball_margin)

@@ -18,16 +18,18 @@ from dancetutor_cli.motion.trajectory.height import span
 from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
 from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
 from dancetutor_cli.numerics.smoothing import cubic, low_pass, sample_path
-from dancetutor_cli.rig.dimensions import ball_to_ankle
+from dancetutor_cli.rig.dimensions import (
+    SOLE_BACK_HEEL,
+    SOLE_BACK_TOES,
+    SOLE_FRONT,
+    SOLE_HALF_WIDTH,
+    ball_to_ankle,
+)
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
 NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
 UNIT = 0.03  # metres; scales the programme
-HALF_WIDTH = 0.022  # of the part of a sole that may carry the whole weight
-FRONT, BACK_TOES, BACK_HEEL = 0.065, -0.012, -0.125  # its ends before the ball; on toes, and with the heel down
-HEEL_DOWN = np.radians(1.2)  # a heel lower than this carries
-FARTHEST = 0.42  # metres over the ground, along each axis, from the pelvis to an ankle
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
@@ -65,9 +67,9 @@ def balanced_path(
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
     offset = sample_path(pendulum.offset, times, nodes)
-    room = _room(feet, ball_to_ankle(dancer_skeleton()))
+    room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
     feet = _carrying(feet)
-    low, high, middle = _support(feet)
+    low, high, middle = _support(feet, float(np.radians(body.heel_carries)))
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     down = np.stack([f.down for f in feet])
     both = np.asarray(down.all(axis=0))
@@ -104,10 +106,10 @@ class _Wanted:
     farthest: Array
 
 
-def _room(feet: Feet, back: float) -> tuple[Array, Array]:
+def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
     """Lowest and highest place (n, 2) of the pelvis from which both legs reach; back : from ball to ankle, metres."""
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
-    return np.maximum(*ankles) - FARTHEST, np.minimum(*ankles) + FARTHEST
+    return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
 
 
 def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
@@ -126,18 +128,19 @@ def _carrying(feet: Feet) -> Feet:
     return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
 
 
-def _support(feet: Feet) -> tuple[Array, Array, Array]:
+def _support(feet: Feet, heel_down: float) -> tuple[Array, Array, Array]:
     """Where the zero-moment point may be, (n, 4) lowest and highest along `ACROSS`, and (n, 2) where best.
 
     The limits are a hull of the soles that stand; its eight sides have the same directions at all times.
+    heel_down : radians; a heel lower than this carries
     """
     lows, highs, middles = [], [], []
     for foot in feet:
         ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
         across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
-        back = np.where(foot.pitch < HEEL_DOWN, BACK_HEEL, BACK_TOES)[:, None]
-        middle = foot.ball[:, [0, 2]] + (FRONT + back) / 2 * ahead
-        half = np.abs(ahead @ ACROSS.T) * (FRONT - back) / 2 + np.abs(across @ ACROSS.T) * HALF_WIDTH
+        back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
+        middle = foot.ball[:, [0, 2]] + (SOLE_FRONT + back) / 2 * ahead
+        half = np.abs(ahead @ ACROSS.T) * (SOLE_FRONT - back) / 2 + np.abs(across @ ACROSS.T) * SOLE_HALF_WIDTH
         down = foot.down[:, None]
         lows.append(np.where(down, middle @ ACROSS.T - half, np.inf))
         highs.append(np.where(down, middle @ ACROSS.T + half, -np.inf))

@@ -16,11 +16,10 @@ from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.legs import hip_over
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import smooth_path
-from dancetutor_cli.rig.dimensions import ball_to_ankle, leg_masses
+from dancetutor_cli.rig.dimensions import CHEST_INERTIA, PELVIS_INERTIA, ball_to_ankle, leg_masses
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-PELVIS, CHEST = 0.0031, 0.0100  # inertia about the vertical of pelvis and belly; of chest, head and arms: m^2 per mass
 
 
 def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, context: Context) -> Array:
@@ -29,8 +28,8 @@ def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, cont
     chest, head : (n,) their yaws without it; where the head is turned far from the chest already, the chest keeps still
     """
     arms, step = context.settings.arms, 1.0 / course.rate
-    lower = leg_momentum(feet, course, context.skeleton) + PELVIS * np.gradient(course.yaw, step)
-    turned = (np.cumsum(lower) * step / CHEST + chest)[:, None]
+    lower = leg_momentum(feet, course, context.skeleton) + PELVIS_INERTIA * np.gradient(course.yaw, step)
+    turned = (np.cumsum(lower) * step / CHEST_INERTIA + chest)[:, None]
     ones = np.ones(len(chest))
     slow = smooth_path(turned, ones, course.rate, arms.twist_slowest)
     against = -arms.cancel * smooth_path(turned - slow, ones, course.rate, arms.twist_fastest)[:, 0]

@@ -13,21 +13,17 @@ from dancetutor_cli.numerics.smoothing import smooth_path
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
-AROUND = 0.12  # seconds before and after fast steps in which the body is as low as in them
-AT = 0.025  # seconds around take-off and landing in which legs are as long as those ask for
-LONG = 0.25  # seconds of a flight that is worth the whole swing of both arms
-LEAST, MOST = 0.3, 2.0  # parts of the usual crouch for the smallest and the highest jumps
 
 
 def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     """How fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
-    step = settings.step
+    step, around_them = settings.step, settings.body.stream_time
     fast = np.zeros(len(times))
     for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk)):
-        around = slice(*np.searchsorted(times, (swing.lift - AROUND, swing.land + AROUND)))
+        around = slice(*np.searchsorted(times, (swing.lift - around_them, swing.land + around_them)))
         fast[around] = np.maximum(fast[around], reduction(swing.land - swing.lift, step.fast, step.longest))
     rate = 1.0 / float(times[1] - times[0])
-    return smooth_path(fast[:, None], np.ones(len(times)), rate, AROUND)[:, 0]
+    return smooth_path(fast[:, None], np.ones(len(times)), rate, around_them)[:, 0]
 
 
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
@@ -36,7 +32,7 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     if not len(flights):
         return np.zeros(len(times))
     start, end = flights.T
-    size = np.clip(GRAVITY * (end - start) ** 2 / 8 / jump.apex_near, LEAST, MOST)
+    size = np.clip(GRAVITY * (end - start) ** 2 / 8 / jump.apex_near, jump.crouch_least, jump.crouch_most)
     rest = np.concatenate(([np.inf], start[1:] - end[:-1], [np.inf]))
     share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0)
     out = np.zeros(len(times))
@@ -64,8 +60,8 @@ def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Arr
     share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0)
     for k in range(len(flights)):
         for side, time, much in ((0, start[k], share[k]), (1, end[k], share[k + 1])):
-            near = slice(*np.searchsorted(times, (time - AT, time + AT)))
-            bump = np.clip(2.0 * (1.0 - np.abs(times[near] - time) / AT), 0.0, 1.0)
+            near = slice(*np.searchsorted(times, (time - jump.push_time, time + jump.push_time)))
+            bump = np.clip(2.0 * (1.0 - np.abs(times[near] - time) / jump.push_time), 0.0, 1.0)
             out[near, side] = np.maximum(out[near, side], much * bump)
     return out[:, 0], out[:, 1]
 
@@ -78,7 +74,9 @@ def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
         return out
     start, end = flights.T
     rest = np.concatenate(([np.inf], start[1:] - end[:-1]))
-    share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0) * np.clip((end - start) / LONG, 0.0, 1.0)
+    share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0) * np.clip(
+        (end - start) / jump.arms_full, 0.0, 1.0
+    )
     for k in range(len(flights)):
         for sign, time in ((-1.0, start[k] - jump.crouch_before), (1.0, start[k] + jump.arms_after)):
             near = slice(*np.searchsorted(times, (time - 4 * wide, time + 4 * wide)))

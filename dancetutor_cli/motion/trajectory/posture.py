@@ -82,7 +82,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     held = leaning_share(plan.grips, times, settings.bar)
     course, softened = _course(plan, times, feet, context, known)
     reached = reaching(plan.presses, times, settings.hands)
-    gait = walking(plan.walks, times)
+    gait = walking(plan.walks, times, settings.walk)
     own = np.zeros(len(times)) if gait is None else gait.own
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
@@ -95,7 +95,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     leg = leg + catch * (settings.jump.catch - leg)
     legs = LegWish(leg, sink, bent, settings.jump.drive * np.maximum(push, catch))
     mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
-    chest, head = chest_and_head(plan, course, gaze_ahead(plan, times), settings)
+    chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
     chest = chest + loose * counter_rotation(feet, course, chest, head, context)

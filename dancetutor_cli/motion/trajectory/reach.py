@@ -13,7 +13,6 @@ from dancetutor_cli.numerics.smoothing import smooth_path
 
 Array = NDArray[np.float64]
 Presses = tuple[Press, ...]
-BEFORE_HER = 0.15  # metres that the place from which she looks to a panel is behind her root
 
 
 def press_share(press: Press, times: Array, down: float) -> Array:
@@ -63,7 +62,7 @@ def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, se
     for press in sorted(presses, key=lambda p: p.side):
         down = hands.reach_down
         near = (times > press.start - down) & (times < press.end + down)
-        to = np.array(press.target) - course.ground[near] + BEFORE_HER * forward[near]
+        to = np.array(press.target) - course.ground[near] + hands.look_from * forward[near]
         off = wrapped(np.arctan2(to[:, 0], to[:, 1]) - chest[near])
         most = np.radians(hands.bend_aside)
         way = chest[near] + np.clip(off, -most, most)

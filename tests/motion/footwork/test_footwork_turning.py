@@ -12,8 +12,8 @@ from dancetutor_cli.bake.settle import _may_rise
 from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
 from dancetutor_cli.motion.footwork.flights import Flight, flown
-from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, NO_TIME, Footing
-from dancetutor_cli.motion.footwork.turning import AHEAD, turn_start
+from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, Footing
+from dancetutor_cli.motion.footwork.turning import turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.knees import knee_poles
 from dancetutor_cli.motion.plan import FootTrack, Plan
@@ -35,16 +35,16 @@ SETTINGS = default_settings()
 def test_a_body_that_turns_is_little_ahead_of_the_foot_that_turns_with_it(
     far: float, duration: float, flight: float
 ) -> None:
-    begin = turn_start(10.0, duration, 10.0 - flight, far)
+    begin = turn_start((10.0, duration), 10.0 - flight, far, SETTINGS.step)
     times = np.linspace(10.0 - duration, 10.0, 200)
     body = far * smooth((times - begin) / (10.0 - begin))
-    foot = far * swung((times - 10.0 + flight) / flight)
-    assert (body - foot).max() <= AHEAD + 3.0
+    foot = far * swung((times - 10.0 + flight) / flight, SETTINGS.step)
+    assert (body - foot).max() <= SETTINGS.step.turn_ahead + 3.0
     assert begin >= 10.0 - duration
 
 
 def test_small_turns_begin_with_their_move() -> None:
-    assert turn_start(10.0, 0.4, 9.64, 10.0) == 9.6
+    assert turn_start((10.0, 0.4), 9.64, 10.0, SETTINGS.step) == 9.6
 
 
 @pytest.mark.parametrize("yaws", [(20.0, 10.0), (80.0, -10.0), (-60.0, 40.0)])
@@ -64,7 +64,7 @@ def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     footing = flown(footing, Flight(1.0, 1.24), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
     swing = footing.feet[0].moves[-1]
     for share, least in ((0.1, 0.25), (0.2, 0.5)):
-        height = foot_path(footing.feet[0].track(), np.array([1.0 + 0.24 * share]), 0.09).ball[0, 1]
+        height = foot_path(footing.feet[0].track(), np.array([1.0 + 0.24 * share]), SETTINGS).ball[0, 1]
         assert isinstance(swing, Jump)
         falling = swing.height * 4 * share * (1 - share)
         assert height - falling >= least * swing.tuck
@@ -78,8 +78,8 @@ def test_a_heel_does_not_drop_in_no_time() -> None:
     for move in (Step(1.0, 1.2, *there, 0.05), Pivot(1.2 + FREE_WINDOW, 1.4, *there), Step(1.41, 1.6, *there, 0.05)):
         foot = foot.moved(move, foot.ball, foot.yaw)
     times = np.linspace(1.19, 1.43, 2401)
-    path = foot_path(foot.track(), times, 0.09)
-    assert NO_TIME > 0.01
+    path = foot_path(foot.track(), times, SETTINGS)
+    assert SETTINGS.step.heel_stays > 0.01
     assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
 
 
@@ -120,5 +120,5 @@ def test_a_heel_that_presses_does_not_rise_for_its_ankle() -> None:
     track = FootTrack((0.0, 0.0), 0.0, ())
     plan = Plan((track, track), (), (), contacts, 2.0, 3.4)
     times = np.array([1.9, 2.0, 2.2, 2.4, 2.5, 3.1])
-    np.testing.assert_allclose(_may_rise(plan, times)[:, 0], [1, 0, 0, 0, 1, 1])
-    np.testing.assert_allclose(_may_rise(plan, times)[:, 1], 1.0)
+    np.testing.assert_allclose(_may_rise(plan, times, SETTINGS.step.press_time)[:, 0], [1, 0, 0, 0, 1, 1])
+    np.testing.assert_allclose(_may_rise(plan, times, SETTINGS.step.press_time)[:, 1], 1.0)

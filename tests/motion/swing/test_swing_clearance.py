@@ -16,7 +16,8 @@ from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
 from dancetutor_cli.rig.dimensions import HALF_SHOE
 
-APART = default_settings().step.apart
+STEP, AIR = default_settings().step, default_settings().mines.keep_off
+APART = STEP.apart
 
 
 def line_points(middle: np.ndarray, yaw: float) -> np.ndarray:
@@ -49,14 +50,14 @@ def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
 def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     start, end, other, yaw = np.array([0.2, -0.25]), np.array([0.15, 0.3]), np.array([0.17, 0.02]), 0.1
     to, pivot = yaw if turned is None else turned, ball_of(other, yaw)
-    now = yaw + swung(SHARES) * (to - yaw)
+    now = yaw + swung(SHARES, STEP) * (to - yaw)
     balls = ball_of(start, 0.0), ball_of(end, 0.2)
-    bulge = detour(Way(balls[0], 0.0, balls[1], 0.2), pivot, now, APART, 1.0)
+    bulge = detour(Way(balls[0], 0.0, balls[1], 0.2), pivot, now, STEP, 1.0)
     least = np.inf
     for s in np.linspace(0.05, 0.95, 60):
-        share, aim = float(travelled(s)), yaw + float(swung(s)) * (to - yaw)
+        share, aim = float(travelled(s, STEP)), yaw + float(swung(s, STEP)) * (to - yaw)
         ball = balls[0] + share * (balls[1] - balls[0]) + np.sin(np.pi * share) * np.array(bulge)
-        own = float(swung(s)) * 0.2
+        own = float(swung(s, STEP)) * 0.2
         shoes = line_points(middle_of(ball, own), own), line_points(middle_of(pivot, aim), aim)
         least = min(least, gap(*shoes))
     assert least >= APART - 0.004
@@ -79,19 +80,19 @@ def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
 def test_a_heel_that_only_just_reaches_over_a_mine_counts() -> None:
     """The corner of a panel under the middle of the heel, none of whose own corners is over the panel."""
     ball, toes = np.array([-0.187, 0.0]), np.radians(-24.0)
-    assert over(np.array([[0.0, -0.28]]), ball[None], np.array([toes]))[0]
-    assert not over(np.array([[0.0, -0.28]]), ball[None] - [0.08, 0.0], np.array([toes]))[0]
+    assert over(np.array([[0.0, -0.28]]), ball[None], np.array([toes]), AIR)[0]
+    assert not over(np.array([[0.0, -0.28]]), ball[None] - [0.08, 0.0], np.array([toes]), AIR)[0]
 
 
 def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
     """Its heel swings past the middle of the other shoe, which lies across behind it."""
     place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
-    bulge = detour(Way(place, -turn, place, turn), other, aim, APART, 1.0)
+    bulge = detour(Way(place, -turn, place, turn), other, aim, STEP, 1.0)
 
     def least(aside: tuple[float, float]) -> float:
         gaps = []
         for s in SHARES:
-            e, yaw = float(travelled(s)), -turn + float(swung(s)) * 2 * turn
+            e, yaw = float(travelled(s, STEP)), -turn + float(swung(s, STEP)) * 2 * turn
             ball = place + np.sin(np.pi * e) * np.array(aside)
             shoes = line_points(middle_of(ball, yaw), yaw), line_points(middle_of(other, aim), aim)
             gaps.append(gap(*shoes))
@@ -110,5 +111,5 @@ def test_a_standing_foot_does_not_turn_over_a_mine() -> None:
     free = footing.pivot_yaw(left, 0.0, far, 0.0)
     footing = replace(footing, mined=np.array([[0.0, -0.28]]))
     kept = footing.pivot_yaw(left, 0.0, far, 0.0)
-    assert over(footing.mined, left.ball[None], np.array([footing.toes(left, free)]))[0]
-    assert not over(footing.mined, left.ball[None], np.array([footing.toes(left, kept)]))[0]
+    assert over(footing.mined, left.ball[None], np.array([footing.toes(left, free)]), AIR)[0]
+    assert not over(footing.mined, left.ball[None], np.array([footing.toes(left, kept)]), AIR)[0]

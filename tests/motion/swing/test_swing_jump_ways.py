@@ -22,7 +22,7 @@ def least_gap(footing: Footing, start: float, end: float) -> float:
     times = np.linspace(start, end, 60)
     lines = []
     for track in (foot.track() for foot in footing.feet):
-        path = foot_path(track, times, 0.09)
+        path = foot_path(track, times, default_settings())
         ahead = np.column_stack((np.sin(path.yaw), np.cos(path.yaw)))
         middle = path.ball[:, [0, 2]] - BALL_AHEAD * ahead
         lines.append(middle[:, None] + np.linspace(-HALF_SHOE, HALF_SHOE, 40)[:, None] * ahead[:, None])
@@ -40,7 +40,9 @@ def test_shoes_keep_clear_of_each_other_in_a_jump_that_turns(degrees: float, wid
     footing = flown(footing, Flight(1.0, 1.2, degrees), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
     assert least_gap(footing, 1.0, 1.2) >= APART - 0.004
     for track, (ball, _) in zip((foot.track() for foot in footing.feet), goals, strict=True):
-        np.testing.assert_allclose(foot_path(track, np.array([1.2]), 0.09).ball[0, [0, 2]], ball, atol=1e-9)
+        np.testing.assert_allclose(
+            foot_path(track, np.array([1.2]), default_settings()).ball[0, [0, 2]], ball, atol=1e-9
+        )
 
 
 def test_feet_that_land_together_after_far_ways_do_not_cross() -> None:

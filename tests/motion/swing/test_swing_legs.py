@@ -10,10 +10,12 @@ from dancetutor_cli.bake import bake
 from dancetutor_cli.bake.quality.capsules import limb_depths
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.motion.ik.knees import Hung, knees_apart
-from dancetutor_cli.motion.swing.clearance import CROSSED, SHARES, Way, detour, wrung
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, wrung
 from dancetutor_cli.motion.swing.pace import travelled
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
+SETTINGS = default_settings()
 SCENES: dict[str, tuple[list[Event], bool]] = {
     # the right foot goes from behind the left one to before it, while the hips turn to the left
     "around in front": (
@@ -44,8 +46,8 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
     start, end, other = np.array([-0.2, 0.0]), np.array([0.2, 0.0]), np.zeros(2)
     for turn in (-170.0, 170.0):
         way = Way(start, 0.0, end, np.radians(turn), (0.0, np.radians(turn)))
-        aside = np.array(detour(way, other, 0.0, 0.084, -1.0))
-        share = travelled(SHARES)
+        aside = np.array(detour(way, other, 0.0, SETTINGS.step, -1.0))
+        share = travelled(SHARES, SETTINGS.step)
         line = -(start + share[:, None] * (end - start) + np.sin(np.pi * share)[:, None] * aside - other)
         angle = np.degrees(np.unwrap(np.arctan2(-line[:, 1], line[:, 0])))
         assert np.sign(angle[-1] - angle[0]) == np.sign(turn) and abs(angle[-1] - angle[0]) > 100.0
@@ -53,10 +55,10 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
 
 def test_who_is_crossed_at_the_start_may_uncross() -> None:
     way = Way(np.zeros(2), 0.0, np.ones(2), 0.0, (0.0, 0.0))
-    angles = np.linspace(CROSSED + 0.3, 0.0, len(SHARES))
+    angles = np.linspace(np.radians(SETTINGS.step.cross) + 0.3, 0.0, len(SHARES))
     line = np.column_stack((np.cos(angles), -np.sin(angles)))
-    assert wrung(way, line) == 0.0
-    assert wrung(way, line[::-1]) > 0.2
+    assert wrung(way, line, SETTINGS.step) == 0.0
+    assert wrung(way, line[::-1], SETTINGS.step) > 0.2
 
 
 def test_knees_that_meet_give_way_and_others_stay() -> None:
@@ -66,7 +68,7 @@ def test_knees_that_meet_give_way_and_others_stay() -> None:
     inward = np.array([[-0.45, 0.0, 1.0], [0.45, 0.0, 1.0]])
     poles = np.stack([np.tile([0.0, 0.0, 1.0], (2, 1)), inward, inward])
     turned = np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
-    given = knees_apart(skeleton, Hung(pelvis, turned, ankles), poles, 24.0)
+    given = knees_apart(skeleton, Hung(pelvis, turned, ankles), poles, SETTINGS.knees)
     np.testing.assert_array_equal(given[0], poles[0])
     for frame in (1, 2):
         assert given[frame, 0, 0] > poles[frame, 0, 0] + 0.02 and given[frame, 1, 0] < poles[frame, 1, 0] - 0.02
