@@ -34,9 +34,16 @@ export function findingWords(t, { rule, name }) {
 const FIGURES = /** @type {[string, RegExp][]} */ ([
   ["rows", /stay crossed for (\d+) rows/], ["sure", /only (\d+) %/], ["steps", /change in (\d+) quick steps/],
   ["way", /([\d.]+) panels in (\d+) ms/], ["after", /comes (\d+) ms after/], ["apart", /(\d+) rows (\d+) ms apart/],
+  ["among-before", /(\w+) panels in the middle of 16ths, (\d+) ms before/],
+  ["among-after", /(\w+) panels in the middle of 16ths, (\d+) ms after/],
+  ["dense-before", /(\w+) panels, (\d+) ms before/], ["dense-after", /(\w+) panels, (\d+) ms after/],
+  ["alternate", /two panels, one and two again in 16ths, (\d+) ms apart/],
   ["before", /(\d+) ms before the foot/], ["lasts", /lasts ([\d.]+) s, not ([\d.]+) to ([\d.]+) s/],
   ["tempo", /([\d.]+) BPM, not ([\d.]+) to ([\d.]+)/],
 ]);
+
+/** Numbers that messages write out. */
+const WRITTEN = /** @type {Record<string, number>} */ ({ three: 3, four: 4 });
 
 /**
  * The figures of a finding's English message in the page's language: "(1,5 Felder in 120 ms)"; "" where none are known.
@@ -45,7 +52,7 @@ const FIGURES = /** @type {[string, RegExp][]} */ ([
 export function findingFigures(t, { message }) {
   for (const [name, pattern] of FIGURES) {
     const found = pattern.exec(message);
-    if (found) return `(${t(`figures-${name}`, Object.fromEntries(found.slice(1).map((text, k) => [`n${k + 1}`, Number(text)])))})`;
+    if (found) return `(${t(`figures-${name}`, Object.fromEntries(found.slice(1).map((text, k) => [`n${k + 1}`, WRITTEN[text] ?? Number(text)])))})`;
   }
   return "";
 }

@@ -150,6 +150,13 @@ test("the figures of a finding are told in another language too", () => {
   assert.equal(figures("the left foot moves 1.5 panels in 120 ms"), "(1,5 Felder in 120 ms)");
   assert.equal(figures("the chart lasts 95.3 s, not 100 to 150 s"), "(95,3 s statt 100 bis 150 s)");
   assert.equal(figures("8 rows 45 ms apart: quicker than feet step"), "(8 Reihen, 45 ms auseinander)");
+  assert.equal(figures("this row comes 12 ms after the one before: were they meant as one?"), "(12 ms nach der Reihe davor)");
+  const dense = { "120 ms before the next step": "120 ms vor dem nächsten Schritt", "95 ms after the step before": "95 ms nach dem Schritt davor" };
+  for (const [english, german] of Object.entries(dense)) {
+    assert.equal(figures(`three panels, ${english}`), `(3 Felder, ${german})`);
+    assert.equal(figures(`5 panels in the middle of 16ths, ${english}`), `(5 Felder inmitten von 16teln, ${german})`);
+  }
+  assert.equal(figures("two panels, one and two again in 16ths, 110 ms apart"), "(2, 1 und 2 Felder in 16teln, 110 ms auseinander)");
   assert.equal(figures("something else"), "");
   assert.equal(figures("the body turns by 180 degrees"), "");
 });
