@@ -94,14 +94,16 @@ class Dancer:
     def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
         """The camera that goes with her across a wide pad, for each rate, if it looks along the pad's short side.
 
+        On other pads it moves only while she walks on or off at the picture's edge.
+
         It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
         """
         look = self.scene.look
         along = abs(float(self.camera.axes()[0][0])) > look.follow.along
         named = camera in look.cameras
-        if not (named and along and is_wide(self.scene)) or self.camera.feet_only:
+        if not (named and along) or self.camera.feet_only:
             return {}
-        if region == WHOLE:
+        if region == WHOLE and is_wide(self.scene):
             region = look.follow.region
         found = {r: Follow(self.scene, camera, size, m.times, m.root, region) for r, m in self.motions.items()}
         low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)

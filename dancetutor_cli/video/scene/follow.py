@@ -1,4 +1,4 @@
-"""A camera that slowly follows the dancer across a wide pad.
+"""A camera that slowly follows the dancer across a wide pad, and shows her whole as she walks on and off.
 
 It does not turn or travel: the picture pans (see `Camera.pan`), by whole pixels, so that the standing part of the
 picture needs to be drawn only once. The whole song is known, so the pan has no lag: it is her place, smoothed over a
@@ -18,6 +18,8 @@ from dancetutor_cli.video.scene.stage import PANEL
 
 Array = NDArray[np.float64]
 _STEP = 1.0 / 30.0  # seconds between the places that are smoothed
+_ASIDE = 0.45  # metres from her root to her hands as she walks
+_COME, _EASE = 0.2, 0.6  # seconds that the camera is ahead of her at the picture's edge, and how softly it goes
 
 
 def is_wide(scene: Scene) -> bool:
@@ -42,30 +44,71 @@ class Follow:
         roots: Array,
         region: Region = WHOLE,
     ) -> None:
-        look = scene.look
-        low, high = scene.extent
-        middle, half = (low + high) / 2, 1.5 * PANEL
-        square = low.copy(), high.copy()
-        square[0][0], square[1][0] = middle[0] - half, middle[0] + half
-        camera = preset(name, square, size, look, region, scene.tall)
         self._start = float(seconds[0])
         count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
         regular = self._start + _STEP * np.arange(count)
-        places = np.column_stack([np.interp(regular, seconds, roots[:, k]) for k in range(3)])
-        reach = min((high[0] - low[0]) / 2 - half, _reach_with_whole_pad(camera, size, low, high))
-        # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
-        places[:, 0] = _smooth(np.clip(places[:, 0], middle[0] - reach, middle[0] + reach), look.follow.seconds)
-        # Her height and depth do not move the camera: the pan is that of a point at waist height over the pad's middle.
-        points = np.column_stack([places[:, 0], np.full(count, 0.9), np.full(count, middle[2])])
-        centre = np.array([[middle[0], 0.9, middle[2]]])
-        self._pans = (camera.project(centre, size)[0, 0] - camera.project(points, size)[:, 0]) / size[0]
-        self.camera = with_pan_range(camera, float(self._pans.min()), float(self._pans.max()))
+        across = np.interp(regular, seconds, roots[:, 0])
+        if is_wide(scene):
+            camera, pans = _along(scene, _nearer(scene, name, size, region), size, across)
+        else:
+            camera, pans = scene.camera(name, size, region), np.zeros(count)
+        pans = pans + _into_the_picture(_seen_at(scene, camera, size, across) + pans, camera, size)
+        self._pans = pans
+        self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
 
     def at(self, second: float) -> Camera:
         """The camera at `second`; before the first and after the last it stands."""
         place = min(max((second - self._start) / _STEP, 0.0), len(self._pans) - 1.0)
         pan = float(np.interp(place, np.arange(len(self._pans)), self._pans))
         return replace(self.camera, pan=pan)
+
+
+def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> Camera:
+    """The preset camera for the middle square of a wide pad: nearer than for all of it."""
+    low, high = scene.extent
+    middle, half = (low + high) / 2, 1.5 * PANEL
+    square = low.copy(), high.copy()
+    square[0][0], square[1][0] = middle[0] - half, middle[0] + half
+    return preset(name, square, size, scene.look, region, scene.tall)
+
+
+def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> tuple[Camera, Array]:
+    """The camera and its pans (n,) along a wide pad. across : her place at every `_STEP`, (n,), metres to her left"""
+    low, high = scene.extent
+    middle = (low[0] + high[0]) / 2
+    reach = min((high[0] - low[0]) / 2 - 1.5 * PANEL, _reach_with_whole_pad(camera, size, low, high))
+    # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
+    places = _smooth(np.clip(across, middle - reach, middle + reach), scene.look.follow.seconds)
+    there = _seen_at(scene, camera, size, np.append(places, middle))
+    return camera, there[-1] - there[:-1]
+
+
+def _seen_at(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
+    """Where places across the pad are in the picture, (n,), picture widths.
+
+    Her height and depth do not move the camera: they are those of a point at waist height over the pad's middle.
+    """
+    low, high = scene.extent
+    points = np.column_stack([across, np.full(len(across), 0.9), np.full(len(across), (low[2] + high[2]) / 2)])
+    return np.asarray(camera.project(points, size)[:, 0] / size[0])
+
+
+def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int]) -> Array:
+    """Pans (n,) that bring her into the picture where she is at its edge. seen : her middle, (n,), picture widths"""
+    depth = float(np.linalg.norm(np.subtract(camera.target, camera.position)))
+    aside = min(0.5, _ASIDE * camera.focal * size[1] / size[0] / depth)
+    from_left, from_right = np.maximum(aside - seen, 0.0), np.maximum(seen - (1.0 - aside), 0.0)
+    return _early(from_left) - _early(from_right)
+
+
+def _early(pans: Array) -> Array:
+    """Pans as large as asked for, begun before and ended after, softly."""
+    half = max(1, round(_COME / _STEP / 2)) + round(_EASE / _STEP)
+    if not pans.any():
+        return pans
+    padded = np.pad(pans, half, mode="edge")
+    most = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1).max(axis=1)
+    return _smooth(most, _EASE)
 
 
 def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, high: Array) -> float:

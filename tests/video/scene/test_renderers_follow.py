@@ -57,6 +57,25 @@ def test_it_never_leaves_the_range_that_is_drawn_and_stands_at_both_ends(follow)
     assert follow.at(80.0).pan == follow.at(60.0).pan
 
 
+@pytest.mark.parametrize("name", ["back", "front"])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("size", [(787, 672), (461, 672), (420, 420)])
+def test_who_walks_on_is_in_the_picture_from_the_first_frame(name, side, size):
+    """On a pad that is not followed: from 1.2 m beside its middle, and off again; on the pad the camera stands."""
+    seconds = np.linspace(0.0, 20.0, 400)
+    x = side * np.interp(seconds, (0.0, 2.0, 16.0, 18.0), (1.2, 0.0, 0.0, 1.2))
+    roots = np.column_stack([x, np.full_like(x, 0.9), np.zeros_like(x)])
+    camera = Follow(rs.scene("dance-single"), name, size, seconds, roots)
+    for second in np.arange(0.0, 20.0, 0.1):
+        at = side * np.interp(second, (0.0, 2.0, 16.0, 18.0), (1.2, 0.0, 0.0, 1.2))
+        hands = np.array([[at + aside, 0.9, 0.0] for aside in (-0.4, 0.4)])
+        seen = camera.at(second).project(hands, size)[:, 0]
+        assert seen.min() > -1 and seen.max() < size[0] + 1
+    assert camera.at(3.5).pan == camera.at(9.0).pan == camera.at(14.5).pan == 0
+    speed = np.diff([camera.at(s).pan for s in np.arange(0.0, 20.0, 1 / 30)]) * 30
+    assert np.abs(np.diff(speed)).max() < 0.05, "it starts and stops softly"
+
+
 def test_it_is_nearer_than_the_camera_that_shows_the_whole_pad(follow):
     tall = (360, 640)
     scene = rs.scene("dance-double")
