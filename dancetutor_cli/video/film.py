@@ -179,7 +179,11 @@ class Film:
         if not self.layout.dancer or not self.plan.callouts:
             return None
         if (part := self.layout.calls) is not None:
-            return Calls(self.plan.callouts, self._box("calls"), self.scale * part.text, self.face, self.style)
+            left, top, right, bottom = self._box("calls")
+            if self._header is not None and self._header.title_end[0] > left:  # a title of two lines: below it
+                top = min(max(top, round(self._header.title_end[1])), bottom)
+            box = (left, top, right, bottom)
+            return Calls(self.plan.callouts, box, self.scale * part.text, self.face, self.style)
         left, top, right, bottom = self._box("dancer")
         scale = self.scale * (self.layout.header.text if self.layout.header is not None else 1.0)
         gap = round(22 * scale)
@@ -258,8 +262,9 @@ class Film:
     def _passed(self, boxes: list[Box], run: int) -> Stay:
         if not (self.layout.dancer and self.plan.motions and boxes):
             return Stay()
-        left, top, _, _ = self._box("dancer")
-        there = [(a - left, b - top, c - left, d - top) for a, b, c, d in boxes]
+        left, top, right, bottom = self._box("dancer")
+        inside = [(max(a, left), max(b, top), min(c, right), min(d, bottom)) for a, b, c, d in boxes]
+        there = [(a - left, b - top, c - left, d - top) for a, b, c, d in inside if a < c and b < d]
         one = self.plan.clock.passes[run]
         return stay(
             one, self.plan.presses, lambda seconds, step: self._dancer.walks_behind(there, seconds, step, one.rate)

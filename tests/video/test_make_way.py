@@ -20,11 +20,12 @@ from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.make_way import FADE, STEP, stay
-from dancetutor_cli.video.notes import Presses
+from dancetutor_cli.video.notes import Callout, Presses
 from dancetutor_cli.video.scene.camera import Camera
 from dancetutor_cli.video.scene.silhouette import Silhouette
 
 SIZE = (320, 180)
+CALL = Callout(4.0, 8.0, "right foot: heel down-right, toe centre", "move", 3.0, 4.0, "heel down-right, toe centre")
 
 
 def presses(*seconds: float) -> Presses:
@@ -93,6 +94,28 @@ def test_from_the_other_side_the_legend_stands_all_the_time() -> None:
     legend = film._legend
     assert legend is not None
     assert film._stay(legend, 0).opacity(0.0) == film._stay(legend, 0).opacity(10.0) == 1
+
+
+def test_words_beside_her_picture_do_not_wait_for_her() -> None:
+    """In the practice layout the speed of the run stands beside it, however far out she begins."""
+    film = walked("practice", -2.5, away=True)
+    runs = replace(film.plan, clock=Clock((Pass(0.0, 11.0, 0.5),), 4), motions={0.5: film.plan.motions[1.0]})
+    film = Film(runs)
+    assert film._runs.boxes and film._runs.boxes[0][0] > film._box("dancer")[2]
+    assert film._stay(film._runs, 0).opacity(0.0) == 1
+
+
+def test_what_is_called_out_on_a_phone_does_not_cover_her_head() -> None:
+    film, size = walked("vertical", 0.0, away=False), (1080, 1920)
+    film = Film(replace(film.plan, look=replace(film.plan.look, size=size), callouts=(CALL,)))
+    calls, (left, top, right, bottom) = film._calls, film._box("dancer")
+    assert calls is not None and film._header is not None
+    said = calls._sprite(CALL.text, CALL.severity).shape
+    box = (calls.box[2] - said[1] - left, calls.box[1] - top, calls.box[2] - left, calls.box[1] + said[0] - top)
+    joints, who = film._joints(20), film._dancer
+    outline = Silhouette(who.scene.character)
+    assert not outline.behind([box], joints, who.camera, (right - left, bottom - top))
+    assert box[0] + left >= max(line[2] for line in film._header.boxes)
 
 
 def test_the_title_is_always_there() -> None:

@@ -11,12 +11,13 @@ from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
-from dancetutor_cli.video.overlay.captions import WHITE, box_of, pill, plate
+from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of, pill, plate
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
 from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
 
-CALL_STAYS = 0.35  # seconds that a call stays after its note
+CALL_STAYS = 0.2  # seconds that a call stays after its note
+COUNTED = "starts in"  # said above the numbers of the count-in
 
 
 class Runs:
@@ -32,7 +33,10 @@ class Runs:
         texts = [self._text(number) for number in range(len(clock.passes))] if several else []
         self.labels = [pill(text, 20 * scale, WHITE, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
-        big = min(150 * scale, 0.8 * (count[3] - count[1]))
+        room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
+        (said,), small = fitted(COUNTED, small, 0.9 * (count[2] - count[0]), face, most=1)
+        self.counted = face.sprite(said, small, SOFT, weight=small / 80, shadow=small / 14)
+        big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
         self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
 
     def _text(self, number: int) -> str:
@@ -60,12 +64,23 @@ class Runs:
             number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
             fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
             x, y = _middle(number, self.count)
-            blit(frame, number, x, round(y), fade)
+            above = self.counted.shape[0]
+            blit(frame, number, x, round(y + above / 2), fade)
+            blit(frame, self.counted, _middle(self.counted, self.count)[0], round(y - above / 2))
 
 
 def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
     left, top, right, bottom = box
     return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
+
+
+def _phrases(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
+    """Words of a call in one line, else a line for each of two moves, else wrapped; nothing is cut off."""
+    lines, fits = fitted(text, size, width, face, most=1)
+    parts = text.replace(", ", ",\n").split("\n")
+    if fits < size and len(parts) == 2 and all(face.width(part, size) <= width for part in parts):
+        return parts, size
+    return (lines, fits) if fits == size else fitted(text, size, width, face, most=2)
 
 
 class Calls:
@@ -86,7 +101,8 @@ class Calls:
 
     def _plate(self, text: str, severity: str) -> Sprite:
         size = 24 * self.scale
-        lines, size = fitted(text, size, self.box[2] - self.box[0] - 0.8 * size, self.face, most=2)
+        room = self.box[2] - self.box[0] - 0.8 * size
+        lines, size = _phrases(text, size, room, self.face)
         return plate(lines, size, self.style.callout[severity], self.face)
 
     def _shown(self, second: float) -> list[Callout]:

@@ -152,7 +152,10 @@ def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
     columns = [column for column, limb in enumerate(limbs) if limb == who]
     heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
     parts = [(column != heel, panel_words(pad.names[column], style.turned)) for column in columns]
-    places = ", ".join(f"{'toe' if toe else 'heel'} {panel}" for toe, panel in sorted(parts))
+    said = [f"{'toe' if toe else 'heel'} {panel}" for toe, panel in sorted(parts)]
+    if name == "bracket" and len(parts) == 1:  # its other end holds a panel
+        said.append("heel stays" if parts[0][0] else "toe stays")
+    places = ", ".join(said)
     return style.words[name].replace("{who}", _WHO[who] if who >= 0 else "foot").replace("{places}", places)
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.overlay import shapes, sprites
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
-from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted
 from dancetutor_cli.video.picture import Frame
 
 WHITE = (255, 255, 255)
@@ -47,18 +47,23 @@ class Header:
         self._scale, self._face = scale, face
         self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
         title_size, small = 33 * scale, 19 * scale
-        title = face.fit(words.title, title_size, 0.97 * (box[2] - box[0]))
+        title, title_size = _title(words.title, title_size, 0.97 * (box[2] - box[0]), face)
         self.bottom = float(box[1])
-        self._add(face.sprite(title, title_size, WHITE, weight=0.55 * scale, shadow=2 * scale), box[0], 0)
-        self.title_end = (box[0] + self.lines[0][0].shape[1], self.bottom)
+        for line in title:
+            self._add(face.sprite(line, title_size, WHITE, weight=title_size / 60, shadow=2 * scale), box[0], 0)
+        self._title = len(title)
+        self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._line(words.artist, small, box[0], 1 * scale, weight=0.25)
         badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
         top = self.bottom + 6 * scale
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
-            x = box[0] + badge.shape[1] + 10 * scale
-            self.lines.append(self._beside(words.detail, small * 0.85, x, top + badge.shape[0] / 2))
+            x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
+            if face.width(words.detail, 0.8 * size) <= self._right - x:
+                self.lines.append(self._beside(words.detail, size, x, top + badge.shape[0] / 2))
+            else:
+                self._line(words.detail, size, box[0], 3 * scale)
         if words.credit:
             self._line(words.credit, small * 0.85, box[0], 3 * scale)
 
@@ -78,12 +83,22 @@ class Header:
     @property
     def boxes(self) -> list[Box]:
         """Where the lines below the title stand: left, top, right, bottom."""
-        return [box_of(*line) for line in self.lines[1:]]
+        return [box_of(*line) for line in self.lines[self._title :]]
 
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
         """Lay the words over the picture, those below the title by `opacity`."""
         for number, (sprite, x, y) in enumerate(self.lines):
-            blit(frame, sprite, x, round(y), opacity if number else 1.0)
+            blit(frame, sprite, x, round(y), opacity if number >= self._title else 1.0)
+
+
+def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
+    """A title in one line, a longer one smaller, then in two or three; only what would fill more is cut off."""
+    text = text[:LONGEST]
+    for least, most in ((0.72, 1), (0.6, 2), (0.6, 3)):
+        lines, fits = fitted(text, size, width, face, most)
+        if fits >= least * size:
+            return lines, fits
+    return [face.fit(text, 0.72 * size, width)], 0.72 * size
 
 
 def box_of(sprite: Sprite, x: float, y: float) -> Box:

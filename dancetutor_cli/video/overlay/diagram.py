@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
 NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
-LETTER = 0.46  # height of the letters on the soles of those, in sizes of a panel
+STEPPED, RESTING = 0.94, 0.6  # size of the marks on those, in panels: who steps one, and who stands on one
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite
 
 
 @lru_cache(maxsize=512)
-def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool, letter: float = 0.3) -> Sprite:
+def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool) -> Sprite:
     """A sole from above, its toe turned `degrees` clockwise from the screen, with its letter."""
     p = shapes.Painter(size, size)
     a = np.radians(degrees)
@@ -129,7 +129,7 @@ def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool,
     p.paint(shapes.cover(d + 0.005 * size), (255, 255, 255), 0.95 if not ghost else 0.5)
     p.paint(shapes.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
     out = p.sprite()
-    sprites.centre(out, face.sprite("LR"[limb], letter * size, (10, 11, 20), weight=0.04 * letter * size))
+    sprites.centre(out, face.sprite("LR"[limb], 0.3 * size, (10, 11, 20), weight=0.012 * size))
     return out
 
 
@@ -203,16 +203,15 @@ class NextRows:
                 continue
             limbs = self.rows.limb[row]
             pads.draw(frame, [(1.0 if limb >= 0 else 0.0, int(limb)) for limb in limbs])
-            size = max(8, 2 * round(0.5 * pads.unit))
+            for column in np.flatnonzero((limbs >= 0) | (limbs == Limb.UNPLAYED)):
+                self._mark(frame, pads, int(column), max(int(limbs[column]), -1), STEPPED)
             for foot, column in enumerate(self.rows.feet[row]):
-                if column >= 0:
-                    self._shoe(frame, pads, size, int(column), foot, int(limbs[column]) != foot)
-            for column in np.flatnonzero((limbs >= 2) | (limbs == Limb.UNPLAYED)):
-                mark = sprites.marker(max(8, round(0.5 * pads.unit)), max(int(limbs[column]), -1), self.face)
-                x, y = pads.place(*pads.panels[column])
-                blit(frame, mark, round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
+                if column >= 0 and limbs[column] < 0:
+                    self._mark(frame, pads, int(column), foot, RESTING)
 
-    def _shoe(self, frame: Frame, pads: PadMap, size: int, column: int, foot: int, resting: bool) -> None:
-        shoe = shoe_sprite(size, 180 * pads.turned, foot, self.face, resting, LETTER)
+    def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:
+        """The notes' own mark on a panel; a foot that only stands there is small and faded."""
+        mark = sprites.marker(max(8, round(share * pads.unit)), limb, self.face)
         x, y = pads.place(*pads.panels[column])
-        blit(frame, shoe, round(x - size / 2), round(y - size / 2), 0.75 if resting else 1.0)
+        at = (round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
+        blit(frame, mark, *at, 1.0 if share == STEPPED else 0.6)

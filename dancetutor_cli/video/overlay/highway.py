@@ -21,8 +21,12 @@ from dancetutor_cli.video.picture import Frame
 from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
+NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
 TURNED = "she faces you: arrows turned with her"
-FLAG_LEAST = 10.0  # pixels of a label's letters: smaller ones are not read
+FLAG_LEAST, FLAG_SHARE = (
+    10.0,
+    0.026,
+)  # pixels of a label's letters: smaller ones are not read; share of the box's height
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +52,7 @@ class HighwayGeometry:
     def left(self) -> float:
         """x of the first lane; more room is left on the right, where words stand, than for the measure numbers."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
-        return self.box[0] + 0.3 * spare
+        return self.box[0] + 0.26 * spare
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +184,8 @@ class Highway:
         return self.geometry.box[1], self.geometry.box[3]
 
     def _draw_number(self, measure: int) -> Sprite:
-        return self.face.sprite(str(measure), 0.21 * self.geometry.lane, (190, 196, 220))
+        size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
+        return self.face.sprite(str(measure), size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
         """Words beside the rows they are about, on the right of the lanes."""
@@ -193,8 +198,8 @@ class Highway:
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
         room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
-        size = max(0.24 * geometry.lane, FLAG_LEAST)
-        lines, size = fitted(text, size, room - 0.8 * size - 5, self.face)
+        size = max(0.24 * geometry.lane, FLAG_SHARE * (geometry.box[3] - geometry.box[1]), FLAG_LEAST)
+        lines, size = fitted(text, size, room - sprites.FLAG_EDGE * size - 4, self.face)
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
     def _behind(self, direction: float | None) -> tuple[float, float]:
@@ -217,7 +222,8 @@ class Highway:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
         size = max(FLAG_LEAST, min(0.5 * gap, 0.33 * geometry.lane))
-        lines, size = fitted(TURNED, size, geometry.lane * len(geometry.directions) - 0.8 * size - 5, self.face, most=1)
+        width = geometry.lane * len(geometry.directions) - sprites.FLAG_EDGE * size - 5
+        lines, size = fitted(TURNED, size, width, self.face, most=1)
         return sprites.flag(lines, size, self.style.callout["move"], self.face)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:

@@ -26,6 +26,7 @@ _ARROW = np.array([
 _SQUARE = np.array([(-0.7, -0.7), (0.7, -0.7), (0.7, 0.7), (-0.7, 0.7)])
 
 
+FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
 NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
 
 
@@ -202,7 +203,7 @@ def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface) -> Spri
     words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
     one, step = max(6, round(1.5 * size)), round(1.15 * size)
     height = one + step * (len(lines) - 1)
-    width = max(line.shape[1] for line in words) + one // 2
+    width = max(line.shape[1] for line in words) + round(FLAG_EDGE * size)
     p = shapes.Painter(height, width)
     d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)
     p.paint(shapes.cover(d), colour, 0.9)

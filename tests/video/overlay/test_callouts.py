@@ -85,6 +85,13 @@ def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
     assert one.text == "right foot: heel left, toe down", "as her panels are seen by whom she faces"
 
 
+def test_a_bracket_over_a_held_panel_says_that_its_other_end_stays() -> None:
+    (one,) = called(subject((4.0, ("bracket",), {2: 1}, {0: 0, 1: 3})))
+    assert (one.text, one.tag) == ("right foot: toe up, heel stays", "toe up, heel stays")
+    (one,) = called(subject((4.0, ("bracket",), {3: 1}, {0: 0, 1: 3})))
+    assert one.text == "right foot: heel right, toe stays"
+
+
 def test_panels_of_a_double_have_no_number() -> None:
     (one,) = called(subject((4.0, ("bracket",), {0: 0, 2: 0}, {0: 0, 1: 4}), steps="pump-double"))
     assert one.text == "left foot: heel down-left, toe centre"

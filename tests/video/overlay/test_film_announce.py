@@ -55,9 +55,11 @@ def test_numbers_are_counted_down_inside_their_box() -> None:
     clock = Clock((Pass(8.0, 12.0, 1.0, sound_from=10.0, count=4),), 30)
     runs = Runs(clock, (0, 300), box, 1.0, FACE)
     seen = []
+    said = runs.counted.shape
     for beat in range(4):
         frame = black()
         runs.draw(frame, 8.0 + beat * 0.5, 0)
+        assert frame[box[1] : box[1] + said[0], (box[0] + box[2] - said[1]) // 2 :].any(), "what it counts is said"
         left, top, right, bottom = drawn(frame)
         assert box[0] <= left < right <= box[2] and box[1] <= top < bottom <= box[3]
         assert bottom - top > 0.4 * (box[3] - box[1]), "large enough to be seen"
@@ -76,7 +78,13 @@ def calls(*passages: tuple[float, float, str]) -> Calls:
 
 def test_a_passage_is_called_out_before_it_begins_and_until_it_is_over() -> None:
     one = calls((5.0, 7.0, "crossover ×3"))
-    for second, shown in ((3.99, False), (4.5, True), (5.5, True), (7.2, True), (7.0 + CALL_STAYS + 0.01, False)):
+    for second, shown in (
+        (3.99, False),
+        (4.5, True),
+        (5.5, True),
+        (7.0 + CALL_STAYS / 2, True),
+        (7.0 + CALL_STAYS + 0.01, False),
+    ):
         frame = black()
         one.draw(frame, second)
         assert frame.any() == shown, second

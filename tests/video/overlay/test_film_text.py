@@ -10,8 +10,9 @@ import pytest
 
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.overlay import text
-from dancetutor_cli.video.overlay.captions import Legend
+from dancetutor_cli.video.overlay.captions import Header, Legend, Words
 from dancetutor_cli.video.overlay.fonts import system_fonts
+from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, wrapped
 
 
@@ -76,6 +77,38 @@ def test_titles_shrink() -> None:
     assert words == "full crossover" and size == pytest.approx(0.9 * 14, rel=0.03)
     words, size = face.shrink("full crossover", 14, 0.5 * width)
     assert words.endswith("…") and size == pytest.approx(0.8 * 14) and face.width(words, size) <= 0.5 * width
+
+
+@pytest.mark.parametrize("name", [n for n in layout_names() if load_layout(n).header])
+@pytest.mark.parametrize(
+    "title",
+    ["Adore", "District of the Shadows", "Shiny Shiny (TANUKI -Half- Remix) Exclusive", "A Title of Many Words, " * 3],
+)
+def test_titles_are_not_cut(name: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They become smaller, then two lines; nothing is left out, and nothing leaves the box."""
+    written: list[str] = []
+    ink = Typeface.sprite
+    monkeypatch.setattr(
+        Typeface, "sprite", lambda self, text, *a, **k: (written.append(text), ink(self, text, *a, **k))[1]
+    )
+    layout = load_layout(name)
+    words = Words(title.strip(), "", "Hard 8", "Hard", "")
+    assert layout.header is not None
+    box = layout.box("header", layout.size, 4)
+    header = Header(words, box, layout.header.text, Typeface(), highway_style(), layout.header.room)
+    assert " ".join(written[:-1]) == title.strip()
+    assert header.title_end[0] <= box[2] + 4
+
+
+def test_what_does_not_fit_beside_the_badge_stands_below_it() -> None:
+    face, style = Typeface(), highway_style()
+    words = Words("Possession", "", "Challenge 18", "Challenge", "dance-double · 184-371 BPM")
+    for width, lines in ((700, 3), (260, 3)):
+        header = Header(words, (0, 0, width, 200), 1.0, face, style)
+        assert len(header.lines) == lines
+        (_, _, badge), (ink, x, y) = header.lines[1], header.lines[2]
+        assert (y > badge + 20) == (width == 260)
+        assert x + ink.shape[1] <= width + 8
 
 
 def test_a_longer_line_is_as_wide_as_its_letters() -> None:

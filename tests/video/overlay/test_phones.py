@@ -7,8 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from film_plans import film_plan
+from film_plans import DIRECTIONS, film_plan
 
+from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.video.film import Film, turned
 from dancetutor_cli.video.film_look import FilmLook
@@ -47,6 +48,51 @@ def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
     small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
     assert len(small.pads) >= 2
     assert min(one.smaller for one in small.pads) >= 90
+
+
+@pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single", "pump-double"])
+def test_marks_of_the_next_rows_are_as_large_as_their_panels(steps: str) -> None:
+    """Who steps a panel fills it with colour, shape and letter; who only stands somewhere is smaller and faded."""
+    pad, layout = load_pad(steps), load_layout("practice")
+    assert pad is not None and layout.next is not None
+    limb = np.full((1, len(pad)), -1, np.int8)
+    limb[0, 0] = 0
+    rows = DiagramRows(np.array([1.0]), limb, np.array([[0, len(pad) - 1]], np.int16))
+    box = layout.box("next", layout.size, len(pad))
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
+    frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
+    small.draw(frame, 0.0)
+    found = {}
+    for foot, column in enumerate(rows.feet[0]):
+        x, y = small.pads[0].place(*small.pads[0].panels[column])
+        half = small.pads[0].unit / 2
+        here = frame[round(y - half) : round(y + half), round(x - half) : round(x + half)].astype(int)
+        found[foot] = (np.abs(here - limb_colours().by_limb[foot]).sum(axis=2) < 24).sum() / here[..., 0].size
+    assert found[0] > 0.35
+    assert found[1] < 0.02, "faded"
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "columns", "least"),
+    [("side-by-side", (1280, 720), 4, 15), ("side-by-side", (1280, 720), 8, 12), ("side-by-side", (640, 360), 4, 10),
+     ("vertical", (1080, 1920), 4, 24), ("practice", (1280, 720), 4, 12)],
+)  # fmt: skip
+@pytest.mark.parametrize("said", ["crossover ×12", "footswitch", "full crossover ×2", "left foot again"])
+def test_the_tags_beside_the_notes_can_be_read(
+    name: str, size: tuple[int, int], columns: int, least: int, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their letters are at least so many pixels, and no part of them is cut."""
+    plan = film_plan(np.arange(1.0, 1.0 + columns), columns=np.arange(columns))
+    look = FilmLook(load_layout(name), size)
+    highway = Film(replace(plan, look=look, directions=DIRECTIONS * (columns // 4))).highway
+    assert highway is not None
+    sizes: list[float] = []
+    flag = sprites.flag
+    monkeypatch.setattr(sprites, "flag", lambda lines, size, *rest: (sizes.append(size), flag(lines, size, *rest))[1])
+    drawn = highway._flag(said, "move")
+    assert sizes[0] >= least
+    edge = highway.geometry.left + highway.geometry.lane * (columns + 0.14) + 3
+    assert edge + drawn.shape[1] <= highway.geometry.box[2]
 
 
 def test_a_gif_is_at_least_640_pixels_wide() -> None:

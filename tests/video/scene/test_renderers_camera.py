@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.scene.camera import Camera, free, parse, preset, seen_from_front, with_pan_range
 from dancetutor_cli.video.scene.look import default_look, read_look
 
@@ -59,11 +60,12 @@ def test_left_is_left_from_the_back_and_right_from_the_front():
 
 
 def test_a_foot_fills_more_of_the_side_by_side_box_than_it_did():
-    """The box of the default layout, 838 x 672: before, a foot was 69 pixels long sideways and 24 wide."""
-    camera = rs.scene("dance-single").camera("back", (838, 672))
-    places = camera.project(
-        np.array([[0.27, 0, 0.0], [0.01, 0, 0.0], [0.14, 0.0, -0.08], [0.14, 0.0, 0.18]]), (838, 672)
-    )
+    """The box of the default layout: before, a foot was 69 pixels long sideways and 24 wide."""
+    layout = load_layout("side-by-side")
+    left, top, right, bottom = layout.box("dancer", layout.size, 4)
+    size = right - left, bottom - top
+    camera = rs.scene("dance-single").camera("back", size)
+    places = camera.project(np.array([[0.27, 0, 0.0], [0.01, 0, 0.0], [0.14, 0.0, -0.08], [0.14, 0.0, 0.18]]), size)
     assert abs(places[0, 0] - places[1, 0]) > 72
     assert abs(places[2, 1] - places[3, 1]) > 47
 
