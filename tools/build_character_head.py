@@ -53,7 +53,8 @@ def below_the_lip(p: Array) -> Array:
 
 def hair() -> Shape:
     """The close hair: it thins to nothing at the hairline, so that no wall stands on the forehead."""
-    skull = blend(0.03, cranium(), ellipsoid((0, 1.612, -0.034), (0.0830, 0.0840, 0.0790)))
+    crown = ellipsoid((0, 1.634, -0.028), (0.0850, 0.0905, 0.0860))  # a dome: from behind a flat top looks like a lid
+    skull = blend(0.03, cranium(), crown, ellipsoid((0, 1.612, -0.034), (0.0830, 0.0840, 0.0790)))
     face = blend(
         0.05, ellipsoid((0, 1.560, 0.120), (0.0800, 0.1080, 0.120)), ellipsoid((0, 1.495, 0.030), (0.10, 0.060, 0.095))
     )
@@ -63,7 +64,7 @@ def hair() -> Shape:
         t = np.clip(face(p) / 0.040, 0, 1)
         return skull(p) - (-0.004 + 0.018 * t * t * (3 - 2 * t))
 
-    tuft = ellipsoid((0, 1.687, 0.026), (0.089, 0.0410, 0.070))  # fills the fringe from behind
+    tuft = ellipsoid((0, 1.685, 0.030), (0.074, 0.0415, 0.062))  # fills the fringe from behind
     return scaled(blend(0.03, close, gathered, tuft), ABOUT, LARGER)
 
 

@@ -171,8 +171,9 @@ def hair(p: Array, n: Array) -> Array:
         HAIR_DEEP,
         0.22 * np.clip(strands, 0, 1) + 0.5 * np.clip((1.57 - p[:, 1]) / 0.06, 0, 1) * (p[:, 2] < 0.03),
     )
-    shine = np.abs(n[:, 1] - 0.66 - 0.03 * strands) - 0.075
-    return over(base, HAIR_SHINE, 0.55 * inside(shine, 0.03) * (p[:, 2] > -0.10) + 0.10 * np.clip(-strands, 0, 1))
+    shine = np.abs(n[:, 1] - 0.70 - 0.09 * strands) - 0.06  # torn by the strands: an even ring looks like a lid's edge
+    strong = np.interp(p[:, 2], [-0.09, -0.02, 0.03], [0.10, 0.22, 0.50])
+    return over(base, HAIR_SHINE, strong * inside(shine, 0.05) + 0.10 * np.clip(-strands, 0, 1))
 
 
 def braid(p: Array, n: Array) -> Array:

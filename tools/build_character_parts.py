@@ -91,12 +91,19 @@ def shirt_mesh() -> Lofted:
         lambda p: np.minimum(edge(p), cuff(p)),
     )
     normals = softer(gradient(body.shirt_cloth(), points), gradient(body.shirt_cloth(), points, 0.040), 0.85)
-    below = (normals[:, 1] < 0) & (np.abs(points[:, 0]) < 0.17)
-    normals[:, 1] *= np.where(below, 0.45, 1.0)  # no smear of shade under the bust
-    normals = unit(normals)
+    normals = lit_from_the_side(points, normals)
     bowl = np.abs(neck(points)) < 0.002
     normals[bowl] = -gradient(neck, points[bowl])
     return points, normals, triangles
+
+
+def lit_from_the_side(points: Array, normals: Array) -> Array:
+    """Normals of the shirt's body that all look a little up: shade runs down her side, not across chest and belly."""
+    x, y, _ = points.T
+    body = np.clip((0.150 - np.abs(x)) / 0.03, 0, 1) * np.interp(y, [1.28, 1.40], [1.0, 0.0])
+    level = normals.copy()
+    level[:, 1] = 0.32 + 0.25 * normals[:, 1]
+    return softer(normals, unit(level), 0.9 * body)
 
 
 def _on_left(p: Array) -> Array:

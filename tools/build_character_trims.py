@@ -50,7 +50,7 @@ def _neck_curve(count: int) -> Array:
 
 def wristband() -> Lofted:
     curve, out, _ = section(body.arm(), on_arm(0.447, 0.007), PALM, FRONT, 18, 0.06)
-    return band(curve, out, 0.040, 0.0080)
+    return band(curve, out, 0.040, 0.0105)
 
 
 def shoe_collar() -> Lofted:
