@@ -17,7 +17,7 @@ from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import Pad
@@ -32,6 +32,7 @@ _ORDER = ("move", "info", "warning", "error")
 _WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 _SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
+_OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
 
@@ -87,7 +88,7 @@ def callouts_of(
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
     findings = list(_findings(subject)) if style.findings or ticks else []
-    why = {} if style.findings else {tick: said for tick, _, said, _ in findings if tick in ticks}
+    why = {} if style.findings else dict(_reasons(ticks, findings))
     found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
     timing = subject.chart.timing
     told = sorted({tick for first, last, *_ in found for tick in (first, last)})
@@ -113,6 +114,16 @@ def callouts_of(
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
+
+
+def _reasons(ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]]) -> Iterator[tuple[int, str]]:
+    """What the linter says of some rows, by tick: its finding there, or the passage's that one is for."""
+    told = sorted((tick, said) for tick, _, said, _ in findings)
+    for tick in ticks:
+        here = [said for at, said in told if at == tick]
+        before = [said for at, said in told if said in _OF_PASSAGES and tick - _PASSAGE <= at < tick]
+        if here or before:
+            yield tick, (here or before[-1:])[0]
 
 
 def _moves(

@@ -12,7 +12,7 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.video.ahead import Ahead, parse_ahead
 from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay.callouts import CallStyle, callouts_of
+from dancetutor_cli.video.overlay.callouts import CallStyle, _reasons, callouts_of
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.scroll import parse_segments
 
@@ -107,6 +107,19 @@ def test_the_foot_and_the_hand_are_named() -> None:
 def test_a_note_that_is_let_go_is_said() -> None:
     (one,) = called(moves((4.0, "unplayable")))
     assert one.text == "no foot left"
+
+
+def test_a_finding_for_a_passage_is_said_of_all_its_rows() -> None:
+    found = [(48, 48, "fast step", 3), (96, 96, "jump footswitch", 1), (96 + 480, 96 + 480, "unplayable", 3)]
+    said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], found))
+    assert said == {
+        48: "fast step",
+        72: "fast step",
+        96: "jump footswitch",
+        400: "fast step",
+        576: "unplayable",
+        800: "unplayable",
+    }
 
 
 @pytest.mark.parametrize(("ahead", "begin"), [("0.5", 1.5), ("b1", 1.5), ("b2.5", 0.75)])
