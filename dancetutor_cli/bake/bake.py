@@ -30,6 +30,7 @@ from dancetutor_cli.motion.settings import MotionSettings, WalkSettings, default
 from dancetutor_cli.motion.swing.foot_path import both_feet
 from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.motion.trajectory.posture import Trajectory, stepping
+from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.physics.hair import add_hair
 
@@ -192,7 +193,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     feet = both_feet(plan.feet, at, context.settings)
     free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
     free *= 1.0 - hold_share(plan.grips, at, context.settings.bar.reach_time).max(axis=1)
-    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last)
+    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last, waiting_at(plan, at, context))
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)

@@ -18,6 +18,7 @@ from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
 from dancetutor_cli.motion.trajectory.posture import Known, Trajectory, body_trajectory
+from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path
 from dancetutor_cli.play.played import Limb, Part
@@ -76,7 +77,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
 
 def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:
     """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
-    up = sample_path(body.heels, body.times, at)
+    up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
     feet = both_feet(plan.feet, at, context.settings)
     left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
     return ik_targets(plan, body, (left, right), at, context)

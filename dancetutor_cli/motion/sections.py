@@ -184,6 +184,32 @@ class HairSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class WaitSettings:
+    """What she does while she waits."""
+
+    after: float
+    begin: float
+    ready: float
+    ease: float
+    shift: float
+    shift_time: float
+    stays: float
+    lean: float
+    every: float
+    lasts: float
+    shakes: float
+    flap: float
+    lower: float
+    aside: float
+    trembling: float
+    swing: float
+    swing_time: float
+    shrug: float
+    neck: float
+    heel: float
+
+
+@dataclass(frozen=True, slots=True)
 class UnplayableSettings:
     """What no person plays."""
 

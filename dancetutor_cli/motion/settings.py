@@ -29,6 +29,7 @@ from dancetutor_cli.motion.sections import (
     LookSettings,
     SamplingSettings,
     UnplayableSettings,
+    WaitSettings,
 )
 from dancetutor_cli.resources import config_path
 
@@ -57,6 +58,7 @@ __all__ = [
     "SamplingSettings",
     "StepSettings",
     "UnplayableSettings",
+    "WaitSettings",
     "WalkSettings",
     "default_settings",
     "load_settings",
@@ -83,6 +85,7 @@ class MotionSettings:
     walk: WalkSettings
     aside: AsideSettings
     home: HomeSettings
+    wait: WaitSettings
     unplayable: UnplayableSettings
     sampling: SamplingSettings
 

@@ -18,6 +18,7 @@ from dancetutor_cli.motion.settings import ArmSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
 from dancetutor_cli.motion.trajectory.crouch import jump_swing, tempo_factor
 from dancetutor_cli.motion.trajectory.posture import Trajectory
+from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import sample_path, smooth_path
@@ -76,6 +77,7 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
     hang[..., 2] += arms.jump * jump
     hang += arms.wander * _wandering(body.times, plan.lead, arms)
+    hang += waiting_at(plan, body.times, context).hands
     if context.bar is None:  # a hand that has let go of the bar is soon on it again
         hang = _behind_the_chest(hang, body.chest_yaw, rate, arms)
     chest = leaning(body.tilt, body.chest_yaw)

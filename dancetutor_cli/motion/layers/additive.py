@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import Poses
+from dancetutor_cli.motion.waits import Waiting
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
@@ -29,12 +30,14 @@ class Doing:
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
     free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
+    waiting : at the same times
     """
 
     stepping: Array
     free: Array
     lead: int
     last: float
+    waiting: Waiting
 
 
 def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
@@ -43,8 +46,9 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
     stepping, free, lead = doing.stepping, doing.free, doing.lead
     breath = np.sin(2 * np.pi * times / settings.breath_time)
     raised = np.radians(settings.breath_shoulders) * breath * free
-    for side, sign in (("l", 1.0), ("r", -1.0)):
-        _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * raised)
+    for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
+        shrug = doing.waiting.shrug[:, k] * free
+        _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * (raised + shrug))
     for side, phase, bent in (("lr"[lead], 0.0, 0.8), ("rl"[lead], 0.4, 1.2)):
         hand = hand_direction(skeleton, side)
         drop = bent + 0.35 * np.sin(2 * np.pi * (times / settings.wrist_time + phase))
@@ -53,9 +57,9 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
             rotations,
             f"{side}_radiocarpal",
             np.cross(hand, palm_normal(skeleton, side)),
-            np.radians(settings.wrists) * drop * free,
+            (np.radians(settings.wrists) * drop + doing.waiting.flap[:, "lr".index(side)]) * free,
         )
-    bob = np.radians(settings.head_bob) * stepping * free
+    bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt
     _turn(skeleton, rotations, "skullbase", FRONT, -bob)
     nod = np.radians(settings.breath_nod) * breath
     _turn(skeleton, rotations, "vc4", ACROSS, nod)

@@ -32,6 +32,7 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one t
 UNIT = 0.03  # metres; scales the programme
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
+SHIFTED = 0.85  # of the way to a foot's middle that the zero-moment point goes in waits
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
@@ -51,7 +52,12 @@ class Pendulum:
 
 
 def balanced_path(
-    feet: Feet, pendulum: Pendulum, settings: MotionSettings, tightened: int = 0, hand: float = 1.0
+    feet: Feet,
+    pendulum: Pendulum,
+    settings: MotionSettings,
+    tightened: int = 0,
+    hand: float = 1.0,
+    shift: Array | None = None,
 ) -> tuple[Array, bool]:
     """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
 
@@ -59,7 +65,7 @@ def balanced_path(
     ----------
     feet : at the pendulum's times
     settings : of the body, and how the weight sways while both feet stand
-    hand : as in `Plan`; on its side she begins to sway
+    hand : as in `Plan`; on its side she begins to sway; shift : (n,) as in `waits.Waiting`
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
     """
     times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
@@ -71,6 +77,8 @@ def balanced_path(
     feet = _carrying(feet)
     low, high, middle = _support(feet, float(np.radians(body.heel_carries)))
     middle = middle + hand * _sway(feet, nodes, settings.layers)
+    if shift is not None:
+        middle = middle + _shifted(feet, np.interp(nodes, times, shift), slowness, rate)
     down = np.stack([f.down for f in feet])
     both = np.asarray(down.all(axis=0))
     middle_weight = np.where(_brief(both, settings.step.longest * rate), body.middle_weight_fast, body.middle_weight)
@@ -166,6 +174,15 @@ def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
     both = feet[0].down & feet[1].down
     phase = np.sin(2 * np.pi * times / layers.sway_time) + 0.4 * np.sin(2 * np.pi * times / (0.37 * layers.sway_time))
     return np.asarray(across * (layers.sway * phase * both)[:, None])
+
+
+def _shifted(feet: Feet, shift: Array, slowness: Array, rate: float) -> Array:
+    """(n, 2): how the zero-moment point goes so that the weight goes `shift` (n,) metres towards the left foot."""
+    across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
+    far = np.maximum(np.linalg.norm(across, axis=1), 0.05)
+    point = _zero_moment(shift[:, None], slowness, rate)[:, 0]
+    most = SHIFTED * far / 2
+    return np.asarray(across / far[:, None] * (np.clip(point, -most, most) * (feet[0].down & feet[1].down))[:, None])
 
 
 def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:

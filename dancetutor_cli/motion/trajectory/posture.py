@@ -22,6 +22,7 @@ from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, heig
 from dancetutor_cli.motion.trajectory.leaning_back import kept_back, leaning_share
 from dancetutor_cli.motion.trajectory.legs import leg_room
 from dancetutor_cli.motion.trajectory.reach import bent_down, leaning_tilt, reaching
+from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.smoothing import low_pass, smooth_path
 from dancetutor_cli.rig import quaternion as quat
@@ -104,6 +105,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     lean = np.radians(lean - held * (lean + settings.bar.lean_back))
     tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
+    drop -= np.radians(settings.wait.lean) * waiting_at(plan, times, context).shift / max(settings.wait.shift, 1e-6)
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
@@ -127,7 +129,8 @@ def _course(
         softened = tuple(what for what in known.trajectory.softened if what == BALANCE)
         return Course(times, known.trajectory.mass, above, yaw), softened
     pendulum = _pendulum(times, None if known is None else known.trajectory.mass_height, above)
-    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand)
+    shift = waiting_at(plan, times, context).shift
+    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
         mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar)
     return Course(times, mass, above, yaw), (BALANCE,) if swept else ()

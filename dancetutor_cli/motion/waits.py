@@ -1,0 +1,173 @@
+"""What she does while she waits: her weight goes from foot to foot with the beat, she shakes out her arms, rolls her
+shoulders, taps a heel. Never twice the same: chance decides, always in the same way for the same song."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.motion.sections import WaitSettings
+from dancetutor_cli.numerics.ease import smooth
+
+Array = NDArray[np.float64]
+SEED = 20190607
+ENDS = 30.0  # seconds of beats that she still has in mind before the first and after the last one
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """What a wait adds at n times; nothing where she does not wait.
+
+    share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips shall be on the left of the middle
+    between the feet
+    hands : (n, 2, 3) metres that the left and the right hand are elsewhere, in the chest's upright axes
+    flap : (n, 2) radians that hands are bent at the wrist; shrug : (n, 2) that shoulders are raised
+    tilt : (n,) radians that the head leans to the left; heels : (n, 2) radians that they are raised
+    """
+
+    share: Array
+    shift: Array
+    hands: Array
+    flap: Array
+    shrug: Array
+    tilt: Array
+    heels: Array
+
+    @classmethod
+    def none(cls, count: int) -> Waiting:
+        """Nothing, for so many times."""
+        one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
+        return cls(one(), one(), np.zeros((count, 2, 3)), two(), two(), one(), two())
+
+
+def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
+    """What she does at `times` (n,) seconds besides standing. Mirror images of a plan wait as mirror images."""
+    numbers, out = context.settings.wait, Waiting.none(len(times))
+    spans = list(_waits(plan, context))
+    for start, end in spans:
+        near = slice(*np.searchsorted(times, (start, end)).tolist())
+        t = times[near]
+        out.share[near] = smooth((t - start) / numbers.ease) * smooth((end - t) / numbers.ease)
+    busy = np.flatnonzero(out.share > 0.0)
+    if not len(busy):
+        return out
+    first, last = float(times[busy[0]]), float(times[busy[-1]])
+    out.shift[:] = plan.hand * out.share * _shift(times, context)
+    for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):
+        chance = _chance(plan, number)
+        start = numbers.every * (number + chance.uniform(0.0, 0.5))
+        turn, place = divmod(number, len(_KINDS))  # all of them come by turns, each time in another order
+        kind = _KINDS[_chance(plan, turn, 1).permutation(len(_KINDS))[place]]
+        end = start + numbers.lasts * chance.uniform(0.8, 1.2)
+        if any(a <= start and end <= b for a, b in spans):
+            near = slice(*np.searchsorted(times, (start, end)).tolist())
+            side = int(chance.integers(2)) ^ plan.lead
+            kind(out, near, _Act(times[near] - start, end - start, side), numbers)
+    if plan.lead:
+        out.tilt[:] *= -1.0
+    return out
+
+
+def _chance(plan: Plan, *numbers: int) -> np.random.Generator:
+    """What chance says of something in this song; the same for its mirror image, and for a piece of it."""
+    song = round(1000 * plan.first), round(1000 * plan.last)
+    return np.random.default_rng([SEED, *(number & 0xFFFFFFFF for number in (*song, *numbers))])
+
+
+def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
+    """First and last second of each stand that is long enough, without its ends."""
+    numbers, down = context.settings.wait, context.settings.hands.reach_down
+    busy = [(move.lift, move.land) for track in plan.feet for move in track.moves]
+    busy += [(press.start - press.lead, press.end + down) for press in plan.presses]
+    busy += [(walk.start, walk.end) for walk in plan.walks]
+    free = -np.inf
+    for start, end in [*sorted(busy), (np.inf, np.inf)]:
+        if start - free >= numbers.after:
+            yield free + numbers.begin, start - numbers.ready
+        free = max(free, end)
+
+
+def _shift(times: Array, context: Context) -> Array:
+    """Where the weight is (n,), metres, positive over the left foot: there or over the other one on a beat, and on its
+    way between beats. Some are danced farther than others, and sometimes she stays where she is."""
+    numbers, beats = context.settings.wait, np.asarray(context.beats)
+    if len(beats) < 2:
+        beats = np.array([0.0, numbers.shift_time])
+    first, last = beats[1] - beats[0], beats[-1] - beats[-2]
+    before = beats[0] - max(first, 0.1) * np.arange(np.ceil(ENDS / max(first, 0.1)), 0, -1)
+    after = beats[-1] + max(last, 0.1) * np.arange(1, np.ceil(ENDS / max(last, 0.1)) + 1)
+    heard: list[float] = []
+    for beat in (*before, *beats, *after):
+        if not heard or beat - heard[-1] >= numbers.shift_time - 1e-6:
+            heard.append(float(beat))
+    at, chance = np.array(heard), np.random.default_rng(SEED)
+    far, stays = chance.uniform(0.7, 1.3, len(at)), chance.random(len(at)) < numbers.stays
+    stays[1:] &= ~stays[:-1]
+    place = numbers.shift * far * np.cumprod(np.where(stays, 1.0, -1.0))
+    k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
+    share = smooth((times - at[k]) / (at[k + 1] - at[k]))
+    return np.asarray(place[k] + share * (place[k + 1] - place[k]))
+
+
+@dataclass(frozen=True, slots=True)
+class _Act:
+    """One thing that she does. times : (m,) seconds since it began; long : seconds that it lasts; side : 0 left"""
+
+    times: Array
+    long: float
+    side: int
+
+    @property
+    def fade(self) -> Array:
+        """0 at both ends, 1 between, (m,)."""
+        quarter = self.long / 4
+        return np.asarray(smooth(self.times / quarter) * smooth((self.long - self.times) / quarter))
+
+
+def _shake(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """Both arms hang and hands are shaken, one a little after the other."""
+    for hand, sign in ((0, 1.0), (1, -1.0)):
+        turn = 2 * np.pi * numbers.shakes * act.times - 0.9 * (hand != act.side)
+        out.flap[near, hand] += np.radians(numbers.flap) * np.sin(turn) * act.fade
+        out.hands[near, hand] += act.fade[:, None] * [sign * numbers.aside, -numbers.lower, 0.0]
+        out.hands[near, hand, 0] += sign * numbers.trembling * np.sin(turn - 0.5) * act.fade
+
+
+def _swing(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """Arms swing, one ahead and the other back."""
+    way = np.sin(2 * np.pi * act.times / numbers.swing_time) * act.fade
+    for hand in (0, 1):
+        sign = 1.0 if hand == act.side else -0.8
+        out.hands[near, hand, 2] += sign * numbers.swing * way
+        out.hands[near, hand, 1] += 0.3 * numbers.swing * way**2
+
+
+def _shrug(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """Shoulders are raised and let fall, one more than the other."""
+    up = np.sin(np.pi * act.times / act.long) ** 2
+    for hand in (0, 1):
+        out.shrug[near, hand] += np.radians(numbers.shrug) * (1.0 if hand == act.side else 0.6) * up
+
+
+def _loosen(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """The head leans to one side and then to the other."""
+    way = np.sin(2 * np.pi * act.times / act.long) * act.fade
+    out.tilt[near] += np.radians(numbers.neck) * way
+
+
+def _tap(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """The heel that does not bear her comes up."""
+    for side, sign in ((0, -1.0), (1, 1.0)):
+        light = smooth(sign * out.shift[near] / numbers.shift - 0.2)
+        out.heels[near, side] += np.radians(numbers.heel) * light * act.fade
+
+
+_KINDS: tuple[Callable[[Waiting, slice, _Act, WaitSettings], None], ...] = (
+    _shake, _swing, _shrug, _loosen, _tap,
+)  # fmt: skip
