@@ -16,6 +16,8 @@ BESIDE = 140.0  # degrees: one foot is across the other, more beside it than bef
 _REST = 0.25  # seconds
 _MANY = 4  # spins that are the idea of a chart: one finding
 _TWISTS = 20  # meter of Pump charts whose players expect to turn
+_RINGS = 13  # the same, to turn with one foot on the centre
+_CENTRE, _OF_PAD = 2, 5  # columns of a Pump pad
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
@@ -26,8 +28,9 @@ class Spin(MoveRule):
     is about twice the pace of the passage, or the long half of a swing rhythm; two panels at once may always be a jump.
     Nor of a walk along two pads, on
     which one foot passes the other; nor where after two panels at once one crossover takes its place, nor in a burst,
-    of which DT305 tells. More than four in a chart are one finding. On Pump pads it is an info from meter 20. A spin in
-    a jump is DT203.
+    of which DT305 tells. More than four in a chart are one finding. On Pump pads it is an info from meter 20, and from
+    13 where one foot goes round the centre, corner by corner, on which the other steps; on all pads where mines leave
+    no other panel. A spin in a jump is DT203.
 
     `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
     back.
@@ -100,8 +103,12 @@ class Spin(MoveRule):
         return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether the chart is one of those Pump charts that are made of twists."""
-        return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _TWISTS
+        """Whether the author means it: a Pump chart made of twists, one foot round a centre, steps between mines."""
+        pump, meter = subject.chart.steps_type.startswith("pump"), subject.chart.meter
+        if pump and meter >= _TWISTS:
+            return True
+        ringed = pump and meter >= _RINGS
+        return all((ringed and _round_the_centre(subject, row)) or _between_mines(subject, row) for row in rows)
 
     def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
         """Each spin, or all of a chart that is made of them."""
@@ -116,3 +123,21 @@ class Spin(MoveRule):
             return False
         beside = max(abs(play.facing[row - 1]), abs(play.facing[row])) >= BESIDE
         return bool(beside and np.ptp(pad.panels[:, 0]) > ONE_PAD)
+
+
+def _round_the_centre(subject: ChartSubject, row: int) -> bool:
+    """Whether one foot goes round a Pump pad's centre, corner by corner, while the other steps on the centre."""
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    if at < 3:
+        return False
+    steps = [subject.pressed(int(one)) for one in rows[at - 3 : at + 1]]
+    centre = [len(step) == 1 and step[0] % _OF_PAD == _CENTRE for step in steps]
+    return centre == [True, False, True, False] and len(steps[1]) == len(steps[3]) == 1
+
+
+def _between_mines(subject: ChartSubject, row: int) -> bool:
+    """Whether mines leave the dancer no panel but the one: every step is meant."""
+    from dancetutor_cli.lint.foot_questions import WALL
+
+    return subject.play is not None and int(subject.play.rows.mines[row].sum()) >= WALL
