@@ -6,6 +6,7 @@ Whole charts are read with numpy at once; only rows with unknown characters or k
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -30,7 +31,10 @@ _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
-_OF_PLAYERS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
+# As what the letters of several players are read: in most charts as nobody's notes, in one for two as theirs.
+_NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
+_NOBODYS[stepf2.FAKE_HEAD] = OTHERS_HEAD
+_OF_TWO = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
 _COUNTS = np.ones(256, dtype=bool)
 _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
@@ -39,7 +43,7 @@ _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 class NoteData:
     """What a note data value holds. Rows and measures are those of the first player.
 
-    players : of a routine what each player has, else empty
+    players : of a chart on one pad for two what each player has, else empty
     """
 
     notes: NoteTable
@@ -94,6 +98,10 @@ def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timin
         parts = [(a + 1, b) for a, b in itertools.pairwise(cuts)][:_PLAYERS]
     warnings: list[ReadWarning] = []
     grids = [_Grid(view, part, start, lines, begin) for part in parts]
+    marked = not routine and stepf2.is_for_two(value, columns)
+    if marked:
+        grids[0].letters = _OF_TWO
+        warnings.append(ReadWarning("stepf2-note", stepf2.FOR_TWO, lines(start)))
     if len(parts) > 1:
         text = "the chart is for two players ('&' parts their notes); each has feet of their own"
         warnings.append(ReadWarning("several-players", text, lines(start)))
@@ -103,7 +111,19 @@ def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timin
         for cells, grid in zip(players, grids, strict=True)
         if routine
     )
-    return NoteData(_table(players, timing), grids[0].row_table(), grids[0].measure_table(), tuple(warnings), own)
+    rows, measures = grids[0].row_table(), grids[0].measure_table()
+    if marked:
+        shared = _by_marks(players[0], grids[0].marks, columns)
+        own = tuple(NoteData(_table([cells], timing), rows, measures, ()) for cells in shared)
+    return NoteData(_table(players, timing), rows, measures, tuple(warnings), own)
+
+
+def _by_marks(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int) -> list[Cells]:
+    """What each of two players has: the notes with their mark, those of neither on their half, and every mine."""
+    places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
+    said = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
+    whose = np.where((said == 1) | (said == 2), said, 1 + (cells.column >= columns // 2))
+    return [cells[(whose == player) | (cells.kind == Kind.MINE)] for player in (1, 2)]
 
 
 def _table(players: list[Cells], timing: Timing) -> NoteTable:
@@ -169,6 +189,8 @@ class _Grid:
         up = (2 * rest > count) | ((2 * rest == count) & (whole % 2 == 1))  # halves to even
         self.tick = (self.measure * TICKS_PER_MEASURE + whole + up).astype(np.int64)
         self.line = lines.many(self.first + base)
+        self.letters: Mapping[int, int] = _NOBODYS
+        self.marks: dict[tuple[int, int], int] = {}  # (tick, column) -> player whose letter stands there
 
     def cells(self, value: bytes, escapes: frozenset[int], columns: int, warnings: list[ReadWarning]) -> Cells:
         """The non-empty cells, in file order."""
@@ -194,11 +216,15 @@ class _Grid:
             raw = value[self.first[row] : self.last[row]]
             if escapes:
                 raw = bytes(c for at, c in enumerate(raw, int(self.first[row])) if at not in escapes)
-            kinds[row], found, others = _odd_row(raw, columns)
-            for what in others:
+            kinds[row], found, others = _odd_row(raw, columns, self.letters)
+            for column, (letter, _) in others.items():
+                self.marks[int(self.tick[row]), column] = stepf2.player_of(letter)
+            for what in {what for _, what in others.values()}:
                 foreign.setdefault(what, []).append(int(self.line[row]))
             for finding in found:
                 findings.setdefault(finding, []).append(int(self.line[row]))
+        if self.letters is _OF_TWO:
+            foreign.pop("X", None)
         for what, found_at in foreign.items():
             message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
             warnings.append(ReadWarning("stepf2-note", message, found_at[0]))
@@ -231,20 +257,22 @@ class _Grid:
         return MeasureTable(anchor, line, self.row_first.astype(np.int32), self.row_count.astype(np.int32))
 
 
-def _odd_row(text: bytes, columns: int) -> tuple[list[int], list[tuple[str, str]], set[str]]:
+def _odd_row(
+    text: bytes, columns: int, letters: Mapping[int, int]
+) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
     """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
 
-    And which of `stepf2.SAID` it has.
+    And by column what is StepF2's: the letter, and which of `stepf2.SAID` it is.
     """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}
-    others: set[str] = set()
+    others: dict[int, tuple[int, str]] = {}
     at = 0
     while at < len(text) and len(cells) < columns:
         if foreign := stepf2.note_at(text, at, columns):
             letter, at, what = foreign
-            others.add(what)
-            cells.append(_OF_PLAYERS.get(letter, int(_KIND[letter])))
+            others[len(cells)] = letter, what
+            cells.append(letters.get(letter, int(_KIND[letter])))
         else:
             kind = int(_KIND[text[at]])
             if kind == _UNKNOWN:

@@ -1,7 +1,8 @@
 """Charts for two: what each player steps, as a chart of the pad that this player stands on.
 
 In a couple chart each has a pad of one's own, and half of the columns. In a routine both dance on one double pad, and
-`&` parts the notes of the first from those of the second.
+`&` parts the notes of the first from those of the second. So they do where letters mark whose a note is (StepF2's
+co-op, in pump-double): there the notes of both stand in the same rows.
 """
 
 from __future__ import annotations
@@ -30,6 +31,16 @@ def written_parts(chart: Chart) -> tuple[Chart, ...]:
     return chart.players if chart.steps_type in ONE_PAD else (chart,)
 
 
+def shares_rows(part: Chart) -> bool:
+    """Whether another player's notes stand in the rows of a part: of a couple, or where letters mark whose they are."""
+    return part.written is not None and part.written.steps_type not in ONE_PAD
+
+
+def is_marked(part: Chart) -> bool:
+    """Whether a chart is a part of one whose letters mark whose a note is."""
+    return part.written is not None and part.written.steps_type == part.steps_type
+
+
 def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
     """The chart with the parts of its players, if it is for two. read : its note data; data : bytes of its file"""
     if chart.steps_type in OWN_PADS:
@@ -37,13 +48,13 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
         tables = [_columns(chart, data, first, half) for first in (0, half)]
         columns = half
         pad = OWN_PADS[chart.steps_type]
-    elif chart.steps_type in ONE_PAD:
+    elif read.players:
         tables = [(own.notes, own.rows) for own in read.players]
         columns = chart.columns
-        pad = ONE_PAD[chart.steps_type]
+        pad = ONE_PAD.get(chart.steps_type, chart.steps_type)
     else:
         return chart
-    routine = chart.steps_type in ONE_PAD
+    on_one_pad = chart.steps_type not in OWN_PADS
     players = tuple(
         replace(
             chart,
@@ -51,11 +62,11 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
             columns=columns,
             notes=notes,
             rows=rows,
-            measures=read.players[n].measures if routine else chart.measures,
+            measures=read.players[n].measures if on_one_pad else chart.measures,
             warnings=chart.warnings if n == 0 else (),  # told once
             player=n + 1,
             written=chart,
-            first_column=0 if routine else n * columns,
+            first_column=0 if on_one_pad else n * columns,
         )
         for n, (notes, rows) in enumerate(tables)
     )

@@ -1,7 +1,9 @@
 """What StepF2, a game for Pump charts, writes beside the other games' notes.
 
 `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z are
-steps, and x, y and z heads of holds, of the first, second and third player of a chart for several.
+steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows each
+player's in a colour of their own. A chart with steps of the first and the second player and none of a third one is read
+as one for two. What else stands in it (the third one's holds, plain notes) is for whoever has that half of the pad.
 """
 
 from __future__ import annotations
@@ -11,12 +13,24 @@ import re
 PLAYERS = b"XYZxyz"
 SAID = {
     "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
-    "X": "X, Y and Z are steps of several players in StepF2: no notes here, nor in the other games",
+    "X": "X, Y and Z are steps of more than two players in StepF2: no notes here, nor in the other games",
 }
+FOR_TWO = "the chart is for two players (X and Y mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
-# As what a fake counts: a hold's head as another player's, so that its end goes with it.
-_FAKED = {b"0": "0", b"2": "x", b"3": "3", b"4": "x", b"x": "x", b"y": "x", b"z": "x"}
+FAKE_HEAD = ord("f")  # of a hold that is none, so that its end goes with it
+_FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}
 _COLUMNS = (5, 6, 10)  # of Pump's pads
+_BOTH_PADS = 10
+
+
+def is_for_two(text: bytes, columns: int) -> bool:
+    """Whether letters mark the notes of two players, and of no third one, in note data without its comments."""
+    return columns == _BOTH_PADS and b"X" in text and b"Y" in text and b"Z" not in text
+
+
+def player_of(letter: int) -> int:
+    """Whose a letter is, from 1; 0: nobody's in particular."""
+    return PLAYERS.find(letter) % 3 + 1 if letter in PLAYERS else 0
 
 
 def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:

@@ -24,28 +24,24 @@ def overrides_for(song: Song, chart: Chart) -> tuple[Overrides, Ignores, tuple[F
     Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
     FileError : dancetutor.yaml cannot be read
     """
+    from dancetutor_cli.chart.players import shares_rows
     from dancetutor_cli.feet.configured import read_settings
     from dancetutor_cli.feet.contradictions import contradictions
     from dancetutor_cli.feet.pins import pinned
     from dancetutor_cli.feet.sme import read_sme
 
     whole = chart if chart.written is None else chart.written  # people speak of a chart as it stands in the file
-    pins, problems = pinned(song, whole if _shares_rows(chart) else chart)
+    pins, problems = pinned(song, whole if shares_rows(chart) else chart)
     editor, settings = read_sme(song, whole), read_settings(song, whole)
     told = (*settings.said, *editor.said, *pins)
     said = {(s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))}  # later win
     good, contradictory = contradictions(chart, said.values())
     if chart.player > 1:  # what is wrong beside the notes is told with the first player's
         editor, settings = replace(editor, problems=()), replace(settings, problems=())
-        problems = [] if _shares_rows(chart) else problems
+        problems = [] if shares_rows(chart) else problems
     cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
     ignores = Ignores(editor.ignores, settings.ignores or {})
     return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)
-
-
-def _shares_rows(chart: Chart) -> bool:
-    """Whether another player's notes stand in the same rows."""
-    return chart.written is not None and chart.written.columns != chart.columns
 
 
 def _of_player(chart: Chart, said: Iterable[Said]) -> Iterator[Said]:

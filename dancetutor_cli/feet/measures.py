@@ -9,13 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.players import is_marked
+from dancetutor_cli.chart.stepf2 import PLAYERS
 from dancetutor_cli.feet.notation import MARKER
 
 _STEP = np.zeros(256, dtype=bool)
 _STEP[list(b"124Ll")] = True
 _SPECIAL = np.zeros(256, dtype=bool)
-_SPECIAL[list(b"[\\")] = True
+_SPECIAL[list(b"[\\{" + PLAYERS)] = True
+_FOREIGN = re.compile(rb"[{%b]" % PLAYERS)  # StepF2's notes: not a letter for each column, or whose it is
+_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _KEYSOUND = re.compile(rb"\[[^\]]*\]?")
 
 
@@ -45,12 +49,26 @@ def step_rows(data: bytes, chart: Chart) -> StepRows:
         special = _SPECIAL[text].any(axis=1)
         steps[regular] = _STEP[text]
         regular[np.flatnonzero(regular)[special]] = False
+    marked = is_marked(chart)
+    if marked:
+        regular[:] = False
     for i in np.flatnonzero(~regular).tolist():
-        cells = _KEYSOUND.sub(b"", data[start[i] : end[i]].replace(b"\\", b""))[:columns]
+        cells = _KEYSOUND.sub(b"", data[start[i] : end[i]].replace(b"\\", b""))
         steps[i] = False
-        steps[i, : len(cells)] = _STEP[np.frombuffer(cells, dtype=np.uint8)]
+        if marked or _FOREIGN.search(cells):
+            steps[i, _columns_at(chart, int(chart.rows.tick[i]))] = True
+        else:
+            cells = cells[:columns]
+            steps[i, : len(cells)] = _STEP[np.frombuffer(cells, dtype=np.uint8)]
     row = np.flatnonzero(steps.any(axis=1))
     return StepRows(row, steps[row])
+
+
+def _columns_at(chart: Chart, tick: int) -> NDArray[np.int16]:
+    """Where the notes that are steps stand at a tick, as the chart was read."""
+    notes = chart.notes
+    first, last = np.searchsorted(notes.tick, [tick, tick + 1])
+    return notes.column[first:last][np.isin(notes.kind[first:last], _STEPS)]
 
 
 @dataclass(frozen=True, slots=True)

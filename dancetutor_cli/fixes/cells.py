@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from dancetutor_cli.chart.model import Chart, NoteTable
+from dancetutor_cli.chart.stepf2 import PLAYERS
 from dancetutor_cli.markers.splice import Splice
 
 EMPTY = b"0"
-_LETTERS = b"01234MLFK"  # a row with anything else (keysounds, another game's notes of two players) is left alone
+_LETTERS = b"01234MLFK"  # of one player's notes; a row with more than these and PLAYERS (keysounds) is left alone
 
 Note = tuple[int, int, int, int]  # tick, column, kind, end
 
@@ -70,7 +71,7 @@ def cells_at(data: bytes, chart: Chart, tick: int) -> dict[int, Cell]:
 def _cells_of_row(data: bytes, chart: Chart, row: int) -> Iterator[Cell]:
     start, end = int(chart.rows.start[row]), int(chart.rows.end[row])
     text = data[start:end]
-    if text.translate(None, _LETTERS):
+    if text.translate(None, _LETTERS + PLAYERS):
         return
     tick, line = int(chart.rows.tick[row]), int(chart.rows.line[row])
     for column in range(min(len(text), chart.columns)):

@@ -7,7 +7,7 @@ from dancetutor_cli.fixes.cells import EMPTY, Fix, cells_at, replaced
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.suggest import MovedNote
 
-_TAPS = (b"1", b"L", b"l")
+_TAPS = (b"1", b"L", b"l", b"X", b"Y")
 
 
 def moved(data: bytes, chart: Chart, finding: Finding, move: MovedNote) -> Fix | None:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
+from dancetutor_cli.jobs.two import pad_of_both, place_on
 from dancetutor_cli.lint.solved import solved_chart
-from dancetutor_cli.pads import load_pad
+from dancetutor_cli.motion.baked import shifted
 from dancetutor_cli.play.played import Limb, Play
 from dancetutor_cli.play.rows import prepare
 
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
-
-# The pad on which both stand: of a couple each has half of it.
-_WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
 
 
 @dataclass(frozen=True)
@@ -64,16 +61,16 @@ def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     option = next((name for name, given in alone.items() if given), None)
     if option is not None:
         raise UsageError(f"{option} is for one dancer, and {chart.label} is for two: choose with --player 1 or 2")
-    whole = load_pad(_WHOLE[chart.steps_type])
-    assert whole is not None
+    whole = pad_of_both(chart.steps_type)
     solved = tuple(solved_chart(subject.song, part, subject.preset) for part in chart.players)
     plays, motions = [], []
     for one in solved:
         play, pad = _known(request, one)
         shown, baked = _motions(request, replace(subject, chart=one.chart), play, pad)
         plays.append(shown)
-        motions.append({rate: _moved(motion, one.chart, pad, whole) for rate, motion in baked.items()})
-    return Danced(solved, _together(chart, plays, whole), whole, motions[0], motions[1])
+        place = place_on(whole, one.chart, pad)
+        motions.append({rate: shifted(motion, *place) for rate, motion in baked.items()})
+    return Danced(solved, together(chart, plays, whole), whole, motions[0], motions[1])
 
 
 def _known(request: FilmRequest, solved: ChartSubject) -> tuple[Play, Pad]:
@@ -82,17 +79,7 @@ def _known(request: FilmRequest, solved: ChartSubject) -> tuple[Play, Pad]:
     return solved.play, solved.pad
 
 
-def _moved(motion: Motion, part: Chart, pad: Pad, whole: Pad) -> Motion:
-    """A player's motion on the part of the pad that is this player's. Panels' x goes to her right, the world's to her
-    left."""
-    from dancetutor_cli.video.scene.stage import PANEL
-
-    away = whole.panels[part.first_column] - pad.panels[0] + np.array(pad.centre) - np.array(whole.centre)
-    shift = np.array([-away[0] * PANEL, 0.0, away[1] * PANEL])
-    return replace(motion, root=motion.root + shift)
-
-
-def _together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
+def together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
     """What both step as one play of the chart as it is written: who steps what, and what happens; no costs."""
     rows = prepare(chart, whole)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)

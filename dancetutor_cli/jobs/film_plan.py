@@ -81,7 +81,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         rows=step_rows(play),
         character=character,
         partners=partners,
-        callouts=() if request.background or partners else callouts_of(solved[0], play, _calls(look), scrolls),
+        callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
         cues=tuple(_cues(dance)),
     )
     fade = 0.0 if request.section else 1.0

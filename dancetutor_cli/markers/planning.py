@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.players import parts, written_parts
@@ -65,16 +67,18 @@ def solve_charts(
 
 
 def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> ChartFeet:
-    """The feet of two players whose notes stand in the same rows: letters from left to right, the first player's first.
+    """The feet of two players whose notes stand in the same rows: letters from left to right.
 
     The play is the first player's.
     """
     found = step_rows(song.data, chart)
-    of_row: dict[int, str] = {}
+    of_row: dict[int, list[tuple[int, str]]] = {}
     for one in feet:
-        for row, text in zip(one.rows.row.tolist(), one.letters, strict=True):
-            of_row[row] = of_row.get(row, "") + text
-    return ChartFeet(chart, found, tuple(of_row[row] for row in found.row.tolist()), feet[0].play)
+        for row, steps, text in zip(one.rows.row.tolist(), one.rows.steps, one.letters, strict=True):
+            columns = np.flatnonzero(steps) + one.chart.first_column
+            of_row.setdefault(row, []).extend(zip(columns.tolist(), text, strict=True))
+    letters = ("".join(letter for _, letter in sorted(of_row[row])) for row in found.row.tolist())
+    return ChartFeet(chart, found, tuple(letters), feet[0].play)
 
 
 def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bool) -> MarkerPlan:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,3 +97,34 @@ class Motion:
     ground: Ground | None = None
     notes: tuple[str, ...] = ()
     let_go: tuple[LetGo, ...] = ()
+
+
+def shifted(motion: Motion, x: float, z: float) -> Motion:
+    """A motion and all that stands where it is, moved along the ground, metres."""
+    if x == z == 0.0:
+        return motion
+    bar, ground = motion.bar, motion.ground
+    return replace(
+        motion,
+        root=motion.root + np.array([x, 0.0, z]),
+        contacts=tuple(replace(one, panel=(one.panel[0] + x, one.panel[1] + z)) for one in motion.contacts),
+        grips=tuple(replace(one, x=one.x + x) for one in motion.grips),
+        bar=bar and replace(bar, behind=bar.behind + z, spans=tuple((a + x, b + x) for a, b in bar.spans)),
+        ground=ground and replace(ground, low=_plus(ground.low, x, z), high=_plus(ground.high, x, z)),
+    )
+
+
+def held_from(motion: Motion, second: float) -> Motion:
+    """A motion that begins at a second of the music, if it begins later: until then she stands as she will begin."""
+    if second >= motion.times[0]:
+        return motion
+    return replace(
+        motion,
+        times=np.insert(motion.times, 0, second),
+        rotations=np.concatenate((motion.rotations[:1], motion.rotations)),
+        root=np.concatenate((motion.root[:1], motion.root)),
+    )
+
+
+def _plus(place: tuple[float, float], x: float, z: float) -> tuple[float, float]:
+    return place[0] + x, place[1] + z

@@ -150,6 +150,7 @@ class Film:
             self.scale * part.text,
             self.face,
             FACING if self.turned and not self.layout.highway else "",
+            self.style.players if self.plan.notes.player.any() else (),
         )
 
     @cached_property

@@ -18,6 +18,7 @@ class NoteTrack:
     beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
     column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.played.Limb`
     quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
+    player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
     """
 
     second: NDArray[np.float64]
@@ -29,6 +30,7 @@ class NoteTrack:
     limb: NDArray[np.int8]
     quantisation: NDArray[np.int64]
     judged: NDArray[np.bool_]
+    player: NDArray[np.int8]
 
 
 @dataclass(frozen=True, slots=True)

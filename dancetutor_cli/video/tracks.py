@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.play.played import Play
@@ -35,8 +36,23 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> Note
         limb=limb[keep],
         quantisation=quantisation(tick),
         judged=table.judged[keep],
+        player=_players(chart)[keep],
     )
     return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
+
+
+def _players(chart: Chart) -> NDArray[np.int8]:
+    """Whose each note of a chart is, int8 (n,): 1 or 2 where it is for two, 0 for anybody's, as mines are."""
+    owner: dict[tuple[int, int], int] = {}
+    for part in chart.players:
+        steps = part.notes.kind != Kind.MINE
+        columns = (part.notes.column[steps] + part.first_column).tolist()
+        owner |= dict.fromkeys(zip(part.notes.tick[steps].tolist(), columns, strict=True), part.player)
+    table = chart.notes
+    if not owner:
+        return np.zeros(len(table), dtype=np.int8)
+    places = zip(table.tick.tolist(), table.column.tolist(), strict=True)
+    return np.array([owner.get(place, 0) for place in places], dtype=np.int8)
 
 
 def presses_of(track: NoteTrack) -> Presses:

@@ -16,15 +16,23 @@ from dancetutor_cli.commands import cli
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.measures import step_rows
+from dancetutor_cli.fixes.moved import moved
 from dancetutor_cli.jobs.analyze import analyze_file
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.lint.suggest import MovedNote
+from dancetutor_cli.markers.splice import apply
 from dancetutor_cli.play import load_preset
 
 HEAD = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#OFFSET:0;\n#BPMS:0=120;\n"
 FIRST = "10000000\n01000000\n00010000\n00100000\n,\n10000000\n00010000\n10000000\n00010000\n"
 SECOND = "00001000\n00000001\n00001000\n00000010\n,\n00000100\n00000001\n00000110\n00000000\n"
 COUPLE = "10001000\n0100[7]0100\n0001M001\n20100210\n,\n00000000\n30000300\n00011000\n1000000\n"
+
+
+# Two players' notes in the same rows, told apart by their letters; in the second row they stand crosswise.
+MARKED = "X00000000Y\n000Y0X0000\n00X0000Y00\n0000X00000\n,\n0X00Y00000\n0000000Y00\n00X00000Y0\n0000000000\n"
 
 
 def block(kind: str, notes: str) -> str:
@@ -162,6 +170,43 @@ def test_a_note_of_one_player_is_mended_and_the_other_keeps_all(tmp_path: Path) 
     after = parse(path.read_bytes(), path).charts[0]
     assert cells(parts(after)[0]) == cells(parts(before)[0])
     assert len(set(cells(parts(after)[1])) ^ set(cells(parts(before)[1]))) == 2
+
+
+@pytest.fixture
+def marked(tmp_path: Path) -> Path:
+    path = tmp_path / "marked.sm"
+    path.write_text(HEAD + block("pump-double", MARKED))
+    return path
+
+
+def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(marked: Path) -> None:
+    before = marked.read_bytes()
+    assert run("annotate", marked, "--style", "measure,rows")[0] == 0
+    song = parse(marked.read_bytes(), marked)
+    sides = re.findall(r"\{dt1 ([^}]*)\}", marked.read_text())
+    assert [len(re.sub(r"[()]", "", one)) for one in sides] == [7, 5]
+    text = marked.read_text().replace(f"{{dt1 {sides[0]}}}", "{dt1! (LL)(LR)(RR)(L)}")
+    marked.write_text(text)
+    song = parse(text.encode(), marked)
+    said = [overrides_for(song, part)[0].cells() for part in parts(song.charts[0])]
+    left, right = (int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT))
+    feet = [{column: int(limb) for (_, column), (limb, _) in sorted(cells.items())} for cells in said]
+    assert feet == [{0: left, 5: right, 2: right, 4: left}, {9: left, 3: left, 7: right}]
+    assert run("annotate", marked, "--strip", "--force")[0] == 0
+    assert marked.read_bytes() == before
+
+
+def test_a_marked_note_keeps_its_letter_when_it_is_moved(tmp_path: Path) -> None:
+    path = tmp_path / "marked.sm"
+    path.write_text(HEAD + block("pump-double", MARKED))
+    chart = parse(path.read_bytes(), path).charts[0]
+    move = MovedNote(0, 9, 6, "moved")
+    finding = Finding("DT202", "spin", "warning", "m", line=int(chart.rows.line[0]))
+    fix = moved(path.read_bytes(), parts(chart)[1], finding, move)
+    assert fix is not None
+    after = parse(apply(path.read_bytes(), fix.splices), path).charts[0]
+    assert [cell[1] for cell in cells(parts(after)[1]) if cell[0] == 0] == [6]
+    assert cells(parts(after)[0]) == cells(parts(chart)[0])
 
 
 def test_one_player_is_baked(both: Path, tmp_path: Path) -> None:

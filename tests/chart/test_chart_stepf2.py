@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import Kind, parse
+from dancetutor_cli.chart.model import Chart
 
 
 def notes(*rows: str, steps_type: str = "pump-single") -> tuple[list[tuple[int, int, str]], list[str]]:
@@ -17,6 +18,18 @@ def notes(*rows: str, steps_type: str = "pump-single") -> tuple[list[tuple[int, 
     found = zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), chart.notes.kind.tolist(), strict=True)
     said = [f"{warning.code}: {warning.message}" for warning in chart.warnings]
     return [(tick // ticks, column, Kind(kind).name) for tick, column, kind in found], said
+
+
+def read(*rows: str, steps_type: str) -> Chart:
+    text = f"#TITLE:T;#BPMS:0=120;#NOTES:{steps_type}::Hard:9::\n" + "\n".join(rows) + "\n;"
+    return parse(text.encode(), Path("x.sm")).charts[0]
+
+
+def cells(chart: Chart) -> list[tuple[int, int, str]]:
+    """(row of eight, column, kind) of every note."""
+    table = chart.notes
+    found = zip(table.tick.tolist(), table.column.tolist(), table.kind.tolist(), strict=True)
+    return [(tick // 24, column, Kind(kind).name) for tick, column, kind in found]
 
 
 def test_a_note_in_braces_is_one_note() -> None:
@@ -36,16 +49,40 @@ def test_a_fake_hold_takes_its_end_with_it() -> None:
     assert not [one for one in said if "unmatched" in one]
 
 
-def test_letters_of_players_are_no_notes() -> None:
-    found, said = notes("000X000000", "00y00000Y0", "0030000000", "1000000000", steps_type="pump-double")
+def test_letters_of_more_than_two_players_are_no_notes() -> None:
+    found, said = notes("000X000000", "00y00000Y0", "0030000000", "1000000Z00", steps_type="pump-double")
     assert found == [(3, 0, "TAP")]
     (only,) = said
-    assert only.startswith("stepf2-note: X, Y and Z are steps of several players") and only.endswith("2 rows")
+    assert only.startswith("stepf2-note: X, Y and Z are steps of more than two") and only.endswith("3 rows")
 
 
 def test_an_end_without_a_head_is_still_told() -> None:
-    _, said = notes("000X000000", "0030000000", "0000000000", "1000000000", steps_type="pump-double")
+    _, said = notes("000X000000", "0030000000", "000000000Z", "1000000000", steps_type="pump-double")
     assert any(one.startswith("unmatched-tail") for one in said)
+
+
+def test_letters_of_two_players_are_the_notes_of_each() -> None:
+    """Each steps what has one's letter, wherever it stands; plain notes are for whose half of the pad it is."""
+    rows = ["000X0Y0000", "0000Yx0000", "M00000{Y|n|0|0}001", "2000030z00", "3000000300", "00000{X|n|1|0}0000"]
+    rows += ["X00000000Y", "0000000000"]
+    chart = read(*rows, steps_type="pump-double")
+    first, second = chart.players
+    assert (first.steps_type, first.columns, first.label) == ("pump-double", 10, "pump-double Hard 9 P1")
+    assert cells(first) == [
+        (0, 3, "TAP"), (1, 5, "HOLD"), (2, 0, "MINE"), (3, 0, "HOLD"), (6, 0, "TAP"),
+    ]  # fmt: skip
+    assert cells(second) == [
+        (0, 5, "TAP"), (1, 4, "TAP"), (2, 0, "MINE"), (2, 6, "TAP"), (2, 9, "TAP"), (3, 7, "HOLD"), (5, 5, "FAKE"),
+        (6, 9, "TAP"),
+    ]  # fmt: skip
+    assert {*cells(chart)} == {*cells(first), *cells(second)}
+    codes = [warning.code for warning in chart.warnings]
+    assert codes.count("stepf2-note") == 2 and "for two players" in chart.warnings[0].message
+
+
+@pytest.mark.parametrize("rows", [("X000000000", "000X000000"), ("Y000000000", "000X000Z00")])
+def test_one_letter_or_three_are_no_chart_for_two(rows: tuple[str, str]) -> None:
+    assert read(*rows, steps_type="pump-double").players == ()
 
 
 @pytest.mark.parametrize("row", ["X000", "x000"])

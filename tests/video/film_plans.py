@@ -36,7 +36,7 @@ def film_plan(
     tick = np.rint(beat * 48).astype(np.int64)
     track = NoteTrack(
         seconds, end, beat, end * BPM / 60, column.astype(np.int16), kind.astype(np.uint8), limb,
-        quantisation(tick), np.ones(n, dtype=bool),
+        quantisation(tick), np.ones(n, dtype=bool), np.zeros(n, dtype=np.int8),
     )  # fmt: skip
     step = kind != Kind.MINE
     presses = Presses(seconds[step], end[step], track.column[step], limb[step])

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.colours import RGB
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.overlay import shapes, sprites
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
@@ -144,22 +145,32 @@ def lozenge(
 class Legend:
     """What the markers mean, one under the other at the box's bottom; hands only where the chart needs them.
 
-    A dark plate below keeps them readable over a panel of the pad. note : words below the last one.
+    A dark plate below keeps them readable over a panel of the pad. note : words below the last one; players : colours
+    of the notes of each of two.
     More lines than the box holds stand out below it: what is above are the song's words.
     """
 
-    def __init__(self, limbs: set[int], box: PixelBox, scale: float, face: Typeface, note: str = "") -> None:
+    def __init__(
+        self,
+        limbs: set[int],
+        box: PixelBox,
+        scale: float,
+        face: Typeface,
+        note: str = "",
+        players: tuple[RGB, ...] = (),
+    ) -> None:
         names = ("left foot", "right foot", "left hand", "right hand")
-        shown = sorted({0, 1} | limbs)
+        size = max(8, round(24 * scale))
+        shown = [(sprites.marker(size, limb, face), names[limb]) for limb in sorted({0, 1} | limbs)]
+        shown += [(sprites.arrow(size, 0.0, colour), f"player {n}") for n, colour in enumerate(players, 1)]
         step, edge = 31 * scale, 8 * scale
         height = step * (len(shown) + bool(note))
         top = max(box[3] - height, float(box[1]))
         lines: list[tuple[Sprite, float, float]] = []
         right = float(box[0])
-        for row, limb in enumerate(shown):
+        for row, (mark, name) in enumerate(shown):
             middle = top + (row + 0.5) * step
-            mark = sprites.marker(max(8, round(24 * scale)), limb, face)
-            text = face.sprite(names[limb], 16 * scale, WHITE, weight=0.2 * scale)
+            text = face.sprite(name, 16 * scale, WHITE, weight=0.2 * scale)
             x = box[0] + mark.shape[1] + 5 * scale
             lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
             right = max(right, x + text.shape[1])
@@ -167,8 +178,7 @@ class Legend:
             text = face.sprite(note, 16 * scale, WHITE, weight=0.2 * scale)
             lines.append((text, box[0], top + height - 0.5 * step - text.shape[0] / 2))
             right = max(right, float(box[0] + text.shape[1]))
-        size = round(height + 1.2 * edge), round(right - box[0] + 2 * edge)
-        plate = lozenge(*size, 8 * scale, INK, opacity=0.62)
+        plate = lozenge(round(height + 1.2 * edge), round(right - box[0] + 2 * edge), 8 * scale, INK, opacity=0.62)
         self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind
-from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.colours import RGB, limb_colours
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites
@@ -87,6 +88,10 @@ class Highway:
         self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
         self.size = max(8, round(geometry.lane * self.style.arrow))
+        # Which colour a note has: that of its quantisation, or of a chart for two of whose it is.
+        self.colours = (*(self.style.quantisation[q] for q in QUANTISATIONS), *self.style.players)
+        whose = len(QUANTISATIONS) + self.notes.player.astype(np.int64) - 1
+        self.colour = np.where(self.notes.player > 0, whose, self.notes.quantisation)
         self.limb_colours = limb_colours().by_limb
         self.lights = PanelLights(self.presses, len(geometry.directions), self.style.flash_seconds)
         self._number = lru_cache(maxsize=256)(self._draw_number)
@@ -105,7 +110,7 @@ class Highway:
         self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in glows.items() if i in used or i == 4}
         self.mine = sprites.mine(size, style.mine)
         body = max(4, round(0.62 * size))
-        self.bodies = {k: sprites.hold_body(body, c, k == Kind.ROLL) for k, c in self._hold_colours()}
+        self.bodies = {k: sprites.hold_body(body, c, k[0] == Kind.ROLL) for k, c in self._hold_colours()}
         self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
         mark = max(6, round(style.mark * self.geometry.lane))
         self.marks = [sprites.marker(mark, limb, self.face) for limb in (0, 1, 2, 3, -1)]  # -1 is the last one
@@ -113,16 +118,16 @@ class Highway:
         self.mark_shade = sprites.shade(round(1.35 * mark))
 
     def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
-        """Sprites of the notes `which`, by direction and quantisation; only what the chart has."""
-        pairs = {
-            (int(c), int(q)) for c, q in zip(self.notes.column[which], self.notes.quantisation[which], strict=True)
-        }
+        """Sprites of the notes `which`, by direction and place of the colour; only what the chart has."""
+        pairs = {(int(c), int(q)) for c, q in zip(self.notes.column[which], self.colour[which], strict=True)}
         wanted = {(self.geometry.directions[c], q) for c, q in pairs}
-        colour = self.style.quantisation
-        return {(d, q): sprites.arrow(self.size, d, colour[QUANTISATIONS[q]], hollow) for d, q in wanted}
+        return {(d, q): sprites.arrow(self.size, d, self.colours[q], hollow) for d, q in wanted}
 
-    def _hold_colours(self) -> list[tuple[Kind, tuple[int, int, int]]]:
-        return [(Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)]
+    def _hold_colours(self) -> Iterator[tuple[tuple[Kind, int], RGB]]:
+        """Of holds and rolls, by whose they are."""
+        for player in range(int(self.notes.player.max(initial=0)) + 1):
+            for kind, colour in ((Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)):
+                yield (kind, player), self.style.players[player - 1] if player else colour
 
     def background(self, frame: Frame) -> None:
         """The still part, drawn once: panel and lanes."""
@@ -260,7 +265,8 @@ class Highway:
 
     def _draw_hold(self, frame: Frame, i: int, head: float, phase: float, tail: float, active: bool) -> None:
         kind = Kind(int(self.notes.kind[i]))
-        tile, end = self.bodies[kind], self.tails[kind]
+        whose = int(self.notes.player[i])
+        tile, end = self.bodies[kind, whose], self.tails[kind, whose]
         x, _ = self._corner(int(self.notes.column[i]), 0, tile.shape[1])
         opacity = 1.0 if active else 0.78
         upper, lower = min(head, tail), max(head, tail)
@@ -273,7 +279,7 @@ class Highway:
     def _draw_head(self, frame: Frame, i: int, y: float) -> None:
         notes = self.notes
         column, kind = int(notes.column[i]), Kind(int(notes.kind[i]))
-        direction, q = self.geometry.directions[column], int(notes.quantisation[i])
+        direction, q = self.geometry.directions[column], int(self.colour[i])
         if kind == Kind.MINE:
             sprite = self.mine
         elif kind == Kind.FAKE or not notes.judged[i]:

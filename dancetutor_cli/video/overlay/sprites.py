@@ -35,6 +35,7 @@ class HighwayStyle:
     """configs/highway.yaml: colours sRGB 0..255; sizes in lane widths; times in seconds."""
 
     quantisation: dict[int, RGB]
+    players: tuple[RGB, RGB]
     hold: RGB
     roll: RGB
     mine: RGB
