@@ -42,6 +42,12 @@ def with_partner(character: Character) -> Character:
     )
 
 
+def partner_of(character: Character) -> Character:
+    """The second one alone: the same in clothes of other colours."""
+    paint = _Paint.of(character, partner_colours())
+    return replace(character, meshes=tuple(_other(mesh, 0, paint) for mesh in character.meshes))
+
+
 @dataclass(frozen=True, slots=True)
 class _Paint:
     """The second one's textures, by the `id` of the first one's (meshes share them); tint : where no hue is turned"""

@@ -116,21 +116,23 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
-    capture; .json, only the moves: what moves when, from where to where.
+    capture; .json, only the moves: what moves when, from where to where. A chart for two gives two files, NAME-p1 and
+    NAME-p2, of one clock, each dancer on her place; with --player one.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
-    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, style_for
+    from dancetutor_cli.character.partner import partner_of
+    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, style_for, tasks_of
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
 
-    output, character = result.output, result.character
+    output, character, report_to = result.output, result.character, result.report_to
     if output is not None:
         check_file(output, tuple(FORMATS))
     if result.plot is not None:
         check_file(result.plot, (".svg", ".png"))
-    if result.report_to is not None and result.report_to != TABLE:
-        check_file(Path(result.report_to))
+    if report_to is not None and report_to != TABLE:
+        check_file(Path(report_to))
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))
@@ -141,13 +143,35 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     from dancetutor_cli.library.selection import note_bytes
 
     tell_of_compiling(choice_for(task.path, task.preset), note_bytes(task.path, task.selection))
-    asked = ask(task)
-    for note in asked.notes:
+    tasks = tasks_of(task)
+    dancers = (dances, partner_of(dances)) if len(tasks) > 1 else (dances,)
+    both = [ask(each) for each in tasks]
+    for note in dict.fromkeys(note for asked in both for note in asked.notes):
         click.echo(f"warning: {safe(note)}", err=True)
-    target = output or Path(default_name(asked.song, asked.chart))
+    target = output or Path(default_name(both[0].song, both[0].chart))
     check_file(target, tuple(FORMATS))
-    _allow_long(asked, file, result.yes)
-    _write(BakedDance(asked, task, dances), target, result.report_to, result.plot)
+    for asked in both:
+        _allow_long(asked, file, result.yes)
+    places = _Places(target, None if report_to is None or report_to == TABLE else Path(report_to), result.plot)
+    made = [BakedDance(asked, each, dancer) for asked, each, dancer in zip(both, tasks, dancers, strict=True)]
+    if len(made) > 1:
+        made[0].other, made[1].other = made[1], made[0]
+    for one in made:
+        _write(one, places if one.other is None else places.of(one.asked.chart.player), report_to is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """Where all that is made goes. report : JSON of the report; plot : its picture; None: nowhere"""
+
+    output: Path
+    report: Path | None
+    plot: Path | None
+
+    def of(self, player: int) -> _Places:
+        """The same for one of two: NAME-p1.glb, NAME-p2.glb."""
+        parts = (self.output, self.report, self.plot)
+        return _Places(*(path and path.with_stem(f"{path.stem}-p{player}") for path in parts))  # type: ignore[arg-type]
 
 
 def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
@@ -158,19 +182,20 @@ def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
         confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
-def _write(dance: BakedDance, target: Path, report_to: str | None, plot: Path | None) -> None:
-    form = FORMATS[target.suffix.lower()]
-    measured = report_to is not None or plot is not None
+def _write(dance: BakedDance, places: _Places, report: bool) -> None:
+    form = FORMATS[places.output.suffix.lower()]
+    measured = report or places.plot is not None
     for note in dance.notes(form.has_motion or measured):
         click.echo(f"warning: {note}", err=True)
-    click.echo(f"{target}: {form.write(target, dance)}, {dance.label}")
+    click.echo(f"{places.output}: {form.write(places.output, dance)}, {dance.label}")
     if measured:
-        from dancetutor_cli.bake import mines_of, report
+        from dancetutor_cli.bake import mines_of
+        from dancetutor_cli.bake import report as report_of
         from dancetutor_cli.bake.quality.retargeting import with_distances
 
         asked = dance.asked
-        whole = report(dance.own_motion, mines_of(asked.play, asked.pad))
-        _report(with_distances(whole, dance.styled.distances, dance.task.style), report_to, plot)
+        whole = report_of(dance.own_motion, mines_of(asked.play, asked.pad))
+        _report(with_distances(whole, dance.styled.distances, dance.task.style), report, places)
 
 
 def default_name(song: Song, chart: Chart) -> str:
@@ -180,21 +205,21 @@ def default_name(song: Song, chart: Chart) -> str:
     return f"{plain or 'dance'}.glb"
 
 
-def _report(report: MotionReport, target: str | None, plot: Path | None) -> None:
-    if target is not None:
+def _report(report: MotionReport, asked_for: bool, places: _Places) -> None:
+    if asked_for:
         from dancetutor_cli.reports.motion_report import print_report
 
         print_report(report)
         for note in report.notes:
             click.echo(f"note: {note}")
-    if target is not None and target != TABLE:
+    if places.report is not None:
         from dancetutor_cli.files import write_atomic
         from dancetutor_cli.reports.motion_report import as_json
 
-        write_atomic(Path(target), (json.dumps(as_json(report), indent=1) + "\n").encode())
-        click.echo(f"{target}: the report")
-    if plot is not None:
+        write_atomic(places.report, (json.dumps(as_json(report), indent=1) + "\n").encode())
+        click.echo(f"{places.report}: the report")
+    if places.plot is not None:
         from dancetutor_cli.reports.motion_plot import write_plot
 
-        write_plot(plot, report)
-        click.echo(f"{plot}: the plot")
+        write_plot(places.plot, report)
+        click.echo(f"{places.plot}: the plot")

@@ -15,6 +15,7 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
 `start` is how she stands before the first of these moves. `from` and `to` are the ball of the foot, or for a hand its
 palm; kind is step, jump, gallop, evade, pivot, aside (a side-step in a wait) or walk (on the floor beside the pad its
 "level" is below 0); of a hand reach, on its way to a panel, `from` null where it hung free, and press, down on it.
+Of one of two who dance on two pads "pad_at" says where her pad's middle, the origin, is from that of both: [x, z].
 With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
 `let_go` are notes that she does not play, because nobody does: why is limbs (more panels at once than limbs), leap (a
 foot that has just stepped elsewhere) or hand (one that has just been down). A reader must survive added keys.
@@ -42,18 +43,18 @@ KINDS: dict[type[Move], str] = {  # what moves are called in the file
 }  # fmt: skip
 
 
-def write_moves(
-    path: Path, plan: Plan, title: str, chart: str, section: tuple[float, float], bar: Bar | None = None
-) -> None:
-    """Write the moves of a plan that begin in a section, seconds; bar : behind her, if any. Raises FileError."""
-    data = moves_data(plan, title, chart, section, bar)
+def write_moves(path: Path, data: dict[str, Any]) -> None:
+    """Write what `moves_data` returns. Raises FileError."""
     write_atomic(path, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
 def moves_data(
     plan: Plan, title: str, chart: str, section: tuple[float, float], bar: Bar | None = None
 ) -> dict[str, Any]:
-    """The object described above, as plain data."""
+    """The object described above, as plain data: the moves of a plan that begin in a section, seconds.
+
+    bar : behind her, if any
+    """
     start, end = section
     moves = [m for side, track in enumerate(plan.feet) for m in _foot_moves(track, _FEET[side])]
     moves += _hand_moves(plan.presses)

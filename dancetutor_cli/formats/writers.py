@@ -40,6 +40,10 @@ class Dance(Protocol):
         """The motion, for the character's skeleton."""
 
     @property
+    def place(self) -> tuple[float, float]:
+        """Where the middle of her pad is, (x, z) in metres: off the origin if she is one of two on two pads."""
+
+    @property
     def moves(self) -> tuple[Plan, Bar | None]:
         """What moves when, and the bar that she holds; needs no motion."""
 
@@ -79,10 +83,11 @@ def _bvh(path: Path, dance: Dance) -> str:
 
 
 def _moves(path: Path, dance: Dance) -> str:
-    from dancetutor_cli.formats.moves_json import write_moves
+    from dancetutor_cli.formats.moves_json import moves_data, write_moves
 
     plan, bar = dance.moves
-    write_moves(path, plan, dance.title, dance.label, dance.section, bar)
+    data = moves_data(plan, dance.title, dance.label, dance.section, bar)
+    write_moves(path, data if dance.place == (0.0, 0.0) else {**data, "pad_at": [round(x, 6) for x in dance.place]})
     return "the moves"
 
 

@@ -217,13 +217,33 @@ def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Pla
     return play, pad
 
 
+def tasks_of(task: BakeTask) -> tuple[BakeTask, ...]:
+    """The request; of a chart for two where nobody has chosen a player, one for each who has notes."""
+    from dancetutor_cli import chart as charts
+
+    if task.selection.player is not None:
+        return (task,)
+    song = charts.load(task.path)
+    whole = song.charts[task.selection.one(song).index]
+    players = [part.player for part in whole.players if len(part.notes)]
+    if len(players) < 2:
+        return (task,)
+    if task.play_file is not None:
+        raise UsageError(f"--play is for one dancer, and {whole.label} is for two: choose with --player 1 or 2")
+    return tuple(replace(task, selection=replace(task.selection, player=player)) for player in players)
+
+
 @dataclass
 class BakedDance:
-    """What is asked for, made when it is first wanted; as `formats.writers.Dance` describes it."""
+    """What is asked for, made when it is first wanted; as `formats.writers.Dance` describes it.
+
+    other : the one with whom she dances, on another part of the pad of both; their motions begin together
+    """
 
     asked: Asked
     task: BakeTask
     character: Character
+    other: BakedDance | None = None
 
     @property
     def title(self) -> str:
@@ -251,16 +271,28 @@ class BakedDance:
         return styled(bake_asked(self.asked, self.task), self.task.style, settings, befalls)
 
     @property
+    def place(self) -> tuple[float, float]:
+        """Where the middle of her pad is from that of both, (x, z) in metres; of one dancer (0, 0)."""
+        from dancetutor_cli.jobs.two import pad_of_both, place_on
+
+        if self.other is None:
+            return 0.0, 0.0
+        chart = self.asked.chart
+        return place_on(pad_of_both(chart.written_type), chart, self.asked.pad)
+
+    @property
     def own_motion(self) -> Motion:
-        """The motion of the project's own dancer, whoever dances."""
+        """The motion of the project's own dancer, whoever dances, on her own pad."""
         return self.styled.motion
 
     @cached_property
     def motion(self) -> Motion:
         """The motion for the character's skeleton."""
         from dancetutor_cli.character.retarget import retarget
+        from dancetutor_cli.motion.baked import held_from, shifted
 
-        return retarget(self.own_motion, self.character)
+        begin = min(float(one.own_motion.times[0]) for one in (self, self.other) if one is not None)
+        return shifted(held_from(retarget(self.own_motion, self.character), begin), *self.place)
 
     def notes(self, of_motion: bool) -> tuple[str, ...]:
         """What there is to say, for people: of the whole motion, or only of the moves."""

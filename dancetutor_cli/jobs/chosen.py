@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Chosen(NamedTuple):
-    """A chart, its song and its preset; notes : lines for people: other pads than the preset's, one of two players."""
+    """A chart, its song and its preset; notes : lines for people: other pads than the preset's."""
 
     song: Song
     chart: Chart
@@ -42,8 +42,4 @@ def chosen(path: Path, selection: Selection, preset: str | None, section: str | 
     costs = preset_for(chart, path, choice)
     unfit = mismatch(costs, chart.steps_type)
     notes = [] if unfit is None else [f"{chart.label}: {unfit}"]
-    if chart.player and selection.player is None:
-        notes.append(
-            f"{chart.label}: the chart is for two, and this is the first player's part; --player 2 is the other's"
-        )
     return Chosen(song, chart, costs, tuple(notes))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked, tasks_of
+from dancetutor_cli.jobs.page_two import findings_of_two, pair_of, passages_of_two
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -59,14 +60,24 @@ def make_page(task: PageTask) -> Page:
     from dancetutor_cli.page import document, pack_content
 
     character = with_foot_colours(load_character(dressed(task.character, task.bake.gait)))
-    asked = ask(task.bake)
+    tasks = tasks_of(task.bake)
+    pair = pair_of(tasks) if len(tasks) > 1 else None
+    if pair is not None and task.beside is not None:
+        raise UsageError(
+            f"{task.bake.path}: --beside is for one dancer, and the chart is for two: choose with --player"
+        )
+    asked = ask(task.bake) if pair is None else pair.both
     preset = preset_for(asked.chart, task.bake.path, choice_for(task.bake.path, task.bake.preset))
     music, warnings = _music(asked.song, asked.chart) if task.music else (None, ())
     beside = _beside(task, asked, preset)
-    motions = [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
+    motions = pair.motions if pair else [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
     warnings = (*asked.notes, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [_retargeted(motion, character) for motion in motions]
-    doc, blob = pack_content(_content(task, (asked, beside), preset, character, fitted, music))
+    content = _content(task, (asked, beside), preset, character, fitted, music)
+    if pair is not None:
+        found = list(findings_of_two(pair))
+        content = replace(content, findings=found, passages=passages_of_two(pair), pair=True)
+    doc, blob = pack_content(content)
     html = document(doc, blob, music[1] if music else None)
     title = asked.song.title or asked.song.path.stem
     return Page(html, title, asked.chart.label, warnings, _sizes(blob.sizes, music))
@@ -120,10 +131,11 @@ def _content(
     asked, other = both
     song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
     settings = load_settings(task.bake.motion, task.bake.form)
-    shown, _ = without_unplayable(play, pad, settings.unplayable)
+    # Of two each one's part is so already; and only of the solver's own play for one can it say what else would cost.
+    shown = play if chart.players else without_unplayable(play, pad, settings.unplayable)[0]
+    solved = task.bake.play_file is None and not chart.players
     overrides, ignores, problems = overrides_for(song, chart)
     subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)
-    solved = task.bake.play_file is None  # only of the solver's own play can it say what else would cost
     return Content(
         words=words_of(song, chart, preset.name),
         play=replace(play, moves=shown.moves),
@@ -131,7 +143,7 @@ def _content(
         notes=note_track(chart, shown, parse_segments("")),
         ticks=ticks_of(chart),
         beats=beats_of(chart),
-        findings=findings_of(subject),
+        findings=() if chart.players else findings_of(subject),
         character=character,
         motions=motions,
         directions=pad.directions,

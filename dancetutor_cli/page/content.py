@@ -35,6 +35,7 @@ class Content:
     beats : seconds of beats 0, 1, 2, ...
     motions : the dancer's, and that of who dances beside her if there is one, both of `character`'s joints
     beside : what she plays; beside_rows : the rows that she steps with other limbs
+    pair : the two are the players of a chart for two, in one picture, the second one in other colours
     passages : the hardest parts, ready for the page; flips : what other feet in a row would change, by row
     """
 
@@ -52,6 +53,7 @@ class Content:
     beside_rows: Sequence[int] = ()
     passages: Sequence[Mapping[str, Any]] = ()
     flips: Sequence[Mapping[str, Any]] = ()
+    pair: bool = False
     music: tuple[str, bytes] | None = field(default=None, repr=False)  # its type ("audio/ogg"), and its file
 
 
@@ -87,7 +89,8 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
             "tall": scene.tall,
             "sole": SOLE_RADIUS,
         },
-        "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height),
+        "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height, content.pair),
+        "pair": content.pair,
         "motions": [pack_motion(blob, motion, f"motion{k}") for k, motion in enumerate(content.motions)],
         "beside": {"name": content.beside, "rows": list(content.beside_rows)},
         "beats": [round(second, 6) for second in content.beats],
@@ -109,6 +112,7 @@ def _style() -> dict[str, Any]:
                ("hold", "roll", "mine", "fake", "receptor", "background", "lane_line", "accent")}  # fmt: skip
     return {
         **colours,
+        "players": [hex_colour(colour) for colour in style.players],
         "quantisation": [hex_colour(colour) for colour in style.quantisation.values()],
         "difficulty": {name: hex_colour(colour) for name, colour in style.difficulty.items()},
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
@@ -155,6 +159,7 @@ def _pack_notes(blob: Blob, content: Content) -> None:
         ("limb", notes.limb, "i1"),
         ("quant", notes.quantisation, "u1"),
         ("judged", notes.judged, "u1"),
+        ("player", notes.player, "u1"),
     ):
         blob.add(f"note.{name}", values, kind)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.partner import partner_of
 from dancetutor_cli.formats.thinning import clocks
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.rig import quaternion as quat
@@ -26,9 +27,10 @@ STILL = -2  # "parent" of a joint that no bone carries: the bar's
 _HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # beyond ankle and ball, as in `video.scene.scene`
 
 
-def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float) -> dict[str, Any]:
+def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, pair: bool = False) -> dict[str, Any]:
     """Add a character's mesh to the blob; returns what the page must know about it.
 
+    pair : the skins of the second of two are added, too, behind the first one's
     bar : stands beside her, down to the height `floor`. Places have 1/65535 of the mesh's extent, normals 1/127.
     """
     whole = with_bar(character, bar, floor)
@@ -45,7 +47,8 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float) -
     blob.add("mesh.weights", _bytes_that_sum(mesh.weights).T, "u1")
     triangles, side = _by_side(mesh, whole.skeleton)
     blob.add("mesh.triangles", triangles.T, "u4", 1)
-    images = [pyramid[0] for pyramid in mesh.skins.pyramids]
+    skins = [mesh.skins, *([pack(with_bar(partner_of(character), bar, floor)).skins] if pair else [])]
+    images = [pyramid[0] for one in skins for pyramid in one.pyramids]
     for number, image in enumerate(images):
         blob.add_bytes(f"skin.{number}", _webp(image))
     material = mesh.material[triangles[:, 0]]
@@ -65,8 +68,9 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float) -
                 "count": count,
                 "feet": first < mesh.feet,
                 "side": int(side[first]),
-                "skin": int(mesh.skins.of_mesh[material[first]]),
-                "tint": mesh.skins.tint[material[first]].tolist(),
+                # of the dancer, and of a second one
+                "skin": [int(one.of_mesh[material[first]]) + k * len(skins[0].pyramids) for k, one in enumerate(skins)],
+                "tint": [one.tint[material[first]].tolist() for one in skins],
             }
             for first, count in _runs(material, side)
         ],

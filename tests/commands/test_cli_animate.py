@@ -158,3 +158,25 @@ def test_a_chart_without_steps(tmp_path: Path) -> None:
     song.write_text("#TITLE:x;#BPMS:0=120;#NOTES:\ndance-single:\n:\nHard:\n5:\n0:\n0000\n00M0\n0000\n0000\n;\n")
     assert "no steps" in said(song, "-o", tmp_path / "a.npz")
     assert [p.name for p in tmp_path.iterdir()] == ["none.sm"]
+
+
+def test_of_a_chart_for_two_both_are_baked(tmp_path: Path) -> None:
+    """Two files of one clock, each dancer on her half of both pads; one with --player, on a pad of her own."""
+    song = tmp_path / "two.sm"
+    rows = ["10000000", "01000000", "00010001", "00100010"]  # the second one begins a second later
+    song.write_text("#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-couple::Hard:9::\n" + "\n".join(rows) + "\n;\n")
+    said = animate(song, "-o", tmp_path / "d.npz").output
+    assert "d-p1.npz" in said and "d-p2.npz" in said and not (tmp_path / "d.npz").exists()
+    first, second = (read_npz(tmp_path / f"d-p{n}.npz") for n in (1, 2))
+    assert first.times[0] == second.times[0] == pytest.approx(-2.0)
+    assert {contact.column for contact in second.contacts} == {2, 3}
+    x = [np.mean([contact.panel[0] for contact in one.contacts]) for one in (first, second)]
+    assert x[0] - x[1] > 0.8  # the first one on the left, as the screen has them: +x is the dancers' left
+    assert abs(first.root[-1, 0] - second.root[-1, 0]) > 0.4
+    animate(song, "--player", "2", "-o", tmp_path / "alone.npz")
+    alone = read_npz(tmp_path / "alone.npz")
+    moved = {round(a.panel[0] - b.panel[0], 6) for a, b in zip(alone.contacts, second.contacts, strict=True)}
+    assert len(moved) == 1 and moved != {0.0}
+    animate(song, "-o", tmp_path / "m.json")
+    places = [json.loads((tmp_path / f"m-p{n}.json").read_text())["pad_at"] for n in (1, 2)]
+    assert places[0] == [-x for x in places[1]] or places[0][0] == -places[1][0]

@@ -50,7 +50,7 @@ def test_other_files_are_no_motion(tmp_path: Path) -> None:
 
 def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     plan = plan_of(*demo)
-    write_moves(tmp_path / "m.json", plan, "Two Left Feet", "x", (-1e9, 1e9))
+    write_moves(tmp_path / "m.json", moves_data(plan, "Two Left Feet", "x", (-1e9, 1e9)))
     data = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
     assert len(data["contacts"]) == int((demo[1].limb >= 0).sum())
     for limb in ("left_foot", "right_foot"):

@@ -44,6 +44,7 @@ export class Chart {
     this.limb = /** @type {Int8Array} */ (arrays.get("note.limb"));
     this.quant = /** @type {Uint8Array} */ (arrays.get("note.quant"));
     this.judged = /** @type {Uint8Array} */ (arrays.get("note.judged"));
+    this.player = /** @type {Uint8Array} */ (arrays.get("note.player")); // of a chart for two whose, 1 or 2; else 0
     this.beats = /** @type {number[]} */ (doc.beats);
     this.columns = doc.pad.panels.length;
     /** @type {Map<number, number>} limbs that the author gave to notes */

@@ -43,7 +43,7 @@ export function actionsOf(app, ui) {
     { name: "turnRight", keys: ["Shift+D"], run: () => turn(app, 10, 0) },
     { name: "turnUp", keys: ["Shift+W"], run: () => turn(app, 0, 8) },
     { name: "turnDown", keys: ["Shift+S"], run: () => turn(app, 0, -8) },
-    ...(app.motions.length > 1 ? [{ name: "both", keys: ["2"], run: () => { app.both = !app.both; app.tell("settings"); } }] : []),
+    ...(app.motions.length > 1 && !app.doc.pair ? [{ name: "both", keys: ["2"], run: () => { app.both = !app.both; app.tell("settings"); } }] : []),
     { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
     { name: "notesFaster", keys: ["."], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
     { name: "notesSlower", keys: [","], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },

@@ -4,6 +4,7 @@ import { UNPLAYED } from "./chart.js";
 
 /**
  * @typedef {object} Mark
+ * @property {number} limb 0 left foot, 1 right foot, 2 left palm, 3 right palm
  * @property {number[]} line heel x, z, toe x, z, metres
  * @property {number} ground height of what is below
  * @property {number} near 0..1, how near to it; below 0: no foot
@@ -20,7 +21,7 @@ export function marksOf(doc, pose) {
   const reach = look.light.contact_height;
   return doc.body.marks.map((/** @type {any} */ about, /** @type {number} */ limb) => {
     const colour = style.limbs_rgb[limb].map((/** @type {number} */ c) => c / 255);
-    const none = { line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, colour };
+    const none = { limb, line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, colour };
     if (!about) return none;
     const [heel, toe] = [0, 1].map((end) => place(pose, about.joints[end], about.at[end]));
     const x = (heel[0] + toe[0]) / 2;
@@ -33,7 +34,7 @@ export function marksOf(doc, pose) {
     const t = Math.min(1, Math.max(0, (near - 0.88) / 0.07));
     const planted = t * t * (3 - 2 * t);
     const strength = look.stage.mark * (limb < 2 ? planted + (1 - planted) * (0.12 + 0.38 * near) : near);
-    return { line: [heel[0], heel[2], toe[0], toe[2]], ground, near, strength, colour };
+    return { limb, line: [heel[0], heel[2], toe[0], toe[2]], ground, near, strength, colour };
   });
 }
 

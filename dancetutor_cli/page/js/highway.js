@@ -177,15 +177,16 @@ export class Highway {
     const x = this.laneX(column, m, scene.mirror);
     const top = y(head);
     c.globalAlpha = verdict === "hit" ? 0.35 : 1;
+    const whose = style.players[chart.player[n] - 1]; // of a chart for two
     if (held) {
       const roll = kind === KIND.ROLL;
-      drawBody(c, { x, top, bottom: y(chart.end[n]), width: 0.56 * m.size }, roll ? style.roll : style.hold, roll, m.ratio);
+      drawBody(c, { x, top, bottom: y(chart.end[n]), width: 0.56 * m.size }, whose ?? (roll ? style.roll : style.hold), roll, m.ratio);
     }
     if (kind === KIND.MINE) {
       drawMine(c, style.mine, x, top, m.size);
     } else {
       const fake = kind === KIND.FAKE || !chart.judged[n];
-      const colour = fake ? style.fake : style.quantisation[chart.quant[n]];
+      const colour = fake ? style.fake : whose ?? style.quantisation[chart.quant[n]];
       notePath(c, this.way(column, scene.mirror), x, top, m.size);
       c.fillStyle = kind === KIND.LIFT ? INK : colour;
       c.fill();

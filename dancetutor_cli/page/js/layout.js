@@ -57,7 +57,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
   const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes), tabs.side);
   root.replaceChildren(
-    el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · "))),
+    el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · ")), app.doc.pair ? players(style) : null),
     el("div", { class: "status" }, said, pick),
     main, el("footer", {}, strip, makeBar(app, ui)));
   if (open) tabs.choose(open);
@@ -72,6 +72,15 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     for (const caption of captions) caption.hidden = !app.both;
     main.classList.toggle("along", app.practice.along);
   });
+}
+
+/** Which colour is whose, in a chart for two. @param {any} style */
+function players(style) {
+  return el("p", { class: "players" }, ...style.players.map((/** @type {string} */ colour, /** @type {number} */ k) => {
+    const one = el("span", {}, `● P${k + 1} `);
+    one.style.color = colour;
+    return one;
+  }));
 }
 
 /** @param {import("./app.js").App} app @param {import("./controls.js").Action[]} actions */
@@ -146,7 +155,7 @@ function cameraButtons(app) {
       app.setCamera(CAMERAS[alone ? (k + 1) % CAMERAS.length : k]);
     },
   }, t(`camera-${name}`)));
-  const both = app.motions.length > 1
+  const both = app.motions.length > 1 && !app.doc.pair
     ? el("button", { type: "button", class: "toggle", title: besideText(app), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
   const row = el("div", { class: "cameras", role: "group", "aria-label": t("camera") }, ...buttons, both);
   const show = () => {

@@ -157,6 +157,7 @@ export class Picture {
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
     lightsAt(this.chart, wanted.second, this.doc.style.panel, this.doc.style.limbs_rgb, this.lights);
+    const pair = this.doc.pair ? this.partner(wanted.second) : null;
     const count = wanted.both ? this.motions.length : 1;
     const views = [];
     for (let k = 0; k < count; ++k) {
@@ -165,18 +166,33 @@ export class Picture {
       motion.forward(pose);
       if (k === 0) this.amend(wanted.second, pose);
       motion.skin(pose, this.skins[k]);
-      const root = pose.at(0);
+      const root = pair ? pair.between(pose.at(0)) : pose.at(0);
+      const marks = marksOf(this.doc, pose);
       const left = Math.round((k * width) / count);
       const wide = Math.round(((k + 1) * width) / count) - left;
       views.push({
         camera: this.camera(wanted.camera, wide, height, root), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
-        skin: this.skins[k], root, marks: marksOf(this.doc, pose), lights: this.lights,
-        ghost: k === 0 ? this.ghost(wanted.next) : null,
+        skin: this.skins[k], root, lights: this.lights, other: pair?.skin ?? null,
+        marks: pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
+        ghost: k === 0 && !pair ? this.ghost(wanted.next) : null,
       });
     }
     if (this.viewer) return this.viewer.draw(views, hurried && this.simple);
     const next = (wanted.next?.steps ?? []).map(({ column, limb }) => ({ column, limb }));
     drawFromAbove(this.canvas, this.doc, { marks: views[0].marks, lights: this.lights, mirror: wanted.camera === "front", next });
+  }
+
+  /** The second of two who dance in one picture. @param {number} second */
+  partner(second) {
+    const [motion, pose] = [this.motions[1], this.poses[1]];
+    motion.sample(second, pose);
+    motion.forward(pose);
+    motion.skin(pose, this.skins[1]);
+    const at = pose.at(0);
+    return {
+      skin: this.skins[1], marks: marksOf(this.doc, pose),
+      between: (/** @type {number[]} */ root) => /** @type {[number, number, number]} */ (root.map((x, k) => (x + at[k]) / 2)),
+    };
   }
 
   /** Where the feet of the next row will be. @param {import("./chart.js").Row | null} next */

@@ -43,8 +43,9 @@ export function drawFromAbove(canvas, doc, shown) {
     c.fill();
     c.restore();
   });
-  shown.marks.forEach((mark, limb) => {
+  shown.marks.forEach((mark) => {
     if (mark.near < 0) return;
+    const { limb } = mark;
     c.lineCap = "round";
     for (const [wide, colour] of /** @type {[number, string][]} */ ([[2.3, "#0a0b14"], [2, doc.style.limbs[limb]]])) {
       c.strokeStyle = colour;

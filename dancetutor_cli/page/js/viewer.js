@@ -17,6 +17,7 @@ const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip"
  * @property {import("./camera.js").Camera} camera
  * @property {[number, number, number, number]} box x, y, width, height in pixels, y from the bottom
  * @property {Float32Array} skin skinning matrices of the dancer
+ * @property {Float32Array | null} other those of the second of two in one picture
  * @property {[number, number, number]} root
  * @property {import("./feet.js").Mark[]} marks four: left foot, right foot, palms
  * @property {Float32Array} lights four numbers a panel
@@ -66,8 +67,8 @@ export class Viewer {
     const gl = this.gl;
     for (const view of views) {
       const cast = this.cast(view);
-      this.setJoints(view.skin);
-      if (!this.simple) this.drawShadow(cast);
+      const bodies = view.other ? [view.skin, view.other] : [view.skin];
+      if (!this.simple) this.drawShadow(cast, bodies);
       const [x, y, width, height] = view.box;
       gl.viewport(x, y, width, height);
       gl.enable(gl.SCISSOR_TEST);
@@ -77,7 +78,10 @@ export class Viewer {
       gl.frontFace(view.camera.mirror ? gl.CW : gl.CCW);
       const world = matrix(view.camera, width, height);
       this.drawStage(view, world, cast);
-      this.drawBody(view, world, cast, null);
+      bodies.forEach((skin, who) => {
+        this.setJoints(skin);
+        this.drawBody(view, world, cast, null, who);
+      });
       if (view.ghost) {
         this.setJoints(view.ghost.skin);
         gl.enable(gl.BLEND);
@@ -126,8 +130,8 @@ export class Viewer {
     return { sun, light };
   }
 
-  /** @param {{sun: number[], light: Float32Array}} cast */
-  drawShadow(cast) {
+  /** @param {{sun: number[], light: Float32Array}} cast @param {Float32Array[]} bodies skinning matrices */
+  drawShadow(cast, bodies) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.map.frame);
     gl.viewport(0, 0, this.texels, this.texels);
@@ -138,7 +142,10 @@ export class Viewer {
     gl.uniformMatrix4fv(at.light, true, cast.light);
     gl.uniform1f(at.to_map, 1);
     gl.bindVertexArray(this.mesh);
-    for (const part of this.doc.body.parts) drawPart(gl, part);
+    for (const skin of bodies) {
+      this.setJoints(skin);
+      for (const part of this.doc.body.parts) drawPart(gl, part);
+    }
     gl.enable(gl.CULL_FACE);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
@@ -178,9 +185,9 @@ export class Viewer {
   /**
    * The dancer and her outline; of a ghost only the feet of the sides that are asked for.
    * @param {Shown} view @param {Float32Array} world @param {{sun: number[], light: Float32Array}} cast
-   * @param {boolean[] | null} ghost
+   * @param {boolean[] | null} ghost @param {number} [who] the first or the second of two
    */
-  drawBody(view, world, cast, ghost) {
+  drawBody(view, world, cast, ghost, who = 0) {
     const gl = this.gl;
     const { camera } = view;
     const toon = this.doc.look.toon;
@@ -211,8 +218,8 @@ export class Viewer {
       for (const part of this.doc.body.parts) {
         if ((ghost || camera.feetOnly) && !part.feet) continue;
         if (ghost && !ghost[part.side]) continue;
-        bind(gl, 3, this.skins[part.skin], at.skin);
-        gl.uniform3fv(at.tint, part.tint);
+        bind(gl, 3, this.skins[part.skin[who]], at.skin);
+        gl.uniform3fv(at.tint, part.tint[who]);
         drawPart(gl, part);
       }
     }
