@@ -33,6 +33,8 @@ class StepSettings:
     let_go: float
     ankle_limit: float
     crossover_turn: float
+    crossing: float
+    crossing_from: float
     turn_rate: float
     turn_crossed: float
     apart: float

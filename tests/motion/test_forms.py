@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.motion.footwork.turning import passing
 from dancetutor_cli.motion.forms import USUAL, form_names
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import default_settings, load_settings
@@ -109,3 +111,72 @@ def test_a_form_of_ones_own_and_motion_on_top(tmp_path: Path) -> None:
     mine.write_text("step: {toes: 15}\n")
     with pytest.raises(FileError, match=":1: unknown key 'toes' in 'step'"):
         load_settings(None, str(mine))
+
+
+# In doubles a foot steps in line over the other one, to the right and to the left: either way is as far.
+CROSSWISE = """#TITLE:Crosswise;
+#OFFSET:0;
+#BPMS:0=140;
+#NOTES:dance-double::Hard:5::
+10000000\n00010000\n00001000\n00000001\n,
+00001000\n00010000\n10000000\n00010000\n,
+00001000\n00000001\n00001000\n00010000
+;
+"""
+
+
+def passings(motion: Motion) -> list[str]:
+    """On which side of the standing foot, as the screen has it, each foot passes it that comes down beyond it."""
+    out = []
+    for k, press in enumerate(motion.contacts):
+        own = [one for one in motion.contacts[:k] if one.limb == press.limb]
+        other = [one for one in motion.contacts[:k] if one.limb != press.limb]
+        if not own or not other:
+            continue
+        stands = other[-1].panel[0]
+        if (own[-1].panel[0] - stands) * (press.panel[0] - stands) >= 0:
+            continue
+        rotations, root = sample(motion, np.linspace(own[-1].start, press.start, 80))
+        places, _ = world_transforms(motion.skeleton, rotations, root)
+        balls = [places[:, motion.skeleton.index(f"{'lr'[side]}_metatarsal")] for side in (press.limb, 1 - press.limb)]
+        beside = int(np.argmin(np.abs(balls[0][:, 0] - balls[1][:, 0])))
+        out.append("in front" if balls[0][beside, 2] > balls[1][beside, 2] else "behind")
+    return out
+
+
+def test_a_form_chooses_the_side_on_which_a_foot_passes_the_other(tmp_path: Path) -> None:
+    """And no foot changes: every note is met by the foot that has it anyway, where the goals of motion are met, too."""
+    path = tmp_path / "crosswise.sm"
+    path.write_text(CROSSWISE)
+    motions = {}
+    for form in ("usual", "screen", "turning"):
+        task = BakeTask(path, Selection(), form=form)
+        motions[form] = bake_asked(ask(task), task)
+    assert passings(motions["screen"]) == ["in front"] * 7
+    assert passings(motions["turning"]) == ["behind"] * 7
+    assert set(passings(motions["usual"])) == {"in front", "behind"}
+    steps = [[(c.start, c.limb, c.column) for c in motion.contacts] for motion in motions.values()]
+    assert steps[0] == steps[1] == steps[2]
+    for motion in motions.values():
+        figures = {one.name: one.value for one in report(motion).figures}
+        assert figures["contact error"] < 1.0 and figures["foot in foot"] == 0.0 and figures["limb in torso"] < 0.1
+
+
+@pytest.mark.parametrize(
+    ("turn", "normal", "foot", "seconds", "front", "behind"),
+    [
+        (-180.0, 0.0, 0, 0.3, -180.0, 180.0),  # a left foot in front turns her to the right
+        (180.0, 0.0, 1, 0.3, 180.0, -180.0),  # and a right one to the left: as in a mirror
+        (180.0, -180.0, 0, 0.3, 180.0, -180.0),  # back the way it came
+        (-135.0, 0.0, 0, 0.9, -135.0, 225.0),  # the longer way round takes its time
+        (-135.0, 0.0, 0, 0.5, -135.0, -135.0),
+        (-90.0, 0.0, 0, 5.0, -90.0, -90.0),  # panels decide: one foot stands in front of the other
+    ],
+)
+def test_where_a_foot_can_pass_either_way(
+    turn: float, normal: float, foot: int, seconds: float, front: float, behind: float
+) -> None:
+    step = default_settings().step
+    assert passing(turn, normal, foot, seconds, step) == turn
+    assert passing(turn, normal, foot, seconds, replace(step, crossing=1.0)) == front
+    assert passing(turn, normal, foot, seconds, replace(step, crossing=2.0)) == behind

@@ -30,6 +30,20 @@ def turn_of(row: Row, footing: Footing) -> float:
     return turn
 
 
+def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
+    """The way round, degrees, on which one foot passes the other one on the side that the form likes, if it can.
+
+    turn : the way it goes without a form; normal : of the feet before; foot : that steps, 0 left; seconds : it has
+    """
+    other = turn - float(np.copysign(360.0, turn))
+    enough = max(180.0 + HALF_TURN, step.turn_rate * seconds)
+    if step.crossing == 0.0 or abs(turn) < step.crossing_from or abs(other) > enough:
+        return turn
+    # Half-way the line from the standing foot to this one points to the screen, or away from it.
+    ahead = float(np.sin(np.radians(normal + turn / 2))) * (2 * foot - 1)
+    return turn if ahead * (1.5 - step.crossing) >= -NO_WAY else other
+
+
 def body_yaw(normal: float, settings: MotionSettings) -> float:
     """Which way the body faces for a feet normal, degrees both: crossed feet turn it less."""
     whole = 360.0 * round(normal / 360.0)
@@ -56,9 +70,8 @@ class Facing:
         self.play, self.settings = play, settings
         steps = ((play.limb == Limb.LEFT_FOOT) | (play.limb == Limb.RIGHT_FOOT)).any(axis=1)
         self.rows = np.flatnonzero(steps)
-        self.halves: dict[
-            int, float
-        ] = {}  # which way round she goes at rows that turn half around, as she saw it coming
+        # Which way round she goes at rows that turn half around, as she saw it coming.
+        self.halves: dict[int, float] = {}
         self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
 
     def aim(self, row: Row, normal: float, lead: int) -> float:
@@ -74,8 +87,17 @@ class Facing:
         return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
-        """By how many degrees the feet normal turns at a row, positive left: as seen coming, or the shorter way."""
-        return self.halves.get(row.index, turn_of(row, footing))
+        """By how many degrees the feet normal turns at a row, positive left: seen coming, a form's or the shorter."""
+        return self._as_formed(row.index, self.halves.get(row.index, turn_of(row, footing)), footing.normal)
+
+    def _as_formed(self, j: int, turn: float, normal: float) -> float:
+        """The turn at row `j` of the play as the form has it, where one foot steps."""
+        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
+        k = int(np.searchsorted(self.rows, j))
+        if len(feet) != 1 or k == 0:
+            return turn
+        second = self.play.rows.second
+        return passing(turn, normal, feet[0], float(second[j] - second[self.rows[k - 1]]), self.settings.step)
 
     def _first(self, j: int, lead: int) -> int:
         feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
@@ -95,7 +117,7 @@ class Facing:
             turn = float((facing[j] - normal + 180.0) % 360.0 - 180.0)
             if abs(abs(turn) - 180.0) < HALF_TURN:
                 turn = self.halves.setdefault(int(j), 180.0 * (2 * self._first(int(j), lead) - 1))
-            normal += turn
+            normal += self._as_formed(int(j), turn, normal)
             yield float(second[j]), body_yaw(normal, self.settings)
 
 
