@@ -20,6 +20,9 @@ from dancetutor_cli.markers.splice import Splice
 TAG = "BGCHANGES"
 OURS = ".dancetutor"  # before the suffix of a film that this program has made for a song
 MARK = b"//{dt1 background}"  # before a tag that was not there
+# The games put the song's own picture behind the last note where no entry says otherwise: here the film goes on.
+_NO_PICTURE = b"-nosongbg-"
+_ALONE = b",99999=%b=1.000=0=0=0" % _NO_PICTURE
 _NAME = re.compile(rf"[^,;:=#\\/\r\n\x00-\x1f]+{re.escape(OURS)}\.\w+")
 _ENTRY = re.compile(rf"[^,;=]*=\s*[^,;=]*{re.escape(OURS)}\.\w+\s*(?:=[^,;]*)?".encode())
 _SONG_ENDS = ("NOTES", "NOTES2", "NOTEDATA")
@@ -52,11 +55,11 @@ def add(song: Song, name: str) -> Added:
     """Put the entry of a film into a chart file that has none of ours. FileError where there is no place for it."""
     text, tag = entry(song, name), _tag(song.data)
     if tag is None:
-        return Added((_new_tag(song, text),), ())
+        return Added((_new_tag(song, text + _ALONE),), ())
     start, end = tag.spans[0]
     value, _ = blanked(song.data[start:end])
     at = start + len(value.rstrip())
-    text = b"," + text if value.strip() else text
+    text = b"," + text if value.strip() else text + _ALONE
     later = tuple(beat for beat in _beats(value) if beat > float(song.timing.beats(np.array([0.0]))[0]))
     return Added((Splice(at, at, text),), later)
 
@@ -69,7 +72,7 @@ def remove(song: Song) -> list[Splice]:
     start, end = tag.spans[0]
     value, _ = blanked(song.data[start:end])
     found = [match.span() for match in _ENTRY.finditer(value)]
-    spans = [_with_comma(value, *span) for span in found]
+    spans = [_with_comma(value, start, end + len(_ALONE) * value.startswith(_ALONE, end)) for start, end in found]
     if not spans:
         return []
     rest = b"".join(value[a:b] for a, b in _between(spans, len(value)))
@@ -126,6 +129,8 @@ def _new_tag(song: Song, text: bytes) -> Splice:
 
 def _beats(value: bytes) -> Iterator[float]:
     for part in value.split(b","):
+        if _NO_PICTURE in part:
+            continue
         try:
             yield float(part.split(b"=")[0])
         except ValueError:

@@ -59,7 +59,8 @@ def test_the_film_is_made_entered_and_taken_out_again(song: Path, capsys: pytest
     film = song / "s.dancetutor.mp4"
     assert f"plays {film.name} behind the notes" in capsys.readouterr().out
     tags = load(song / "s.sm").tags
-    assert tags["BGCHANGES"] == "-1.000=s.dancetutor.mp4=1.000=0=0=0=StretchNoLoop===="
+    ours = "-1.000=s.dancetutor.mp4=1.000=0=0=0=StretchNoLoop===="
+    assert tags["BGCHANGES"] == f"{ours},99999=-nosongbg-=1.000=0=0=0"
     told = subprocess.run([ffmpeg.executable(), "-i", film], capture_output=True, text=True, check=False).stderr
     assert "Duration: 00:00:07.50" in told and "Video: h264" in told and "yuv420p" in told and "Audio" not in told
     changed = (song / "s.sm").read_bytes()

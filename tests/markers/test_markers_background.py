@@ -15,6 +15,7 @@ from dancetutor_cli.markers.background import add, check_name, entry, remove
 from dancetutor_cli.markers.splice import apply
 
 FILM = "song-hard.dancetutor.mp4"
+ALONE = ",99999=-nosongbg-=1.000=0=0=0"
 NOTES = SM_CHART + b"\n0000\n1000\n0100\n0010\n;\n"
 VALUES = [
     None, b"", b" ", b"\n", b"0.000=a.avi=1.000=1=1=0", b"0.000=a.avi=1.000=1=1=0,", b"0=a.avi,\n4=b.png=1=0=0=1,\n",
@@ -36,7 +37,8 @@ def test_it_stands_beside_what_is_there_and_comes_out_byte_for_byte(
     song = sm(value, eol, end)
     new = parse(apply(song.data, add(song, FILM).splices), song.path)
     old_value, new_value = song.tags.get("BGCHANGES", ""), new.tags["BGCHANGES"]
-    assert new_value.startswith(old_value.strip()) and new_value.endswith(entry(song, FILM).decode())
+    alone = "" if old_value.strip() else ALONE  # others' entries say themselves what comes after the last note
+    assert new_value.startswith(old_value.strip()) and new_value.endswith(entry(song, FILM).decode() + alone)
     assert {**new.tags, "BGCHANGES": ""} == {**song.tags, "BGCHANGES": ""}
     assert len(new.charts) == 1 and len(new.charts[0].notes) == 3
     assert apply(new.data, remove(new)) == song.data
@@ -48,7 +50,7 @@ def test_it_comes_out_too_after_an_editor_has_put_more_behind_it() -> None:
     data = apply(song.data, add(song, FILM).splices).replace(b"NoLoop====", b"NoLoop====,8=b.avi=1")
     assert apply(data, remove(song_of(data))) == sm(b"0=a.avi=1,8=b.avi=1").data
     song = sm(b"")
-    data = apply(song.data, add(song, FILM).splices).replace(b"NoLoop====", b"NoLoop====,8=b.avi=1")
+    data = apply(song.data, add(song, FILM).splices).replace(ALONE.encode(), ALONE.encode() + b",8=b.avi=1")
     assert apply(data, remove(song_of(data))) == sm(b"8=b.avi=1").data
 
 
@@ -60,6 +62,7 @@ def test_the_film_begins_with_the_music(offset: str, beat: str) -> None:
 
 def test_entries_after_it_are_told() -> None:
     assert add(sm(b"-5=a.avi=1,12.5=b.avi=1,7=c.avi=1"), FILM).later == (12.5, 7.0)
+    assert add(sm(b"-5=a.avi=1,\n99999=-nosongbg-=1.000=0=0=0"), FILM).later == ()
 
 
 def test_of_several_tags_the_last_counts_and_charts_are_left_alone() -> None:

@@ -78,50 +78,80 @@ def said(path: Path) -> dict[str, Any]:
     return theme.write(path, None, song, feet)
 
 
-def lua_value(text: str) -> Any:
-    """What a Lua table of this style means: its signs are near enough to JSON's."""
-    assert text.startswith("-- dancetutor cues")
-    body = re.sub(r"\\(\d{3})", lambda match: f"\\u{int(match[1]):04x}", text.split("\nreturn ", 1)[1])
-    strings: list[str] = []
-
-    def keep(match: re.Match[str]) -> str:
-        strings.append(match[0])
-        return f"@{len(strings) - 1}@"
-
-    body = re.sub(r'"(?:\\.|[^"\\])*"', keep, body)
-    body = re.sub(r",(\s*})", r"\1", re.sub(r"(\w+) = ", r'"\1": ', body))
-    return _filled(json.loads(_lists(body)), strings)
+def lua_value(value: Any) -> Any:
+    """A Lua table as plain data: with keys from 1 on it is a list; an empty one is a list, too."""
+    if not hasattr(value, "items"):
+        return value
+    items = dict(value.items())
+    if all(isinstance(key, int) for key in items):
+        return [lua_value(items[key]) for key in range(1, len(items) + 1)]
+    return {key: lua_value(one) for key, one in items.items()}
 
 
-def _lists(body: str) -> str:
-    """Braces that hold no key at once become brackets."""
-    out, stack = [], []
-    for at, letter in enumerate(body):
-        if letter == "{":
-            is_list = not body[at + 1 :].lstrip().startswith('"')
-            stack.append(is_list)
-            out.append("[" if is_list else "{")
-        elif letter == "}":
-            out.append("]" if stack.pop() else "}")
-        else:
-            out.append(letter)
-    return re.sub(r"@(\d+)@", r'"@\1@"', "".join(out))
+def lua_of(version: str) -> Any:
+    """A real Lua, from the package lupa of the development tools."""
+    return pytest.importorskip(f"lupa.{version}", reason="no lupa here: pip install -e '.[dev]'").LuaRuntime()
 
 
-def _filled(value: Any, strings: list[str]) -> Any:
-    if isinstance(value, dict):
-        return {key: _filled(one, strings) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_filled(one, strings) for one in value]
-    if isinstance(value, str):
-        return json.loads(strings[int(value.strip("@"))])
-    return value
+@pytest.mark.parametrize("version", ["lua51", "lua52", "lua53", "lua54", "luajit21"])
+def test_every_lua_reads_the_table(version: str) -> None:
+    table = said(Path("x.sm"))
+    lua = lua_of(version)
+    assert lua_value(lua.execute(theme.as_lua(table).decode())) == table
 
 
-def test_json_and_lua_say_the_same() -> None:
+ANY_TEXT = 'a"\\\n\r\t\0\x1b]]--é日\u2028'
+
+
+def test_any_text_comes_back_from_lua() -> None:
+    table = {**said(Path("x.sm")), "title": ANY_TEXT}
+    read = lua_of("lua51").execute(theme.as_lua(table).decode())
+    assert read["title"] == ANY_TEXT
+
+
+GAME = """
+shown, update, listing = {}, nil, ...
+PLAYER_1, SCREEN_CENTER_X = "PlayerNumber_P1", 427
+beat = 0
+local steps = {GetStepsType = function() return "StepsType_Dance_Single" end,
+  GetDifficulty = function() return "Difficulty_Hard" end}
+GAMESTATE = {GetCurrentSong = function() return {GetSongDir = function() return "/Songs/P/x/" end} end,
+  GetCurrentSteps = function() return steps end,
+  GetSongPosition = function() return {GetSongBeat = function() return beat end} end}
+FILEMAN = {GetDirListing = function(_, pattern, only_dirs, with_path)
+  assert(pattern == "/Songs/P/x/*.cues.lua" and only_dirs == false and with_path == true)
+  return {"/Songs/P/x/x.cues.lua"} end}
+function loadfile(name) assert(name == "/Songs/P/x/x.cues.lua") return loadstring(listing) end
+Def = {ActorFrame = function(t) return t end, BitmapText = function(t) return t end}
+"""
+PLAY = """
+local actor = example()
+local word = {settext = function(_, text) shown[#shown + 1] = text end}
+local frame = {GetChild = function(_, name) assert(name == "Word") return word end}
+actor.InitCommand({SetUpdateFunction = function(_, f) update = f end})
+for _, at in ipairs({...}) do beat = at update(frame) end
+return shown
+"""
+
+
+def test_the_example_of_the_docs_runs_in_the_games_lua() -> None:
+    """Lua 5.1 with as much of the game as it asks for: two beats ahead a cue is told, and gone when it is over."""
+    text = (Path(__file__).parents[2] / "docs" / "theme.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```lua\n(.*?)```", text, re.DOTALL)
+    table = said(Path("x.sm"))
+    (chart,) = table["charts"]
+    first = chart["cues"][0]
+    lua = lua_of("lua51")
+    lua.execute("example, game, play = ...", lua.compile(example), lua.compile(GAME), lua.compile(PLAY))
+    lua.globals().game(theme.as_lua(table).decode())
+    beats = [first["beat"] - 2.5, first["beat"] - 1.5, chart["cues"][-1]["beat"] + 60]
+    shown = list(lua.globals().play(*beats).values())
+    assert shown == ["", f"{first['kind']} {first['foot']}", ""]
+
+
+def test_json_says_the_table() -> None:
     table = said(Path("x.sm"))
     assert json.loads(theme.as_json(table)) == table
-    assert lua_value(theme.as_lua(table).decode()) == table
     assert table["title"] == 'A "quoted" title'
 
 
