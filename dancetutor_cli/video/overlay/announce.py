@@ -13,7 +13,7 @@ from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of, pill, plate
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
-from dancetutor_cli.video.overlay.text import Typeface, fitted
+from dancetutor_cli.video.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.video.picture import Frame
 
 CALL_STAYS = 0.2  # seconds that a call stays after its note
@@ -75,12 +75,12 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 
 
 def _phrases(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """Words of a call in one line, else a line for each of two moves, else wrapped; nothing is cut off."""
-    lines, fits = fitted(text, size, width, face, most=1)
+    """Words of a call in one line, or broken where there is a comma, or anywhere; nothing is cut off."""
     parts = text.replace(", ", ",\n").split("\n")
-    if fits < size and len(parts) == 2 and all(face.width(part, size) <= width for part in parts):
-        return parts, size
-    return (lines, fits) if fits == size else fitted(text, size, width, face, most=2)
+    lines = wrapped(parts, size, width, face)
+    if len(lines) <= 3 and max(face.width(line, size) for line in lines) <= width:
+        return lines, size
+    return fitted(text, size, width, face, most=2)
 
 
 class Calls:

@@ -190,7 +190,9 @@ class Highway:
 
     def _draw_number(self, measure: int) -> Sprite:
         size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
-        return self.face.sprite(str(measure), size, (190, 196, 220))
+        room = self.geometry.left - 0.2 * self.geometry.lane - self.geometry.box[0] - 4
+        (text,), size = fitted(str(measure), size, room, self.face, most=1)
+        return self.face.sprite(text, size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
         """Words beside the rows they are about, on the right of the lanes."""

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.video.scene.camera import WHOLE, Camera, Region, preset, with_pan_range
 from dancetutor_cli.video.scene.scene import Scene
 from dancetutor_cli.video.scene.stage import PANEL
@@ -52,7 +53,8 @@ class Follow:
             camera, pans = _along(scene, _nearer(scene, name, size, region), size, across)
         else:
             camera, pans = scene.camera(name, size, region), np.zeros(count)
-        pans = pans + _into_the_picture(_seen_at(scene, camera, size, across) + pans, camera, size)
+        aside = max(_ASIDE, 1.1 * float(np.abs(rest_vertices(scene.character)[:, 2]).max()))  # seen from her side
+        pans = pans + _into_the_picture(_seen_at(scene, camera, size, across) + pans, camera, size, aside)
         self._pans = pans
         self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
 
@@ -93,11 +95,14 @@ def _seen_at(scene: Scene, camera: Camera, size: tuple[int, int], across: Array)
     return np.asarray(camera.project(points, size)[:, 0] / size[0])
 
 
-def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int]) -> Array:
-    """Pans (n,) that bring her into the picture where she is at its edge. seen : her middle, (n,), picture widths"""
+def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside: float) -> Array:
+    """Pans (n,) that bring her into the picture where she is at its edge.
+
+    seen : her middle, (n,), picture widths; aside : how far she reaches from it, metres
+    """
     depth = float(np.linalg.norm(np.subtract(camera.target, camera.position)))
-    aside = min(0.5, _ASIDE * camera.focal * size[1] / size[0] / depth)
-    from_left, from_right = np.maximum(aside - seen, 0.0), np.maximum(seen - (1.0 - aside), 0.0)
+    half = min(0.5, aside * camera.focal * size[1] / size[0] / depth)
+    from_left, from_right = np.maximum(half - seen, 0.0), np.maximum(seen - (1.0 - half), 0.0)
     return _early(from_left) - _early(from_right)
 
 
