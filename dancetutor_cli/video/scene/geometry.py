@@ -13,6 +13,10 @@ from dancetutor_cli.video.scene.textures import Skins, density, skins_of
 
 F32 = NDArray[np.float32]
 FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
+OWN, SHARED = (
+    0.5,
+    0.2,
+)  # how much of a vertex, or of a whole closed piece as a shoe's collar, those move: then it is a foot's
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,8 @@ def pack(character: Character) -> Packed:
     triangles = np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32)
     joints = np.concatenate([m.joints for m in meshes]).astype(np.int32)
     weights = np.concatenate([m.weights for m in meshes]).astype(np.float32)
-    of_feet = _feet(character, joints, weights)[triangles].all(axis=1)
+    place = _places(positions, material)
+    of_feet = _feet(character, joints, weights, place, triangles)[triangles].all(axis=1)
     triangles = np.concatenate([triangles[of_feet], triangles[~of_feet]])
     uv = np.concatenate([m.uv for m in meshes]).astype(np.float32)
     sizes = [skins.pyramids[k][0].shape for k in skins.of_mesh]
@@ -63,7 +68,7 @@ def pack(character: Character) -> Packed:
     return Packed(
         positions=positions,
         normals=normals,
-        hull=_welded(positions, normals, material),
+        hull=_welded(normals, place),
         uv=uv,
         joints=joints,
         weights=weights,
@@ -76,18 +81,33 @@ def pack(character: Character) -> Packed:
     )
 
 
-def _feet(character: Character, joints: NDArray[np.int32], weights: F32) -> NDArray[np.bool_]:
-    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes."""
+def _feet(
+    character: Character,
+    joints: NDArray[np.int32],
+    weights: F32,
+    place: NDArray[np.intp],
+    triangles: NDArray[np.int32],
+) -> NDArray[np.bool_]:
+    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes, and shoes to their upper end.
+
+    What goes with the shin in part, as the rim of a high shoe, would leave a dark hole if it were cut off.
+    """
     names = character.skeleton.names
     ours = [names.index(name) for side in "lr" for part in FOOT if (name := f"{side}_{part}") in names]
-    return np.asarray((weights * np.isin(joints, ours)).sum(axis=1) > 0.5)
+    share = (weights * np.isin(joints, ours)).sum(axis=1)
+    piece = _pieces(place[triangles], int(place.max()) + 1)[place]
+    mean = np.bincount(piece, share) / np.maximum(np.bincount(piece), 1)
+    return np.asarray((share > OWN) | (mean[piece] > SHARED))
 
 
-def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:
-    """Normals averaged over the vertices of a mesh that lie in one place."""
+def _places(positions: F32, material: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Number of the place of each vertex (v,): vertices of one mesh that lie in one place have the same."""
     keys = np.column_stack([np.round(positions * 1e5).astype(np.int64), material])
-    _, place = np.unique(keys, axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    return np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def _welded(normals: F32, place: NDArray[np.intp]) -> F32:
+    """Normals averaged over the vertices that lie in one place."""
     total = np.zeros((int(place.max()) + 1, 3))
     np.add.at(total, place, normals.astype(np.float64))
     out = total[place]
@@ -97,6 +117,11 @@ def _welded(positions: F32, normals: F32, material: NDArray[np.int32]) -> F32:
 
 def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
     """Number of the piece of surface of each triangle: triangles that share vertices are of one piece."""
+    return _pieces(triangles, vertices)[triangles[:, 0]].astype(np.int32)
+
+
+def _pieces(triangles: NDArray[np.integer], vertices: int) -> NDArray[np.intp]:
+    """The lowest vertex of the connected piece that each vertex belongs to, (vertices,)."""
     label = np.arange(vertices)
     while True:
         lowest = label[triangles].min(axis=1)
@@ -105,4 +130,4 @@ def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
             np.minimum.at(label, triangles[:, corner], lowest)
         label = label[label]  # go to the lowest vertex known so far: few rounds even for long pieces
         if (label == before).all():
-            return label[triangles[:, 0]].astype(np.int32)
+            return label

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
+from dancetutor_cli.character import dressed, load_character
 from dancetutor_cli.video.scene.cpu.floor import blur
 from dancetutor_cli.video.scene.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, Bound, clear, fill, skin
 from dancetutor_cli.video.scene.cpu.stage_colours import arrow_distance
@@ -166,3 +167,15 @@ def test_outline_normals_agree_where_vertices_meet():
     for group in np.flatnonzero(np.bincount(place) > 1)[:50]:
         together = packed.hull[place == group]
         assert np.abs(together - together[0]).max() < 1e-6
+
+
+@pytest.mark.parametrize("gait", ["flat", "heels"])
+def test_shoes_belong_to_the_feet_up_to_their_rim(gait):
+    """The rim goes mostly with the shin; from above, where only feet are drawn, a shoe without it is a dark hole."""
+    dancer = load_character(dressed("dancer", gait))
+    packed = pack(dancer)
+    drawn = packed.triangles[: packed.feet]
+    for number, mesh in enumerate(dancer.meshes):
+        if "shoe" in mesh.name:
+            assert (packed.material[drawn[:, 0]] == number).sum() == len(mesh.triangles), mesh.name
+    assert 0.125 < packed.positions[drawn][..., 1].max() < 0.16, "and not the leg above"
