@@ -152,6 +152,7 @@ def bake_plan(plan: Plan, context: Context, fps: float, section: tuple[float, fl
         span = (np.floor(4 * (before - MARGIN)) / 4, last + after)
         pieces.append(Piece(part, context, fps, (before, last), (first if k else -np.inf, last), span))
     done = joined(pieces, each([(bake_piece, piece) for piece in pieces]))
+    add_hair(context.skeleton, *done.keys, context.settings.hair)  # whole: where it hangs depends on where it hung
     contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
     grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
     ground = context.ground if plan.walks else None
@@ -174,7 +175,6 @@ def bake_piece(piece: Piece) -> BakedPiece:
         if len(middles):
             between = (middles, *posed(plan, body, middles, context))
             keys = refined(skeleton, keys, between, plan.grips)
-    add_hair(skeleton, *keys, settings.hair)
     first, last = piece.baked
     notes = tuple(
         f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"

@@ -179,7 +179,11 @@ class HairSettings:
     stiffness: float
     head_radius: float
     back_radius: float
+    upper_arm_radius: float
+    forearm_radius: float
+    rubbing: float
     fastest: float
+    struck: float
     highest: float
 
 

@@ -47,8 +47,8 @@ def test_pieces_join_to_what_is_baked_whole(whole: Motion, short: None) -> None:
     away = np.linalg.norm(places(parts) - places(whole), axis=2)
     braid = np.array([name.startswith("braid") for name in whole.skeleton.names])
     assert away[:, ~braid].max() < 0.0005 and np.median(away) < 1e-5
-    # Where she bends to a panel, a tenth of a millimetre decides to which side of her head the braid falls.
-    assert np.mean(away[:, braid].max(axis=1) < 0.0005) > 0.9
+    assert away[:, braid].max() < 0.010  # what swings freely makes more of a tenth of a millimetre; it was 139 mm
+    assert np.mean(away[:, braid].max(axis=1) < 0.0005) > 0.97
     # no turn jumps to its negative at a seam
     assert (np.sum(parts.rotations[1:] * parts.rotations[:-1], axis=2) > 0).all()
     assert report(parts)["contacts missed"].value == report(whole)["contacts missed"].value

@@ -9,12 +9,10 @@ from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import Body
 from dancetutor_cli.rig.limits import excess
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.torso import arm_in_torso, segments_apart
 
 Array = NDArray[np.float64]
 PAST = 1.0  # degrees past a limit that count
-LIMB_RADIUS, HAND = 0.032, 0.10  # of forearm and hand; length of the hand beyond the wrist, metres
-# the torso as capsules: joint, half width to both sides, radius
-TORSO = (("HumanoidRoot", 0.055, 0.105), ("vt10", 0.030, 0.100), ("vt4", 0.050, 0.100))
 FOOT_RADIUS = 0.038
 HAIR_ALLOWED = 0.010
 BACK_RADIUS = 0.105  # of the dancer's back about her spine
@@ -43,19 +41,7 @@ def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], t
 
 def limb_depth(body: Body, skeleton: Skeleton) -> Array:
     """How deep (f,) a forearm or hand is inside the torso, metres; negative outside."""
-    out = np.full(len(body.times), -np.inf)
-    hips = body.joints[:, skeleton.index("l_hip")] - body.joints[:, skeleton.index("r_hip")]
-    chest = body.joints[:, skeleton.index("l_shoulder")] - body.joints[:, skeleton.index("r_shoulder")]
-    for name, half, radius in TORSO:
-        across = hips if name == "HumanoidRoot" else chest
-        across = across / np.linalg.norm(across, axis=1, keepdims=True)
-        middle = body.joints[:, skeleton.index(name)]
-        for side in "lr":
-            elbow, wrist = (body.joints[:, skeleton.index(f"{side}_{n}")] for n in ("elbow", "radiocarpal"))
-            along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
-            gap = _segments_apart(middle - half * across, middle + half * across, elbow, wrist + HAND * along)
-            out = np.maximum(out, radius + LIMB_RADIUS - gap)
-    return out
+    return np.maximum(*(arm_in_torso(skeleton, body.joints, side) for side in "lr"))
 
 
 def feet_depth(body: Body) -> Array:
@@ -66,7 +52,7 @@ def feet_depth(body: Body) -> Array:
         heel, toe = soles[:, :2].mean(axis=1), soles[:, 4:].mean(axis=1)
         along = (toe - heel) / np.linalg.norm(toe - heel, axis=1, keepdims=True)
         ends.append((heel + FOOT_RADIUS * along, toe - FOOT_RADIUS * along))
-    return np.asarray(2 * FOOT_RADIUS - _segments_apart(*ends[0], *ends[1]))
+    return np.asarray(2 * FOOT_RADIUS - segments_apart(*ends[0], *ends[1]))
 
 
 def hair_depth(body: Body, skeleton: Skeleton) -> Array:
@@ -79,15 +65,3 @@ def hair_depth(body: Body, skeleton: Skeleton) -> Array:
         s = np.clip(np.sum((p - low) * along, axis=1) / np.sum(along * along, axis=1), 0.0, 1.0)
         out = np.maximum(out, BACK_RADIUS - np.linalg.norm(p - low - s[:, None] * along, axis=1))
     return out
-
-
-def _segments_apart(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Least distance (f,) between segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
-    u, v, w = b - a, d - c, a - c
-    uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)
-    uw, vw = np.sum(u * w, axis=1), np.sum(v * w, axis=1)
-    det = uu * vv - uv * uv
-    s = np.clip(np.where(det > 1e-12, (uv * vw - vv * uw) / np.maximum(det, 1e-12), 0.0), 0.0, 1.0)
-    t = np.clip((uv * s + vw) / np.maximum(vv, 1e-12), 0.0, 1.0)
-    s = np.clip((uv * t - uw) / np.maximum(uu, 1e-12), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1))
