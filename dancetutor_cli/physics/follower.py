@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.physics.style import Follower, Style
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
+_TRUNK = ("chest", "head")
 _JOINTS = {
     "chest": ("vl5", "vt10", "vt4"),
     "head": ("vc4", "skullbase"),
@@ -37,15 +39,35 @@ def follow(values: Array, rate: float, follower: Follower) -> Array:
 
 def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) -> tuple[Array, Array]:
     """Targets (f, j, 4), (f, 3) of the ragdoll: the input at the style's update rate behind the style's followers."""
-    rate = style.numbers.update_rate
-    rotations = rotations.copy()
-    for part, joints in _JOINTS.items():
+    rate, given = style.numbers.update_rate, rotations
+    rotations = given.copy()
+    for part in _TRUNK:
         if part in style.follower:
-            for joint in (skeleton.index(name) for name in joints):
-                turns = quat.continuous(rotations[:, joint])
-                rotations[:, joint] = quat.normalize(follow(turns, rate, style.follower[part]))
+            for joint in (skeleton.index(name) for name in _JOINTS[part]):
+                rotations[:, joint] = _followed(given[:, joint], rate, style.follower[part])
     if "pelvis" in style.follower:
         root = follow(root, rate, style.follower["pelvis"])
-        turned = quat.continuous(rotations[:, 0])
-        rotations[:, 0] = quat.normalize(follow(turned, rate, style.follower["pelvis"]))
+        rotations[:, 0] = _followed(given[:, 0], rate, style.follower["pelvis"])
+    if "arms" in style.follower:
+        _arms(skeleton, given, rotations, rate, style.follower["arms"])
     return rotations, root
+
+
+def _arms(skeleton: Skeleton, given: Array, rotations: Array, rate: float, follower: Follower) -> None:
+    """Arms as seen by who turns with her, in place: they make up for what the trunk does in the same moment.
+
+    Shoulders that did so some frames later or earlier would throw the hands about.
+    """
+    nowhere = np.zeros((len(given), 3))
+    turned, world = (world_transforms(skeleton, turns, nowhere)[1] for turns in (given, rotations))
+    heading = quat.continuous(quat.swing_twist(given[:, 0], quat.UP)[1])
+    for joint in (skeleton.index(name) for name in _JOINTS["arms"]):
+        seen = quat.multiply(quat.conjugate(heading), turned[:, joint])
+        world[:, joint] = quat.multiply(heading, _followed(seen, rate, follower))
+        parent = world[:, skeleton.parents[joint]]
+        rotations[:, joint] = quat.multiply(quat.conjugate(parent), world[:, joint])
+
+
+def _followed(turns: Array, rate: float, follower: Follower) -> Array:
+    """Turns (f, 4) behind a follower."""
+    return quat.normalize(follow(quat.continuous(turns), rate, follower))

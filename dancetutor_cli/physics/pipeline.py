@@ -12,6 +12,7 @@ from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, upper_envelope
 from dancetutor_cli.physics.actors import Actor, BreakableSoles, StiffKnees
+from dancetutor_cli.physics.apart import arms_apart
 from dancetutor_cli.physics.distances import Distances
 from dancetutor_cli.physics.follower import follow_all
 from dancetutor_cli.physics.legs import soft_legs
@@ -80,7 +81,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)
     if style.limits:
-        rotations = restrained(skeleton, rotations)
+        rotations = restrained(skeleton, rotations, motion.times, share * _undisturbed(motion, wishes))
     feet, held, plants = feet_of(skeleton, motion.rotations, motion.root), np.ones((len(root), 2)), None
     motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
     if held_at.soles is not None:
@@ -92,6 +93,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     if wishes.corrections:
         poses = repinned(skeleton, (rotations, root), feet)
     else:
+        rotations = arms_apart(skeleton, motion.rotations, (rotations, root), feet, motion.times)
         path = (motion.times, mass_of(skeleton, (motion.rotations, motion.root)))
         poses = kept_mass(skeleton, (rotations, root), feet, path, _undisturbed(motion, wishes), share)
     for _ in range(EASINGS if plants is not None else 0):
@@ -106,7 +108,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
         if style.limits:
-            rotations = restrained(skeleton, rotations)
+            rotations = restrained(skeleton, rotations, motion.times)
     done = replace(motion, rotations=quat.continuous(rotations), root=root)
     return Passed(told(done, motion.root, wishes.pushes, missed), distances, plants)
 
