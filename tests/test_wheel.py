@@ -24,7 +24,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     The dependencies come from the environment of the tests through a path file; packages found that way do not bring
     their own path files, so the editable install of the checkout stays out.
     """
-    folder = tmp_path_factory.mktemp("wheel")
+    folder = tmp_path_factory.mktemp("wheel") / "Jürgen Müller's Töne"  # as homes are called
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder / "dist")]
     subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
     environment = folder / "env"

@@ -81,7 +81,10 @@ def _ffmpeg() -> Check:
     from dancetutor_cli.video.media.ffmpeg import executable
 
     path = executable()
-    said = subprocess.run([path, "-version"], capture_output=True, text=True, check=True, timeout=20).stdout
+    command = [path, "-version"]
+    said = subprocess.run(
+        command, capture_output=True, check=True, timeout=20, encoding="utf-8", errors="replace"
+    ).stdout
     version = said.splitlines()[0].removeprefix("ffmpeg version ").split()[0]
     return Check("ffmpeg", "ok", f"{version}, {'of imageio-ffmpeg' if 'imageio_ffmpeg' in str(path) else path}")
 
