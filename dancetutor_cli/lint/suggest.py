@@ -25,6 +25,7 @@ from dancetutor_cli.play.vocabulary import EVENTS
 MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
 _AROUND = (0, -1, 1)  # rows in which a note may be moved, nearest first
+_FARTHER = (-2, 2, -3, 3, -4, 4)  # and where none of these does, if a fix is asked for
 # What must not happen any more in the row of a finding: that is seen before the rules are asked.
 _MOVES = {"DT201": "doublestep", "DT202": "spin", "DT203": "spin", "DT209": "doublestep"}
 _RANKED = frozenset({"DT213"})  # findings that take the place of others are not new
@@ -67,13 +68,18 @@ def with_suggestions(
 def mending_moves(
     finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> Iterator[MovedNote]:
-    """The edits that would remove one finding, the suggested one first. findings : all of the chart"""
+    """The edits that would remove one finding, the suggested one first, then those in rows farther away.
+
+    findings : all of the chart
+    """
     if subject.play is None or subject.pad is None or finding.rule not in MENDABLE:
         return
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
-    for edit in trial.good(_edits(finding, subject.play, subject.chart), (finding.rule, finding.beat)):
-        tick = int(subject.play.rows.tick[edit.row])
-        yield MovedNote(tick, edit.column, edit.to, _in_words(edit, subject))
+    for rows in (_AROUND, _FARTHER):
+        edits = _edits(finding, subject.play, subject.chart, rows)
+        for edit in trial.good(edits, (finding.rule, finding.beat)):
+            tick = int(subject.play.rows.tick[edit.row])
+            yield MovedNote(tick, edit.column, edit.to, _in_words(edit, subject))
 
 
 def _of_families(settings: Settings) -> Settings:
@@ -162,13 +168,13 @@ def _places(findings: Sequence[Finding]) -> set[_Place]:
     return {(one.rule, one.beat) for one in ours}
 
 
-def _edits(finding: Finding, play: Play, chart: Chart) -> Iterator[_Edit]:
-    """Every tap in and around the finding's row, to every panel that is free there."""
+def _edits(finding: Finding, play: Play, chart: Chart, around: tuple[int, ...] = _AROUND) -> Iterator[_Edit]:
+    """Every tap in rows around the finding's, to every panel that is free there. around : how far they are from it"""
     if finding.beat is None:
         return
     rows = play.rows
     at = int(np.searchsorted(rows.tick, round(finding.beat * TICKS_PER_BEAT)))
-    for row in (at + offset for offset in _AROUND):
+    for row in (at + offset for offset in around):
         if not 0 <= row < len(rows):
             continue
         free = (rows.steps[row] == StepKind.NONE) & ~rows.mines[row]

@@ -16,7 +16,8 @@ from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.lint.solved import solved_chart
-from dancetutor_cli.lint.suggest import _Edited, _edits
+from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.suggest import _Edited, _edits, mending_moves
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.play.engine import engine_for
@@ -24,6 +25,7 @@ from dancetutor_cli.play.store import BASE
 from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import charts_path
 
+SETTINGS = load_configuration(None).settings
 PANELS = ("left", "down", "up", "right")
 # Left, down, right crossed, and on round to up: a spin.
 SPIN = ["1000", "0100", "0001", "0010", "1000", "0100", "0010", "0001"]
@@ -126,3 +128,33 @@ def test_the_outline_of_a_way_is_that_of_the_whole_solve(preset: str) -> None:
         for name in ("doublestep", "spin"):
             bit = EVENTS.index(name)
             assert (events >> bit & 1).tolist() == [name in moves for moves in play.moves]
+
+
+def test_a_fix_may_move_a_note_farther_away_where_none_near_does() -> None:
+    """After the edits in the rows beside the finding's come those up to four rows away; each is proved as they are."""
+    letters = {"L": "1000", "D": "0100", "U": "0010", "R": "0001", ".": "0000"}
+    rows = [letters[one] for one in "LRLRDUDUDUDUDLRD.UDLUDLU"]
+    head = "#TITLE:T;#BPMS:0=140;#NOTES:dance-single::Hard:9::\n"
+
+    def checked(rows: list[str]) -> tuple[ChartSubject, tuple[Finding, ...]]:
+        measures = ["\n".join(rows[at : at + 8]) for at in range(0, len(rows), 8)]
+        song = parse(
+            f"{head}{chr(10).join(measures[:1])}\n,\n{measures[1]}\n,\n{measures[2]}\n;".encode(), Path("x.sm")
+        )
+        subject = solved_chart(song, song.charts[0], load_preset("itg"))
+        return subject, check_chart(subject, SETTINGS)
+
+    subject, findings = checked(rows)
+    (spin,) = [one for one in findings if one.rule == "DT202"]
+    assert subject.play is not None and spin.beat is not None
+    at = subject.play.rows.tick.tolist().index(round(spin.beat * 48))
+    moves = list(mending_moves(spin, findings, subject, SETTINGS, load_preset("itg")))
+    away = [abs(subject.play.rows.tick.tolist().index(move.tick) - at) for move in moves]
+    near = [far for far in away if far <= 1]
+    assert near and away[: len(near)] == near and set(away[len(near) :]) and max(away) <= 4
+    move = moves[len(near)]
+    row = move.tick // 24
+    cells = list(rows[row])
+    cells[move.column], cells[move.to] = "0", "1"
+    _, after = checked([*rows[:row], "".join(cells), *rows[row + 1 :]])
+    assert (spin.rule, spin.beat) not in {(one.rule, one.beat) for one in after}
