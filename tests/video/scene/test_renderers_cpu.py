@@ -300,3 +300,26 @@ def test_a_palm_on_the_pad_leaves_its_mark_and_a_raised_hand_none(scene):
         cyan = np.abs(changed + empty[around] - np.array(scene.colours.right_hand)).sum(2) < 60
         assert cyan.any() == seen
         assert (changed != 0).any() == seen
+
+
+def test_what_is_drawn_of_her_is_forgotten_with_the_frame(scene):
+    one = renderer.create(scene, SIZE, "good", "cpu")
+    one.frame(rs.state(scene, "step", "back", SIZE))
+    canvas = one._canvas
+    assert not canvas.nearest.any() and (canvas.spans == [canvas.nearest.shape[1], 0]).all()
+
+
+@pytest.mark.parametrize("camera", ["back", "top"])
+def test_tiles_that_are_left_out_would_not_have_changed(scene, camera):
+    """The ground with only the tiles that something falls on, and with all of them."""
+    state = rs.state(scene, "step", camera, SIZE, [(0, 0.6)])
+    one = renderer.create(scene, SIZE, "good", "cpu")
+    expected = one.frame(state).copy()
+    kept, background = one._background
+    tiles = background.tiles
+    everywhere = tiles._replace(low=np.full_like(tiles.low, -1e6), high=np.full_like(tiles.high, 1e6))
+    one._background = kept, background._replace(tiles=everywhere)
+    np.testing.assert_array_equal(one.frame(state), expected)
+    nothing = tiles._replace(low=np.full_like(tiles.low, np.inf))
+    one._background = kept, background._replace(tiles=nothing)
+    assert (one.frame(state) != expected).any()

@@ -8,7 +8,18 @@ import renderers_scene as rs
 
 from dancetutor_cli.character import dressed, load_character
 from dancetutor_cli.video.scene.cpu.floor import blur
-from dancetutor_cli.video.scene.cpu.raster import BACK, DEPTH_UNIT, FRONT, SNAP, Bound, clear, fill, skin
+from dancetutor_cli.video.scene.cpu.raster import (
+    BACK,
+    BAND,
+    DEPTH_UNIT,
+    FRONT,
+    SNAP,
+    Bound,
+    empty_canvas,
+    fill,
+    note_least,
+    skin,
+)
 from dancetutor_cli.video.scene.cpu.stage_colours import arrow_distance
 from dancetutor_cli.video.scene.cpu.standing import quantise
 from dancetutor_cli.video.scene.geometry import pack
@@ -26,9 +37,9 @@ def _random_triangles(seed, count, spread):
 
 
 def _drawn(points, triangles, keep):
-    nearest, spans = np.zeros((HEIGHT, WIDTH), np.int64), np.tile(np.array([WIDTH, 0]), (HEIGHT, 1))
-    fill(points, triangles, keep, 0, nearest, spans)
-    return (nearest >> 32) / DEPTH_UNIT, (nearest & 0xFFFFFFFF) - 1, nearest, spans
+    canvas = empty_canvas(HEIGHT, WIDTH)
+    fill(points, triangles, keep, 0, canvas)
+    return (canvas.nearest >> 32) / DEPTH_UNIT, (canvas.nearest & 0xFFFFFFFF) - 1, canvas
 
 
 def _reference(points, triangles, keep):
@@ -54,7 +65,7 @@ def _reference(points, triangles, keep):
 @pytest.mark.parametrize(("seed", "count", "spread"), [(1, 6, 30), (2, 60, 8), (3, 400, 2)])
 def test_fill_agrees_with_barycentric_coordinates(seed, count, spread, keep):
     points, triangles = _random_triangles(seed, count, spread)
-    depth, ids, _, _ = _drawn(points, triangles, keep)
+    depth, ids, _ = _drawn(points, triangles, keep)
     expected_depth, expected_ids, edge = _reference(points, triangles, keep)
     clear_cut = edge > 1e-9
     assert clear_cut.mean() > 0.9 and (expected_ids[clear_cut] >= 0).sum() > 20
@@ -74,24 +85,43 @@ def test_triangles_that_share_edges_leave_no_gap_and_do_not_overlap_much():
         (r * n + c, r * n + c + 1, (r + 1) * n + c, (r + 1) * n + c + 1) for r in range(n - 1) for c in range(n - 1)
     ]
     triangles = np.array([t for a, b, c, d in cells for t in ((a, c, b), (b, c, d))], np.int32)
-    _, ids, _, _ = _drawn(points, triangles, FRONT)
+    _, ids, _ = _drawn(points, triangles, FRONT)
     assert (ids[5:35, 5:55] >= 0).all() and (ids[:5] < 0).all() and (ids[:, 55:] < 0).all()
 
 
-def test_spans_hold_all_that_is_drawn_and_clear_forgets_it():
+def test_spans_hold_all_that_is_drawn():
     points, triangles = _random_triangles(7, 5, 6)
-    _, ids, nearest, spans = _drawn(points, triangles, FRONT)
+    _, ids, canvas = _drawn(points, triangles, FRONT)
     for row in range(HEIGHT):
         used = np.flatnonzero(ids[row] >= 0)
         if len(used):
-            assert spans[row, 0] <= used[0] and used[-1] < spans[row, 1]
-    clear(nearest, spans)
-    assert (nearest == 0).all() and (spans == [WIDTH, 0]).all()
+            low, high = canvas.spans[row // BAND]
+            assert low <= used[0] and used[-1] < high
+
+
+def test_hidden_backs_are_left_out_and_nothing_else_changes():
+    """Backs behind a wall of fronts, and some before it and beside it, with what hides them noted and without."""
+    rng = np.random.default_rng(11)
+    corners = np.array([[3.0, 2, 1], [3, 37, 1], [40, 2, 1], [40, 37, 1]])
+    wall = np.column_stack([corners, np.zeros(4)])
+    points, triangles = _random_triangles(12, 200, 4)
+    points[:, 2] = np.where(rng.random(len(points)) < 0.8, 0.5, 1.5)
+    drawn = []
+    for noted in (False, True):
+        canvas = empty_canvas(HEIGHT, WIDTH)
+        fill(wall, np.array([[0, 1, 2], [2, 1, 3]], np.int32), FRONT, 0, canvas)
+        if noted:
+            note_least(canvas)
+            assert (canvas.least > 0).sum() >= 8
+        fill(points, triangles, BACK, 2, canvas)
+        drawn.append(canvas.nearest)
+    np.testing.assert_array_equal(*drawn)
+    assert ((drawn[0] & 0xFFFFFFFF) > 2).any()
 
 
 def test_vertices_behind_the_camera_are_left_out():
     points = np.array([[5.0, 5, 1], [5, 30, 1], [30, 5, 0]])
-    _, ids, _, _ = _drawn(points, np.array([[0, 1, 2]], np.int32), FRONT)
+    _, ids, _ = _drawn(points, np.array([[0, 1, 2]], np.int32), FRONT)
     assert (ids == -1).all()
 
 

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.cpu.stage_colours import smooth
-from dancetutor_cli.video.scene.cpu.standing import quantise
+from dancetutor_cli.video.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.prepare import PLANTED, Cast
 
@@ -92,9 +92,14 @@ def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no co
 
 
 class Shadow(NamedTuple):
-    """What takes light from the floor. mask : float32 (s, s), how much; cast : where that is; dark : 0..1, of all"""
+    """What takes light from the floor.
+
+    mask : float32 (s, s), how much; part : texels of it outside of which there is nothing, (left, top, right, bottom)
+    cast : where that is; dark : 0..1, of all
+    """
 
     mask: NDArray[np.float32]
+    part: tuple[int, int, int, int]
     cast: Cast
     dark: float
 
@@ -112,9 +117,65 @@ class Live(NamedTuple):
     numbers: Array
 
 
+@njit(cache=True, inline="always")
+def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
+    """Is the panel of a tile lit, or, of a tile with several, any panel?"""
+    most = 0.0
+    for p in range(lit.shape[0]):
+        if panel in (p, SEVERAL):
+            most = max(most, lit[p])
+    return most > 0.0
+
+
+@inner_kernel
+def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
+    """May the shadow fall on a place of the box between two corners?"""
+    left, top, right, bottom = shade.part
+    axes, origin, scale = shade.cast.axes, shade.cast.origin, shade.cast.scale
+    for k, first, last in ((0, left, right), (1, top, bottom)):
+        least, most = -origin[k], -origin[k]
+        for c in range(3):
+            a, b = axes[k, c] * low[c], axes[k, c] * high[c]
+            least, most = least + min(a, b), most + max(a, b)
+        if most * scale < first - 1.0 or least * scale > last + 1.0:
+            return False
+    return True
+
+
+@inner_kernel
+def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: no cover
+    """May something of a foot fall on a place of the box between two corners? coarse : metres of its largest pixel"""
+    feet, numbers = live.feet, live.numbers
+    far = numbers[3] + max(1.6 * numbers[1], OUTSIDE + coarse)
+    for f in range(feet.shape[0]):
+        if (
+            feet[f, 5] >= 0.0
+            and low[1] - 0.03 <= feet[f, 4] <= high[1] + 0.03
+            and low[0] <= max(feet[f, 0], feet[f, 2]) + far
+            and high[0] >= min(feet[f, 0], feet[f, 2]) - far
+            and low[2] <= max(feet[f, 1], feet[f, 3]) + far
+            and high[2] >= min(feet[f, 1], feet[f, 3]) - far
+        ):
+            return True
+    return False
+
+
+@inner_kernel
+def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> bool:  # pragma: no cover
+    """May light, shadow or a foot change a pixel of a tile?"""
+    low, high = tiles.low[row, column], tiles.high[row, column]
+    if low[0] > high[0]:
+        return False
+    return (
+        _is_lit(tiles.panel[row, column], live.lit)
+        or (shade.dark > 0.0 and _shaded(low, high, shade))
+        or _trodden(low, high, tiles.coarse[row, column], live)
+    )
+
+
 @kernel
 def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live: Any) -> None:  # pragma: no cover
-    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on.
+    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on, tile by tile.
 
     shift : columns that the standing picture, a `Background`, is ahead; shade : `Shadow`; live : `Live`
     """
@@ -124,52 +185,56 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
     lit, lit_colour, feet, numbers = live.lit, live.lit_colour, live.feet, live.numbers
     radius = numbers[3]
     far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
-    for row in range(box[1], box[3]):
-        for column in range(box[0], box[2]):
-            c = column + shift
-            take = takes[row, c]
-            p = panel[row, c]
-            shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
-            if take <= 0.0:
+    for i in range(box[1] // TILE, (box[3] + TILE - 1) // TILE):
+        for j in range((box[0] + shift) // TILE, (box[2] + shift + TILE - 1) // TILE):
+            if not _touched(standing.tiles, i, j, shade, live):
                 continue
-            x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
-            keep = 1.0
-            if dark > 0.0:
-                u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
-                v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
-                keep = 1.0 - dark * _bilinear(shadow, u, v)
-            ring, owner = 0.0, 0
-            for f in range(feet.shape[0]):
-                if (
-                    feet[f, 5] < 0.0
-                    or abs(y - feet[f, 4]) > 0.03
-                    or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
-                    or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
-                ):
-                    continue
-                d = _from_foot(x, z, feet, f) - radius
-                near = feet[f, 5]
-                reach = numbers[1] * (1.6 - 0.6 * near)
-                if d < reach:
-                    keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
-                if d > OUTSIDE + foot[row, c]:
-                    continue
-                soft = 0.5 * foot[row, c]
-                planted = smooth(PLANTED[0], PLANTED[1], near)
-                wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
-                band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
-                band *= feet[f, 9]
-                if band > ring:
-                    ring, owner = band, f
-            if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
-                continue
-            keep = 1.0 - (1.0 - keep) * take
-            hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
-            for k in range(3):
-                value = colour[row, c, k] * keep
-                if shine > 0.0:
-                    bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
-                    value += (bright - value) * shine
-                    value += (255.0 - value) * hot
-                value += (feet[owner, 6 + k] - value) * ring * take
-                out[row, column, k] = quantise(value, row, c)
+            for row in range(max(i * TILE, box[1]), min(i * TILE + TILE, box[3])):
+                for column in range(max(j * TILE - shift, box[0]), min(j * TILE + TILE - shift, box[2])):
+                    c = column + shift
+                    take = takes[row, c]
+                    p = panel[row, c]
+                    shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    if take <= 0.0:
+                        continue
+                    x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
+                    keep = 1.0
+                    if dark > 0.0:
+                        u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+                        v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+                        keep = 1.0 - dark * _bilinear(shadow, u, v)
+                    ring, owner = 0.0, 0
+                    for f in range(feet.shape[0]):
+                        if (
+                            feet[f, 5] < 0.0
+                            or abs(y - feet[f, 4]) > 0.03
+                            or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
+                            or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
+                        ):
+                            continue
+                        d = _from_foot(x, z, feet, f) - radius
+                        near = feet[f, 5]
+                        reach = numbers[1] * (1.6 - 0.6 * near)
+                        if d < reach:
+                            keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                        if d > OUTSIDE + foot[row, c]:
+                            continue
+                        soft = 0.5 * foot[row, c]
+                        planted = smooth(PLANTED[0], PLANTED[1], near)
+                        wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
+                        band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
+                        band *= feet[f, 9]
+                        if band > ring:
+                            ring, owner = band, f
+                    if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
+                        continue
+                    keep = 1.0 - (1.0 - keep) * take
+                    hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    for k in range(3):
+                        value = colour[row, c, k] * keep
+                        if shine > 0.0:
+                            bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
+                            value += (bright - value) * shine
+                            value += (255.0 - value) * hot
+                        value += (feet[owner, 6 + k] - value) * ring * take
+                        out[row, column, k] = quantise(value, row, c)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import float32, uint64
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
@@ -17,6 +18,10 @@ from dancetutor_cli.video.scene.cpu.uncounted import kernel
 SNAP = 16.0
 DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m
 FRONT, BACK = 1, -1
+BAND = 8  # samples: what is drawn is noted for so many rows together; a multiple of the samples across a pixel
+_LANES = np.arange(8.0)  # so many samples of a row are looked at together: one step of a vector unit for each of them
+_FINE = 65536.0  # depth is stepped in whole numbers of 1 / _FINE units
+_STEEP = 1e13  # units from sample to sample; only slivers come near to it
 _AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 
@@ -41,6 +46,27 @@ class View(NamedTuple):
     samples: float
     near: float
     focal: float
+
+
+class Canvas(NamedTuple):
+    """What triangles are drawn on, samples.
+
+    nearest : int64 (h, w), the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and the number of that
+    triangle in its lower half; 0 where there is nothing
+    spans : int64 (bands, 2), the first column drawn on and the one after the last, in each band of `BAND` rows
+    least : int64 (bands, blocks), the least 1 / depth in squares of `BAND` samples, as `note_least` has found it
+    """
+
+    nearest: NDArray[np.int64]
+    spans: NDArray[np.int64]
+    least: NDArray[np.int64]
+
+
+def empty_canvas(height: int, width: int) -> Canvas:
+    """A canvas of so many samples with nothing on it."""
+    bands, blocks = -(-height // BAND), -(-width // BAND)
+    spans = np.tile(np.array([width, 0], np.int64), (bands, 1))
+    return Canvas(np.zeros((height, width), np.int64), spans, np.zeros((bands, blocks), np.int64))
 
 
 @njit(cache=True)
@@ -150,28 +176,33 @@ def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) ->
 
 
 @njit(cache=True, inline="always")
-def _within(edge: float, step: float, low: float, high: float) -> Any:  # pragma: no cover
-    """The part of low..high in which ``edge + k * step`` is not negative; an empty one has high < low.
+def _hidden(least: Any, box: Any, depth: float) -> bool:  # pragma: no cover
+    """Is all that is drawn in this box of samples nearer than `depth`, 1 / depth in units of 1 / DEPTH_UNIT?"""
+    left, top, right, bottom = box
+    for i in range(top // BAND, bottom // BAND + 1):
+        for j in range(left // BAND, right // BAND + 1):
+            if least[i, j] < depth:
+                return False
+    return True
 
-    Both are multiples of 1 / SNAP**2 and far below 2**26, so that a rounded division cannot pass a whole number.
-    """
-    if step > 0.0:
-        return max(low, -edge / step), high
-    if step < 0.0:
-        return low, min(high, -edge / step)
-    return low, high if edge >= 0.0 else -1.0
+
+@njit(cache=True, inline="always")
+def _fine(value: float) -> int:  # pragma: no cover
+    """A depth, or a step of it, in whole numbers of 1 / _FINE units."""
+    return int(min(max(value, -_STEEP), _STEEP) * _FINE)
 
 
 @kernel
-def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, spans: Any) -> None:  # pragma: no cover
-    """Draw triangles into `nearest`, int64: the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and
-    the number + `offset` + 1 of that triangle in its lower half; 0 where there is nothing.
+def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> None:  # pragma: no cover
+    """Draw triangles on a `Canvas`, each with its number + `offset` + 1.
 
     points (v, 3): x, y in samples, 1 / depth; a triangle with a 0 there is left out. keep: FRONT or BACK; for backs
-    points (v, 4) has a column from `project_hull`, and those that only the front could hide are left out.
-    spans (rows, 2): grown to the first column drawn on and the one after the last, in each row
+    points (v, 4) has a column from `project_hull`, and those that only the front could hide are left out, as are those
+    that `canvas.least` says are hidden.
     """
+    nearest, spans, least = canvas.nearest, canvas.spans, canvas.least
     height, width = nearest.shape
+    lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
@@ -190,6 +221,11 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, span
         bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
         if left > right or top > bottom:
             continue
+        if keep == BACK and _hidden(least, (left, top, right, bottom), max(z0, z1, z2) * DEPTH_UNIT + 1.0):
+            continue
+        for band in range(top // BAND, bottom // BAND + 1):
+            spans[band, 0] = min(spans[band, 0], left)
+            spans[band, 1] = max(spans[band, 1], right + 1)
         sign = 1.0 if area > 0.0 else -1.0
         # Edge functions: how far a sample is inside of each edge; steps for one sample right and one down.
         sx0, sy0 = sign * (y2 - y1), -sign * (x2 - x1)
@@ -202,31 +238,48 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, nearest: Any, span
         unit = DEPTH_UNIT / -area
         zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) * unit
         zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) * unit
-        zrow = z0 * DEPTH_UNIT + (px - x0) * zx + (py - y0) * zy
+        right_step, down_step, zrow = _fine(zx), _fine(zy), _fine(z0 * DEPTH_UNIT + (px - x0) * zx + (py - y0) * zy)
         number = t + offset + 1
         for y in range(top, bottom + 1):
-            spans[y, 0] = min(spans[y, 0], left)
-            spans[y, 1] = max(spans[y, 1], right + 1)
-            low, high = _within(e0, sx0, 0.0, float(right - left))
-            low, high = _within(e1, sx1, low, high)
-            low, high = _within(e2, sx2, low, high)
-            first = int(np.ceil(low))
-            z = zrow + first * zx
-            for x in range(left + first, left + int(np.floor(high)) + 1):
-                key = (int(z) << 32) | number
-                if key > nearest[y, x]:
-                    nearest[y, x] = key
-                z += zx
+            x = left
+            while x <= right:
+                first = min(x, width - lanes)  # the last step may look again at samples that the one before has seen
+                f0, f1, f2 = e0 + (first - left) * sx0, e1 + (first - left) * sx1, e2 + (first - left) * sx2
+                z = zrow + (first - left) * right_step
+                for i in range(lanes):
+                    lane, place = _LANES[uint64(i)], uint64(first) + uint64(i)
+                    inside = (f0 + lane * sx0 >= 0.0) & (f1 + lane * sx1 >= 0.0) & (f2 + lane * sx2 >= 0.0)
+                    key = ((z + i * right_step) >> 16 << 32) | number if inside else 0
+                    nearest[uint64(y), place] = max(nearest[uint64(y), place], key)
+                x += lanes
             e0 += sy0
             e1 += sy1
             e2 += sy2
-            zrow += zy
+            zrow += down_step
+
+
+@njit(cache=True)
+def note_least(canvas: Any) -> None:  # pragma: no cover
+    """Fill `canvas.least` from what is drawn."""
+    nearest, spans, least = canvas.nearest, canvas.spans, canvas.least
+    height, width = nearest.shape
+    for band in range(least.shape[0]):
+        for block in range(least.shape[1]):
+            least[band, block] = 0
+        # only whole blocks: where a part of one lies outside of the spans, nothing is drawn there
+        for block in range((spans[band, 0] + BAND - 1) // BAND, min(spans[band, 1], width) // BAND):
+            lowest = nearest[band * BAND, block * BAND]
+            for y in range(band * BAND, min(band * BAND + BAND, height)):
+                for x in range(block * BAND, block * BAND + BAND):
+                    lowest = min(lowest, nearest[y, x])
+            least[band, block] = lowest >> 32
 
 
 @kernel
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
     """As `fill`, what is turned to the light and only its depth: for the shadow map."""
     height, width = depth.shape
+    lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
@@ -241,28 +294,23 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
         bottom = min(int(np.floor(max(y0, y1, y2) - 0.5)), height - 1)
         if left > right or top > bottom:
             continue
-        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / -area
-        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) / -area
-        px = left + 0.5
+        sx0, sx1, sx2 = y2 - y1, y0 - y2, y1 - y0
+        unit = 1.0 / -area
+        zx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) * unit
+        zy = ((z2 - z0) * (x1 - x0) - (z1 - z0) * (x2 - x0)) * unit
         for y in range(top, bottom + 1):
             py = y + 0.5
-            low, high = _within((px - x1) * (y2 - y1) - (py - y1) * (x2 - x1), y2 - y1, 0.0, float(right - left))
-            low, high = _within((px - x2) * (y0 - y2) - (py - y2) * (x0 - x2), y0 - y2, low, high)
-            low, high = _within((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), y1 - y0, low, high)
-            first = int(np.ceil(low))
-            z = z0 + (px + first - x0) * zx + (py - y0) * zy
-            for x in range(left + first, left + int(np.floor(high)) + 1):
-                if z > depth[y, x]:
-                    depth[y, x] = z
-                z += zx
-
-
-@njit(cache=True)
-def clear(nearest: Any, spans: Any) -> None:  # pragma: no cover
-    """Forget what `fill` has drawn: the rows of `spans`, and the spans."""
-    height, width = nearest.shape
-    for y in range(height):
-        for x in range(spans[y, 0], spans[y, 1]):
-            nearest[y, x] = 0
-        spans[y, 0] = width
-        spans[y, 1] = 0
+            x = left
+            while x <= right:
+                first = min(x, width - lanes)
+                px = first + 0.5
+                f0 = (px - x1) * sx0 - (py - y1) * (x2 - x1)
+                f1 = (px - x2) * sx1 - (py - y2) * (x0 - x2)
+                f2 = (px - x0) * sx2 - (py - y0) * (x1 - x0)
+                z = z0 + (px - x0) * zx + (py - y0) * zy
+                for i in range(lanes):
+                    lane, place = _LANES[uint64(i)], uint64(first) + uint64(i)
+                    inside = (f0 + lane * sx0 >= 0.0) & (f1 + lane * sx1 >= 0.0) & (f2 + lane * sx2 >= 0.0)
+                    found = float32(z + lane * zx) if inside else float32(0.0)
+                    depth[uint64(y), place] = max(depth[uint64(y), place], found)
+                x += lanes

@@ -15,10 +15,11 @@ from dancetutor_cli.video.scene.cpu.raster import (
     FRONT,
     Bound,
     View,
-    clear,
+    empty_canvas,
     extent,
     fill,
     fill_depth,
+    note_least,
     project,
     project_hull,
     project_light,
@@ -74,8 +75,7 @@ class CpuRenderer:
         self._points, self._light_points, self._hull = (np.empty((count, n)) for n in (3, 3, 4))
         width, height = size
         shape = (height * self._samples, width * self._samples)
-        self._nearest = np.zeros(shape, np.int64)
-        self._spans = np.tile(np.array([shape[1], 0], np.int64), (shape[0], 1))
+        self._canvas = empty_canvas(*shape)
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
         self._room = Room(np.empty(self._samples**2, np.int64), np.empty(self._samples**2))
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
@@ -97,8 +97,8 @@ class CpuRenderer:
         cast = place_cast(self._scene, camera, joints, self._map)
         count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
         triangles = mesh.triangles[:count]
-        self._draw_shadow(triangles, cast)
-        self._draw_ground(state, background, shift, cast)
+        shadow = self._draw_shadow(triangles, cast)
+        self._draw_ground(state, background, shift, shadow)
         self._draw_dancer(triangles, joints, camera, cast)
         return self._out
 
@@ -113,26 +113,27 @@ class CpuRenderer:
             self._background = (key, drawn)
         return self._background[1]
 
-    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast) -> None:
+    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast) -> Shadow:
         if not self._map:
-            return
+            return Shadow(self._mask, (0, 0, 0, 0), cast, 0.0)
         self._shadow[:] = 0.0
         project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
         fill_depth(self._light_points, triangles, self._shadow)
         left, top, right, bottom = occupied(self._shadow, self._mask)
         radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
         reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
-        part = slice(max(0, top - reach), bottom + reach), slice(max(0, left - reach), right + reach)
+        left, top, right, bottom = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
+        part = slice(top, bottom), slice(left, right)
         for _ in range(2):
             blur(self._mask[part], radius, self._spare[part])
+        return Shadow(self._mask, (left, top, right, bottom), cast, self._scene.look.light.shadow)
 
-    def _draw_ground(self, state: FrameState, background: Background, shift: int, cast: Cast) -> None:
-        look = self._scene.look
+    def _draw_ground(self, state: FrameState, background: Background, shift: int, shade: Shadow) -> None:
+        look, cast = self._scene.look, shade.cast
         bounds = extent(self._world)
         box = ground_box(self._scene, state.camera, self._size, bounds, cast)
         lit, lit_colour = panel_lights(self._scene, state)
         numbers = np.array([look.light.contact, look.light.contact_soft, look.stage.glow, SOLE_RADIUS])
-        shade = Shadow(self._mask, cast, look.light.shadow if cast.scale else 0.0)
         live = Live(lit, lit_colour, feet_on_floor(self._scene, state), numbers)
         draw_ground(self._out, box, shift, background, shade, live)
 
@@ -143,11 +144,10 @@ class CpuRenderer:
         outline = self._scene.look.toon.outline_width * per_metre
         project(self._world, view, self._points)
         project_hull(self._world, view, outline, self._hull)
-        clear(self._nearest, self._spans)
-        count = len(triangles)
-        fill(self._points, triangles, FRONT, 0, self._nearest, self._spans)
-        fill(self._hull, triangles, BACK, count, self._nearest, self._spans)
+        fill(self._points, triangles, FRONT, 0, self._canvas)
+        note_least(self._canvas)
+        fill(self._hull, triangles, BACK, len(triangles), self._canvas)
         light_vertices(self._world, self._points, self._surface, eye, cast, self._vertex)
         self._toon[PER_METRE] = per_metre
-        drawn, light = Drawn(self._nearest, self._spans, triangles), Light(self._vertex, self._shadow, self._toon)
+        drawn, light = Drawn(self._canvas, triangles), Light(self._vertex, self._shadow, self._toon)
         resolve(self._out, self._samples, drawn, self._surface, light, self._room)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.scene.cpu.raster import BAND, Canvas
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.look import ToonLook
 from dancetutor_cli.video.scene.textures import LEVELS
@@ -20,6 +21,7 @@ _X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = rang
 # Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
 _BANDS, _STEEP, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
 _RIM_WIDTH = 0.2
+_CLOSE = 0.006  # of its depth: samples farther from each other are coloured apart
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
@@ -49,8 +51,7 @@ class Surface(NamedTuple):
 class Drawn(NamedTuple):
     """What `raster.fill` has drawn of which triangles; numbers from their count on are outline."""
 
-    nearest: NDArray[np.int64]
-    spans: NDArray[np.int64]
+    canvas: Canvas
     triangles: NDArray[np.int32]
 
 
@@ -194,54 +195,86 @@ def _colour(corners: Any, px: float, py: float, dense: float, surface: Any, ligh
     return min(red + (1.0 - red) * rim, 1.0), min(green + (1.0 - green) * rim, 1.0), min(blue + (1.0 - blue) * rim, 1.0)
 
 
+@njit(cache=True, inline="always")
+def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -> bool:  # pragma: no cover
+    """Do all samples of a pixel see one triangle, or one piece of surface at about the same depth?
+
+    keys : of `raster.Canvas.nearest`, the first sample's place; triangles : their count, and the piece of each
+    """
+    count, patch = triangles
+    key = keys[row, column]
+    number, depth = (key & 0xFFFFFFFF) - 1, key >> 32
+    close = _CLOSE * depth
+    for j in range(samples):
+        for i in range(samples):
+            other = keys[row + j, column + i]
+            t = (other & 0xFFFFFFFF) - 1
+            if t == number:
+                continue
+            if t < 0 or t >= count or number < 0 or number >= count or patch[t] != patch[number]:
+                return False
+            if abs((other >> 32) - depth) >= close:
+                return False
+    return True
+
+
 @kernel
 def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: Any) -> None:  # pragma: no cover
-    """Put the samples on the picture. drawn : `Drawn`; surface : `Surface`; light : `Light`; room : `Room`
+    """Put the samples on the picture and forget them: nothing is left on the canvas.
 
+    drawn : `Drawn`; surface : `Surface`; light : `Light`; room : `Room`
     One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
-    nearest, spans, triangles = drawn.nearest, drawn.spans, drawn.triangles
+    nearest, spans, triangles = drawn.canvas.nearest, drawn.canvas.spans, drawn.triangles
     patch, density, toon, seen, depths = surface.patch, surface.density, light.toon, room.seen, room.depths
     count = triangles.shape[0]
     total = samples * samples
     share = 1.0 / total
     for row in range(out.shape[0]):
-        first, last = spans[row * samples, 0], spans[row * samples, 1]
-        for j in range(1, samples):
-            first, last = min(first, spans[row * samples + j, 0]), max(last, spans[row * samples + j, 1])
-        for column in range(first // samples, (last + samples - 1) // samples):
-            covered = 0
-            k = 0
+        top, band = row * samples, row * samples // BAND
+        for column in range(spans[band, 0] // samples, (spans[band, 1] + samples - 1) // samples):
+            left = column * samples
+            whole = _one_piece(nearest, top, left, samples, (count, patch))
+            covered, k = total, 0
+            if whole:
+                seen[0] = (nearest[top, left] & 0xFFFFFFFF) - 1
+                if seen[0] < 0:
+                    continue
+            else:
+                covered = 0
+                for j in range(samples):
+                    for i in range(samples):
+                        key = nearest[top + j, left + i]
+                        seen[k] = (key & 0xFFFFFFFF) - 1
+                        depths[k] = key >> 32
+                        covered += key != 0
+                        k += 1
             for j in range(samples):
                 for i in range(samples):
-                    key = nearest[row * samples + j, column * samples + i]
-                    seen[k] = (key & 0xFFFFFFFF) - 1
-                    depths[k] = key >> 32
-                    covered += key != 0
-                    k += 1
-            if covered == 0:
-                continue
+                    nearest[top + j, left + i] = 0
             r, g, b = 0.0, 0.0, 0.0
-            for k in range(total):
+            for k in range(1 if whole else total):
                 t = seen[k]
                 if t < 0:
                     continue
+                weight = 1.0 if whole else share
                 if t >= count:
-                    r += share * toon[_OUTLINE]
-                    g += share * toon[_OUTLINE + 1]
-                    b += share * toon[_OUTLINE + 2]
+                    r += weight * toon[_OUTLINE]
+                    g += weight * toon[_OUTLINE + 1]
+                    b += weight * toon[_OUTLINE + 2]
                     continue
-                piece, close, weight = patch[t], 0.006 * depths[k], share
-                for m in range(k + 1, total):
-                    other = seen[m]
-                    if other == t or (
-                        0 <= other < count and patch[other] == piece and abs(depths[m] - depths[k]) < close
-                    ):
-                        seen[m] = -1
-                        weight += share
+                if not whole:
+                    piece, close = patch[t], _CLOSE * depths[k]
+                    for m in range(k + 1, total):
+                        other = seen[m]
+                        if other == t or (
+                            0 <= other < count and patch[other] == piece and abs(depths[m] - depths[k]) < close
+                        ):
+                            seen[m] = -1
+                            weight += share
                 px, py = (column + 0.5) * samples, (row + 0.5) * samples
                 if weight < 0.5:
-                    px, py = column * samples + k % samples + 0.5, row * samples + k // samples + 0.5
+                    px, py = left + k % samples + 0.5, top + k // samples + 0.5
                 corners = triangles[t, 0], triangles[t, 1], triangles[t, 2]
                 cr, cg, cb = _colour(corners, px, py, 0.7 * density[t], surface, light)
                 r += weight * cr
@@ -251,3 +284,6 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
             out[row, column, 0] = int(255.0 * r + out[row, column, 0] * rest + 0.5)
             out[row, column, 1] = int(255.0 * g + out[row, column, 1] * rest + 0.5)
             out[row, column, 2] = int(255.0 * b + out[row, column, 2] * rest + 0.5)
+    for band in range(spans.shape[0]):
+        spans[band, 0] = nearest.shape[1]
+        spans[band, 1] = 0

@@ -14,7 +14,23 @@ from dancetutor_cli.video.scene.look import Look
 from dancetutor_cli.video.scene.stage import Stage
 
 F32 = NDArray[np.float32]
+TILE = 8
+SEVERAL = -2  # panels in a tile
 Array = NDArray[np.float64]
+
+
+class GroundTiles(NamedTuple):
+    """What squares of `TILE` by `TILE` pixels hold of the ground; t rows, u columns of them.
+
+    low, high : float32 (t, u, 3), least and greatest x, y, z of it; low is above high where there is none
+    panel : int16 (t, u), column of the panel in it, -1 for none, `SEVERAL`
+    coarse : float32 (t, u), metres of its largest pixel
+    """
+
+    low: F32
+    high: F32
+    panel: NDArray[np.int16]
+    coarse: F32
 
 
 class Background(NamedTuple):
@@ -24,6 +40,7 @@ class Background(NamedTuple):
     ground : float32 (h, w, 3), world x, y and z of what is seen, and takes : float32 (h, w), 0..1, how much of the
     pixel takes shadows; panel : int16 (h, w), column or -1; glow, white : float32 (h, w), of a fully lit panel
     footprint : float32 (h, w), metres of the surface in a pixel
+    tiles : `GroundTiles`, what squares of `TILE` pixels hold of the ground
     left : columns of room to the left of the unpanned picture
     """
 
@@ -35,6 +52,7 @@ class Background(NamedTuple):
     glow: F32
     white: F32
     footprint: F32
+    tiles: GroundTiles
     left: int
 
 
@@ -158,6 +176,32 @@ def _quantise_all(colour: Any, out: Any) -> None:  # pragma: no cover
                 out[row, column, k] = quantise(colour[row, column, k], row, column)
 
 
+@njit(cache=True)
+def _note_tiles(drawn: Any) -> None:  # pragma: no cover
+    """Fill the tiles of a `Background` from what its pixels hold."""
+    tiles, ground, takes, panel = drawn.tiles, drawn.ground, drawn.takes, drawn.panel
+    low, high, coarse = tiles.low, tiles.high, tiles.coarse
+    for row in range(takes.shape[0]):
+        for column in range(takes.shape[1]):
+            if takes[row, column] <= 0.0:
+                continue
+            t, u, p = row // TILE, column // TILE, panel[row, column]
+            if low[t, u, 0] > high[t, u, 0]:
+                tiles.panel[t, u] = p
+            elif tiles.panel[t, u] != p:
+                tiles.panel[t, u] = SEVERAL
+            coarse[t, u] = max(coarse[t, u], drawn.footprint[row, column])
+            for k in range(3):
+                low[t, u, k] = min(low[t, u, k], ground[row, column, k])
+                high[t, u, k] = max(high[t, u, k], ground[row, column, k])
+
+
+def _empty_tiles(height: int, width: int) -> GroundTiles:
+    shape = -(-height // TILE), -(-width // TILE)
+    low, high = np.full((*shape, 3), np.inf, np.float32), np.full((*shape, 3), -np.inf, np.float32)
+    return GroundTiles(low, high, np.full(shape, -1, np.int16), np.zeros(shape, np.float32))
+
+
 def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, int], samples: int) -> Background:
     """Draw the stage; samples x samples rays a pixel where surfaces meet. size : (width, height) of the picture."""
     width, height = size
@@ -173,8 +217,10 @@ def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, i
     takes, glow, white, foot = (np.zeros(shape, np.float32) for _ in range(4))
     panel = np.empty(shape, np.int16)
     picture = np.empty((*shape, 3), np.uint8)
-    drawn = Background(colour, picture, ground, takes, panel, glow, white, foot, left)
+    tiles = _empty_tiles(*shape)
+    drawn = Background(colour, picture, ground, takes, panel, glow, white, foot, tiles, left)
     _shade(rays, surfaces, samples, found, drawn)
+    _note_tiles(drawn)
     _quantise_all(colour, picture)
     return drawn
 
