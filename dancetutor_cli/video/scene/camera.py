@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,26 +45,7 @@ class Camera:
 
     def axes(self) -> Array:
         """Rows: right, up and forward in the world, (3, 3)."""
-        forward = np.subtract(self.target, self.position)
-        length = math.sqrt(float(forward[0] ** 2 + forward[1] ** 2 + forward[2] ** 2))
-        if length < 1e-9:
-            raise UsageError("the camera's position and target are the same point; move one of them")
-        forward = forward / length
-        flat = math.hypot(forward[0], forward[2])
-        if flat < 1e-3:
-            # Straight down (or up) there is no upright; the screen side is up then, as on a plan of the pad.
-            forward = np.array([0.0, math.copysign(1.0, forward[1]), 0.0])
-            right = np.array([-1.0, 0.0, 0.0])
-        else:
-            right = np.array([-forward[2], 0.0, forward[0]]) / flat
-        up = np.array(
-            [
-                right[1] * forward[2] - right[2] * forward[1],
-                right[2] * forward[0] - right[0] * forward[2],
-                right[0] * forward[1] - right[1] * forward[0],
-            ]
-        )
-        return np.array([right, up, forward])
+        return _axes(self.position, self.target)
 
     def matrix(self, size: tuple[int, int]) -> Array:
         """World to picture, (3, 4): rows give x * depth, y * depth and depth in pixels and metres (y downwards).
@@ -94,6 +76,33 @@ class Camera:
         out = p.copy()
         out[:, :2] /= p[:, 2:]
         return out
+
+
+@lru_cache(maxsize=64)
+def _axes(position: tuple[float, float, float], target: tuple[float, float, float]) -> Array:
+    """What `Camera.axes` says, once for each place: every frame asks several times."""
+    forward = np.subtract(target, position)
+    length = math.sqrt(float(forward[0] ** 2 + forward[1] ** 2 + forward[2] ** 2))
+    if length < 1e-9:
+        raise UsageError("the camera's position and target are the same point; move one of them")
+    forward = forward / length
+    flat = math.hypot(forward[0], forward[2])
+    if flat < 1e-3:
+        # Straight down (or up) there is no upright; the screen side is up then, as on a plan of the pad.
+        forward = np.array([0.0, math.copysign(1.0, forward[1]), 0.0])
+        right = np.array([-1.0, 0.0, 0.0])
+    else:
+        right = np.array([-forward[2], 0.0, forward[0]]) / flat
+    up = np.array(
+        [
+            right[1] * forward[2] - right[2] * forward[1],
+            right[2] * forward[0] - right[0] * forward[2],
+            right[0] * forward[1] - right[1] * forward[0],
+        ]
+    )
+    axes = np.array([right, up, forward])
+    axes.setflags(write=False)
+    return axes
 
 
 def preset(
