@@ -10,6 +10,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import int64, uint64
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
@@ -46,25 +47,25 @@ def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pr
     opacity, gain = ink
     height, width = frame.shape[0], frame.shape[1]
     rows, columns = sprite.shape[0], sprite.shape[1]
-    first = max(0, -x)
-    last = min(columns, width - x)
-    for r in range(rows + 1):
-        fy = y + r
-        if fy < max(low, 0) or fy >= min(high, height):
-            continue
+    first, last = max(0, -x), min(columns, width - x)
+    plain = opacity == 256 and gain == 256
+    for fy in range(max(low, 0, y), min(high, height, y + rows + 1)):
+        r = fy - y
+        here, above = min(r, rows - 1), max(r - 1, 0)
+        of_here, of_above = 256 - fraction if r < rows else 0, fraction if r > 0 else 0
         for c in range(first, last):
-            a0 = sprite[r, c, 3] if r < rows else 0
-            a1 = sprite[r - 1, c, 3] if r > 0 else 0
-            alpha = a0 * (256 - fraction) + a1 * fraction  # 0..255 * 256
+            alpha = sprite[here, c, 3] * of_here + sprite[above, c, 3] * of_above  # 0..255 * 256
             if alpha == 0:
+                continue
+            if plain and alpha == 255 * 256:  # what the last line comes to where nothing shows through
+                for k in range(3):
+                    frame[fy, x + c, k] = (sprite[here, c, k] * of_here + sprite[above, c, k] * of_above + 128) >> 8
                 continue
             keep = 255 * 65536 - alpha * opacity
             for k in range(3):
-                s0 = sprite[r, c, k] if r < rows else 0
-                s1 = sprite[r - 1, c, k] if r > 0 else 0
-                colour = (s0 * (256 - fraction) + s1 * fraction) * opacity
-                value = (frame[fy, x + c, k] * keep + colour * gain // 256 * 255 + 255 * 32768) // (255 * 65536)
-                frame[fy, x + c, k] = min(255, value)
+                colour = (sprite[here, c, k] * of_here + sprite[above, c, k] * of_above) * opacity
+                value = uint64(frame[fy, x + c, k] * keep + (colour * gain >> 8) * 255 + 255 * 32768)
+                frame[fy, x + c, k] = min(255, int64(value // uint64(255 * 65536)))  # signed division takes longer
 
 
 @njit(cache=True)
