@@ -21,6 +21,7 @@ from numba.core import cgutils as _cgutils
 from numba.core import event as _event
 from numba.extending import intrinsic
 
+from dancetutor_cli import quick_numba as quick_numba  # before the first kernel
 from dancetutor_cli.kernel_folder import CHECKSUM, kernel_folder
 
 caching: Any = _caching  # have types in some versions only, or in none

@@ -32,4 +32,3 @@ elif INTERPRETED:
 else:
     from dancetutor_cli.kernels import borrowed as borrowed
     from dancetutor_cli.kernels import njit as njit
-    from dancetutor_cli.play import quick_numba as quick_numba
