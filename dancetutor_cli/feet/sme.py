@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -42,6 +43,8 @@ class ChartData:
 def read_sme(song: Song, chart: Chart) -> ChartData:
     """What the `data.sme` in the song's folder says about a chart; nothing if there is none. Never raises."""
     path = song.path.parent / FILE_NAME
+    if not os.path.lexists(path):  # most often, and an error takes many times as long to raise
+        return ChartData()
     try:
         raw = read_bytes(path, CHART_LIMIT)
     except MissingFileError:

@@ -36,7 +36,7 @@ def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
     said = _said(play, shown)
     margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
     if play.confidence is not None:
-        sure = map(_percent, play.confidence[shown].tolist())
+        sure = ["null" if one != one else _percent(one) for one in play.confidence[shown].tolist()]
         margins = [f'{margin}, "confidence": {one}' for margin, one in zip(margins, sure, strict=True)]
     rows = zip(beats, seconds, lines, said, margins, strict=True)
     return f"[{', '.join(starmap(_row, rows))}]"
@@ -60,8 +60,9 @@ def _margin(margin: int) -> str:
     return "null" if margin < 0 else str(margin)
 
 
+@lru_cache(maxsize=_MOST_KNOWN)
 def _percent(confidence: float) -> str:
-    return "null" if confidence != confidence else repr(round(100 * confidence, 1))
+    return repr(round(100 * confidence, 1))
 
 
 def _said(play: Play, shown: NDArray[np.intp]) -> list[str]:

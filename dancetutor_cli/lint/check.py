@@ -59,7 +59,7 @@ def check_rule(
 
 def _found(code: str, rules: Mapping[str, Options], subject: ChartSubject) -> list[Finding]:
     """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
-    found = _rules_of_charts()[code](rules[code]).check(subject)
+    found = _rule(code, rules[code]).check(subject)
     about_all = subject.chart.player <= 1
     return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
 
@@ -71,6 +71,17 @@ def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
     return check_chart(subject, settings)
+
+
+def _rule(code: str, options: Options) -> ChartRule | ReaderRule:
+    """A rule with its options; the last one again if it is for the same, as from chart to chart."""
+    known = _last.get(code)
+    if known is None or known.options is not options:
+        known = _last[code] = _rules_of_charts()[code](options)
+    return known
+
+
+_last: dict[str, ChartRule | ReaderRule] = {}  # rules keep nothing but their options
 
 
 @cache

@@ -118,10 +118,21 @@ class Feet:
         return np.flatnonzero((self.down >= 3) & real.any(axis=1)).tolist()
 
     @cached_property
+    def _columns(self) -> NDArray[np.int8]:
+        """(c, n) limbs by column: numpy goes along few long rows ten times as fast as along many short ones."""
+        return np.ascontiguousarray(self._play.limb.T)
+
+    @cached_property
+    def _foot(self) -> NDArray[np.int8]:
+        """(n,) the greatest limb of each row, -1 where none presses; of a row that one limb presses it is that."""
+        return np.asarray(self._columns.max(axis=0, initial=-1))
+
+    @cached_property
     def _lone(self) -> NDArray[np.bool_]:
         """(n,) whether one limb presses one panel in a row, and it is no tap of a roll."""
-        steps = self._play.rows.steps
-        return np.asarray(((self._play.limb >= 0).sum(axis=1) == 1) & ~(steps == _ROLL_TAP).any(axis=1))
+        lone = (self._columns >= 0).sum(axis=0) == 1
+        taps = self._play.rows.steps == _ROLL_TAP
+        return np.asarray(lone & ~taps.any(axis=1) if taps.any() else lone)
 
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
@@ -138,8 +149,10 @@ class Feet:
     def _free(self) -> NDArray[np.bool_]:
         """(n,) the same of every row."""
         rows, limb = self._play.rows, self._play.limb
-        foot = limb.max(axis=1, initial=-1)
-        free = self._lone & (foot <= _RIGHT) & ~rows.mines.any(axis=1)
+        foot = self._foot
+        free = self._lone & (foot <= _RIGHT)
+        if self._has_mines:
+            free &= ~rows.mines.any(axis=1)
         free[1:] &= self._lone[:-1]
         free[:1] = False
         if (rows.hold_end >= 0).any():
@@ -163,7 +176,7 @@ class Feet:
         """
         rows = self._play.rows
         lone = np.flatnonzero(self._lone)
-        column, limb = self._play.limb[lone].argmax(axis=1), self._play.limb[lone].max(axis=1)
+        column, limb = self._columns.argmax(axis=0)[lone], self._foot[lone]
         on = np.zeros(len(lone) + 1, dtype=bool)
         on[1:-1] = (np.diff(lone) == 1) & (column[1:] == column[:-1])
         on[1:-1] &= np.diff(rows.second[lone]) <= max_seconds + _EPSILON
@@ -183,8 +196,15 @@ class Feet:
             return []
         sure = self._play.confidence[self.stepped]
         places = np.flatnonzero(sure < below)  # not where it is nan
-        runs = np.split(places, np.flatnonzero(np.diff(places) > _BETWEEN + 1) + 1) if len(places) else []
-        return [list(zip(self.stepped[run].tolist(), sure[run].tolist(), strict=True)) for run in runs]
+        known = zip(self.stepped[places].tolist(), sure[places].tolist(), strict=True)
+        passages: list[list[tuple[int, float]]] = []
+        before = -_BETWEEN - 2
+        for place, one in zip(places.tolist(), known, strict=True):
+            if place - before > _BETWEEN + 1:
+                passages.append([])
+            passages[-1].append(one)
+            before = place
+        return passages
 
     def half_turns(self) -> Iterator[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
@@ -223,12 +243,17 @@ class Feet:
                 yield int(row[place]), float(apart[place - 1])
                 count = 1
 
+    @cached_property
+    def _distances(self) -> NDArray[np.float64]:
+        """(c, c) panel widths between panels."""
+        between = self._panels[:, None] - self._panels[None]
+        return np.hypot(between[..., 0], between[..., 1])
+
     def travels(
         self,
     ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
         """For each foot its steps on a new panel: rows, columns, ways (panel widths), times (s) since its last step."""
-        between = self._panels[:, None] - self._panels[None]
-        distances = np.hypot(between[..., 0], between[..., 1])
+        distances = self._distances
         for steps in self._of_feet:
             way, second = distances[steps.column[1:], steps.column[:-1]], self._play.rows.second[steps.row]
             moved = np.flatnonzero(way > _EPSILON)

@@ -163,6 +163,11 @@ class TimedRule(ChartRule):
         if passage:
             yield passage
 
+    def quick(self, subject: ChartSubject, rows: Iterable[int]) -> list[int]:
+        """Those of some rows that come quickly enough after the step before: others need not be looked at."""
+        longest = self.longest(subject) + EPSILON
+        return [row for row in rows if subject.pause(row) <= longest]
+
     def longest(self, subject: ChartSubject) -> float:
         """The longest time (s) that is still quick in this chart; 0: nothing is."""
         longest = self.options.get("max_seconds", math.inf)
@@ -185,13 +190,13 @@ class MoveRule(TimedRule):
     said: ClassVar[str]
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
-        """Each row with the move, with the time since the step before."""
+        """Each quick row with the move, with the time since the step before."""
         for row in self.rows(subject):
             yield Happening(row, subject.pause(row), self.message(subject, row))
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Rows with the move."""
-        return subject.rows_with_any(self.move)
+        """Quick rows with the move."""
+        return self.quick(subject, subject.rows_with_any(self.move))
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""

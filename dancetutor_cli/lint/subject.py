@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -73,20 +72,24 @@ class ChartSubject:
     @cached_property
     def counts(self) -> Mapping[str, int]:
         """Name of the move -> rows of the play in which it happens."""
+        kinds, codes = self._kinds_of_row
         counts: dict[str, int] = {}
-        for names, rows in self._kinds_of_row.items():
+        for names, rows in zip(kinds, np.bincount(codes, minlength=len(kinds)).tolist(), strict=True):
             for name in names:
                 counts[name] = counts.get(name, 0) + rows
         return counts
 
     @cached_property
-    def _kinds_of_row(self) -> Mapping[tuple[str, ...], int]:
-        """Moves that happen together in a row -> how often."""
-        return Counter(self.play.moves if self.play else ())
+    def _kinds_of_row(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
+        """Moves that happen together in a row, in the order in which they come first; and of each row which of them."""
+        moves = self.play.moves if self.play else ()
+        kinds = {names: code for code, names in enumerate(dict.fromkeys(moves))}
+        return list(kinds), np.fromiter(map(kinds.__getitem__, moves), np.intp, len(moves))
 
     def _rows_with(self, moves: Collection[str]) -> list[int]:
-        kinds = {names for names in self._kinds_of_row if any(name in moves for name in names)}
-        return [row for row, names in enumerate(self.play.moves) if names in kinds] if self.play and kinds else []
+        kinds, codes = self._kinds_of_row
+        wanted = np.array([any(name in moves for name in names) for names in kinds], dtype=bool)
+        return np.flatnonzero(wanted[codes]).tolist() if wanted.any() else []
 
     @property
     def row_count(self) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,12 @@ def curve_table(preset: Preset) -> NDArray[np.int64]:
     """Every curve of a preset at every millisecond from 0 on, (curves, MOST_MS + 1)."""
     every = np.arange(MOST_MS + 1)
     return np.array([cost_at(curve, every) for _, curve in preset.curves], dtype=np.int64).reshape(-1, len(every))
+
+
+@lru_cache(maxsize=16)
+def whole_curve(curve: Curve) -> NDArray[np.int64]:
+    """What a curve costs at 0, 1, 2 ... up to its last knot, beyond which it is level."""
+    return cost_at(curve, np.arange(max(int(curve[-1][0]), 0) + 1))
 
 
 def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:

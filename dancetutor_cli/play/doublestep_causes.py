@@ -84,6 +84,8 @@ def _culprit(play: Play, row: int, engine: Engine) -> Blame:
     first, last = max(0, row - 2 * _ROWS_BEFORE), min(len(play.rows), row + _ROWS_AFTER)
     excerpt = _slice(play.rows, first, last)
     here = row - first
+    if next(_causes(excerpt, here), None) is None:
+        return Blame(row, False, "pattern")  # whatever the feet do, nothing else is there
     if not _steps_twice(excerpt, here, engine):
         first, excerpt, here = 0, play.rows, row  # what is further back matters
     for cause, cause_row, column, without in _causes(excerpt, here):

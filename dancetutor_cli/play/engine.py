@@ -28,6 +28,7 @@ _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between chart
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
 _MOST_MOVES_KEPT = 2_000_000  # then the tables start anew, so that a long run does not fill the memory
 _MOST_EDGES_KEPT = 2_000_000  # the same
+_MOST_ENGINES = 8
 
 
 class Engine:
@@ -239,13 +240,27 @@ class Layers:
         return range(packed >> 16, (packed >> 16) + (packed & 0xFFFF))
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=_MOST_ENGINES)
 def _kept(steps_type: str, preset: Preset, shape: bytes) -> list[Engine]:
     return []
 
 
 def engine_for(pad: Pad, preset: Preset) -> Engine:
     """The engine of a pad and preset; the same one for the same again, so that its tables serve many charts."""
+    last = _last.get(id(pad))
+    if last is not None and last[0] is pad and last[1] is preset:
+        return last[2]
+    if len(_last) >= _MOST_ENGINES:
+        _last.clear()
+    _last[id(pad)] = pad, preset, _engine(pad, preset)
+    return _last[id(pad)][2]
+
+
+# The last engine of each pad, by the objects themselves: to hash a preset takes as long as a few hundred rows.
+_last: dict[int, tuple[Pad, Preset, Engine]] = {}
+
+
+def _engine(pad: Pad, preset: Preset) -> Engine:
     shape = pad.panels.tobytes() + np.array([*pad.centre, *pad.home, pad.reach]).tobytes() + pad.arrows.tobytes()
     kept = _kept(pad.steps_type, preset, shape)
     if not kept:

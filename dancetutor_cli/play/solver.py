@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play.curves import cost_at
+from dancetutor_cli.play.curves import whole_curve
 from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.played import Play, Rows
 from dancetutor_cli.play.preset import Preset
@@ -92,6 +92,7 @@ def _confidence(rows: Rows, preset: Preset, margin: NDArray[np.int64]) -> NDArra
     """How likely people step each row this way, (n,); None if nobody has measured it for the preset."""
     if not preset.confidence:
         return None
-    sure = np.where(margin < 0, 1.0, cost_at(preset.confidence, np.maximum(margin, 0)) / 1000)
+    curve = whole_curve(preset.confidence)
+    sure = np.where(margin < 0, 1.0, curve[np.minimum(np.maximum(margin, 0), len(curve) - 1)] / 1000)
     sure[~rows.steps.any(axis=1)] = np.nan
     return np.asarray(sure)

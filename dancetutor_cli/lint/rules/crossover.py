@@ -60,7 +60,8 @@ class Crossover(TimedRule):
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
 
         slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
-        for first, _ in subject.feet.crossed_runs() if subject.feet else ():
+        found = [first for first, _ in subject.feet.crossed_runs()] if subject.feet else []
+        for first in self.quick(subject, found):
             if fewest_crossed(subject, first, slow) == 0:
                 continue
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):

@@ -66,12 +66,13 @@ class Doublestep(MoveRule):
         """Doublesteps from one panel to another, no mine between them."""
         from dancetutor_cli.lint.freely import Freedom, fewest_crossed, in_groups
 
+        longest = self.longest(subject)
         return [
-            row for row in subject.rows_with(self.move)
+            row for row in self.quick(subject, subject.rows_with(self.move))
             if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
             and not subject.feet.crossed(row) and not any_foot_near(subject, row)
-            and not _danced_otherwise(subject, row, self.longest(subject)) and not _at_a_pause(subject, row)
-            and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(self.longest(subject))) == 0)
+            and not _danced_otherwise(subject, row, longest) and not _at_a_pause(subject, row)
+            and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(longest)) == 0)
         ]  # fmt: skip
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:

@@ -87,6 +87,8 @@ class FastStep(ChartRule):
         """Row, column, way (panel widths) and time (s) of each step that is farther than the options allow."""
         for rows, columns, ways, seconds in subject.feet.travels() if subject.feet else ():
             fast = (ways > self.options["max_speed"] * seconds + EPSILON) & (seconds >= self.options["min_seconds"])
+            if not fast.any():
+                continue
             found = (rows[fast], columns[fast], ways[fast], seconds[fast])
             yield from zip(*(one.tolist() for one in found), strict=True)
 

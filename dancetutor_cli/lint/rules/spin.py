@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import Happening, MoveRule
+from dancetutor_cli.lint.rule import EPSILON, Happening, MoveRule
 from dancetutor_cli.lint.rules.fast_step import burst
 
 if TYPE_CHECKING:
@@ -64,20 +64,26 @@ class Spin(MoveRule):
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
         from dancetutor_cli.lint.freely import Freedom, fewest_crossed
 
-        play = subject.play
+        play, longest = subject.play, self.longest(subject)
         if play is None:
             return
         for row in self.rows(subject):
             first = row
             while first and abs(play.facing[first - 1]) > UNCROSSED:
                 first -= 1
-            if self._begun_otherwise(subject, row) or self._walks(subject, row) or burst(subject, row):
+            steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
+            slowest = max(map(subject.pause, steps))
+            if (
+                slowest > longest + EPSILON
+                or self._begun_otherwise(subject, row)
+                or self._walks(subject, row)
+                or burst(subject, row)
+            ):
                 continue
-            free = Freedom(self.longest(subject), rest=_REST)
+            free = Freedom(longest, rest=_REST)
             if fewest_crossed(subject, row, free) <= self._after_pair(subject, row):
                 continue
-            steps = [at for at in range(first, row + 1) if play.rows.steps[at].any()]
-            yield Happening(row, max(map(subject.pause, steps)), self.said)
+            yield Happening(row, slowest, self.said)
 
     def _begun_otherwise(self, subject: ChartSubject, row: int) -> bool:
         """Whether the steps around the spin, or those up to the rest before it, go uncrossed on the other foot."""
