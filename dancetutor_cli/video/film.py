@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.make_way import Stay, stay
 from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 BACKGROUND = (11, 12, 22)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
+SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 BLOCK = 64  # frames whose joints are made at once
 
 
@@ -130,7 +131,14 @@ class Film:
         return tuple(None if way is None else (way + turn) % 360.0 for way in self.plan.directions)
 
     def _box(self, name: str) -> PixelBox:
-        return self.layout.box(name, self.size, self.columns)
+        return self.layout.box(name, self.size, self._breadth)
+
+    @cached_property
+    def _breadth(self) -> int:
+        """Columns by which boxes are chosen: a pad of one square has the usual ones, with six panels too."""
+        pad = self.plan.pad
+        square = pad is not None and float(np.ptp(np.asarray(pad.panels)[:, 0])) < SQUARE
+        return min(self.columns, WIDE_PAD) if square else self.columns
 
     @cached_property
     def _header(self) -> captions.Header | None:

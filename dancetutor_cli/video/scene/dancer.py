@@ -76,7 +76,7 @@ class Dancer:
         seen = with_partner(self.alone) if self.partners else self.alone
         self.scene = Scene(with_bar(seen, self._bar, floor), pad)
         self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
-        self._follow = {} if shot.stands or self.partners else self._followers(shot.camera, shot.size, shot.region)
+        self._follow = {} if shot.stands else self._followers(shot.camera, shot.size, shot.region)
         self.renderer = renderer.create(self.scene, shot.size, shot.quality, shot.kind)
         skeleton = self.alone.skeleton
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
@@ -103,13 +103,21 @@ class Dancer:
         named = camera in look.cameras
         if not (named and along) or self.camera.feet_only:
             return {}
-        if region == WHOLE and is_wide(self.scene):
+        if region == WHOLE and is_wide(self.scene) and not self.partners:
             region = look.follow.region
-        found = {r: Follow(self.scene, camera, size, m.times, m.root, region) for r, m in self.motions.items()}
+        found = {r: Follow(self.scene, camera, size, m.times, self._roots(r), region) for r, m in self.motions.items()}
         low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
         for follow in found.values():  # what stands is drawn once for all of them
             follow.camera = with_pan_range(follow.camera, min(low), max(high))
         return found
+
+    def _roots(self, rate: float) -> NDArray[np.float64]:
+        """Where her root is, (f, 3) metres, at the times of her motion; of two who dance (2, f, 3)."""
+        hers, theirs = self.motions[rate], self.partners.get(rate)
+        if theirs is None:
+            return hers.root
+        other = np.column_stack([np.interp(hers.times, theirs.times, x) for x in theirs.root.T])
+        return np.stack([hers.root, other])
 
     def walks_behind(
         self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float

@@ -34,6 +34,7 @@ class Follow:
 
     scene : with its pad; name : a preset camera; size : (width, height) of the picture; region : the part she fills
     seconds : float64 (f,), increasing; roots : float64 (f, 3), where the dancer's root is then, metres
+        or (2, f, 3) of two who dance: then the camera goes with neither, it only shows both as they walk on and off
     """
 
     def __init__(
@@ -48,13 +49,14 @@ class Follow:
         self._start = float(seconds[0])
         count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
         regular = self._start + _STEP * np.arange(count)
-        across = np.interp(regular, seconds, roots[:, 0])
-        if is_wide(scene):
-            camera, pans = _along(scene, _nearer(scene, name, size, region), size, across)
+        across = np.array([np.interp(regular, seconds, x) for x in np.atleast_2d(roots[..., 0])])
+        if is_wide(scene) and len(across) == 1:
+            camera, pans = _along(scene, _nearer(scene, name, size, region), size, across[0])
         else:
             camera, pans = scene.camera(name, size, region), np.zeros(count)
         aside = max(_ASIDE, 1.1 * float(np.abs(rest_vertices(scene.character)[:, 2]).max()))  # seen from her side
-        pans = pans + _into_the_picture(_seen_at(scene, camera, size, across) + pans, camera, size, aside)
+        seen = np.array([_seen_at(scene, camera, size, one) + pans for one in across])
+        pans = pans + _into_the_picture(seen, camera, size, aside)
         self._pans = pans
         self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
 
@@ -96,13 +98,14 @@ def _seen_at(scene: Scene, camera: Camera, size: tuple[int, int], across: Array)
 
 
 def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside: float) -> Array:
-    """Pans (n,) that bring her into the picture where she is at its edge.
+    """Pans (n,) that bring all who dance into the picture where one of them is at its edge.
 
-    seen : her middle, (n,), picture widths; aside : how far she reaches from it, metres
+    seen : their middles, (p, n), picture widths; aside : how far one reaches from it, metres
     """
     depth = float(np.linalg.norm(np.subtract(camera.target, camera.position)))
     half = min(0.5, aside * camera.focal * size[1] / size[0] / depth)
-    from_left, from_right = np.maximum(half - seen, 0.0), np.maximum(seen - (1.0 - half), 0.0)
+    from_left = np.maximum(half - seen.min(axis=0), 0.0)
+    from_right = np.maximum(seen.max(axis=0) - (1.0 - half), 0.0)
     return _early(from_left) - _early(from_right)
 
 

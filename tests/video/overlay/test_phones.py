@@ -95,6 +95,16 @@ def test_the_tags_beside_the_notes_can_be_read(
     assert edge + drawn.shape[1] <= highway.geometry.box[2]
 
 
+@pytest.mark.parametrize(("steps", "wide"), [("dance-solo", False), ("pump-halfdouble", True), ("dance-double", True)])
+def test_only_pads_of_more_than_a_square_have_the_wide_boxes(steps: str, wide: bool) -> None:
+    pad = load_pad(steps)
+    assert pad is not None
+    plan = film_plan(np.arange(1.0, 7.0), columns=np.arange(6))
+    layout = load_layout("side-by-side")
+    film = Film(replace(plan, look=FilmLook(layout, layout.size), pad=pad, directions=pad.directions))
+    assert film._box("dancer") == layout.box("dancer", layout.size, 8 if wide else 4)
+
+
 def test_a_gif_is_at_least_640_pixels_wide() -> None:
     assert min(FORMATS[name].side or 0 for name in ("gif", "webp")) >= 640
 

@@ -76,6 +76,19 @@ def test_who_walks_on_is_in_the_picture_from_the_first_frame(name, side, size):
     assert np.abs(np.diff(speed)).max() < 0.05, "it starts and stops softly"
 
 
+def test_of_two_both_are_shown_as_they_walk_on():
+    seconds, size = np.linspace(0.0, 20.0, 400), (666, 672)
+    places = [np.interp(seconds, (0.0, 3.0), (x, x - 1.4)) for x in (1.0, 1.9)]
+    roots = np.array([np.column_stack([x, np.full_like(x, 0.9), np.zeros_like(x)]) for x in places])
+    camera = Follow(rs.scene("dance-double"), "back", size, seconds, roots)
+    for second in (0.0, 0.4, 1.0, 3.0):
+        for x in places:
+            hands = np.array([[np.interp(second, seconds, x) + aside, 0.9, 0.0] for aside in (-0.4, 0.4)])
+            seen = camera.at(second).project(hands, size)[:, 0]
+            assert seen.min() > -1 and seen.max() < size[0] + 1
+    assert camera.at(8.0).pan == 0
+
+
 def test_it_is_nearer_than_the_camera_that_shows_the_whole_pad(follow):
     tall = (360, 640)
     scene = rs.scene("dance-double")
