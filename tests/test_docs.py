@@ -118,3 +118,14 @@ def test_pages_that_code_and_settings_cite_are_there() -> None:
     }
     assert len(found) > 10
     assert [(path.name, page) for path, page in sorted(found) if not (ROOT / "docs" / page).exists()] == []
+
+
+def test_every_picture_of_the_docs_is_there_small_and_shown() -> None:
+    docs = ROOT / "docs"
+    shown = {path.name: re.findall(r"!\[[^\]]+\]\(([\w.-]+)\)", path.read_text("utf-8")) for path in docs.glob("*.md")}
+    named = {name for names in shown.values() for name in names}
+    pictures = {path.name for path in docs.iterdir() if path.suffix in (".svg", ".png", ".jpg")}
+    assert named == pictures
+    assert all((docs / name).stat().st_size < 100_000 for name in pictures)
+    features = ("meter.md", "guide.md", "theme.md", "pack.md", "films.md", "peers.md", "page.md")
+    assert all(shown[name] for name in features)

@@ -12,17 +12,23 @@ _PLACES = 12  # measures of a chart that are named
 
 def table_lines(found: Beside) -> Iterator[str]:
     """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
-    yield "| technique | charts | ours | theirs | both | charts alike |"
-    yield "|---|---:|---:|---:|---:|---:|"
+    rows = [["technique", "charts", "ours", "theirs", "both", "charts alike"]]
     for name in TEN:
         pairs = [(len(one.ours[name]), one.theirs[name]) for one in found.charts if name in one.theirs]
         if pairs:
             ours, theirs = (sum(pair[side] for pair in pairs) for side in (0, 1))
             both, alike = sum(map(min, pairs)), sum(a == b for a, b in pairs)
-            yield f"| {name} | {len(pairs)} | {ours} | {theirs} | {both} | {alike} ({100 * alike / len(pairs):.0f} %) |"
+            share = f"{alike} ({100 * alike / len(pairs):.0f} %)"
+            rows.append([name, *map(str, (len(pairs), ours, theirs, both)), share])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for number, row in enumerate(rows):
+        first, *others = zip(row, widths, strict=True)
+        yield " | ".join([f"| {first[0]:<{first[1]}}", *(f"{cell:>{width}}" for cell, width in others)]) + " |"
+        if number == 0:
+            yield f"|{'-' * (widths[0] + 2)}|" + "".join(f"{'-' * (width + 1)}:|" for width in widths[1:])
     yield ""
     count = f"{len(found.charts)} chart{'' if len(found.charts) == 1 else 's'}"
-    yield f"{count}; not known to the game: {found.only_ours}; only known to it: {found.only_theirs}"
+    yield f"{count} of both; only ours: {found.only_ours}; only theirs: {found.only_theirs}"
 
 
 def chart_lines(found: Beside) -> Iterator[str]:
