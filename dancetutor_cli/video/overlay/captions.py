@@ -95,7 +95,10 @@ class Header:
 def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
     """A title in one line, a longer one smaller, then in two or three; only what would fill more is cut off."""
     text = text[:LONGEST]
+    whole = face.width(text, size)
     for least, most in ((0.72, 1), (0.6, 2), (0.6, 3)):
+        if least * whole > most * width:  # it cannot fit, and trying would take long with 1000 letters
+            continue
         lines, fits = fitted(text, size, width, face, most)
         if fits >= least * size:
             return lines, fits

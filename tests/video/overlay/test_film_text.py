@@ -100,6 +100,16 @@ def test_titles_are_not_cut(name: str, title: str, monkeypatch: pytest.MonkeyPat
     assert header.title_end[0] <= box[2] + 4
 
 
+def test_a_title_of_a_stranger_is_not_tried_in_every_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Titles may be 100 kB long: one measuring of the line was repeated 30,000 times."""
+    asked = []
+    width = Typeface.width
+    monkeypatch.setattr(Typeface, "width", lambda self, text, size: (asked.append(text), width(self, text, size))[1])
+    words = Words("a " * 50_000, "", "Hard 8", "Hard", "")
+    Header(words, (0, 0, 740, 200), 1.0, Typeface(), highway_style())
+    assert len(asked) < 100
+
+
 def test_what_does_not_fit_beside_the_badge_stands_below_it() -> None:
     face, style = Typeface(), highway_style()
     words = Words("Possession", "", "Challenge 18", "Challenge", "dance-double · 184-371 BPM")
