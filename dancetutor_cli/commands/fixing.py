@@ -130,7 +130,7 @@ class _Talk:
         for line in outcome.diff if self.diff else ():
             click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
         self.done += len(outcome.done)
-        self.left += len(outcome.left)
+        self.left += sum(not one.is_gone for one in outcome.left)
         self.changed += bool(outcome.done)
         for done in outcome.done:
             what = f"{done.fix.rule} " if done.finding is None else f"{done.finding.rule} {done.finding.name} "
@@ -138,7 +138,8 @@ class _Talk:
             self._say(f"{path}:{line_number}: {what}[{done.chart}] {'would ' if self.diff else ''}{done.fix.words}")
         for left in outcome.left:
             one = left.finding
-            self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] left alone: {left.why}")
+            what = "gone" if left.is_gone else "left alone"
+            self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] {what}: {left.why}")
         for note in outcome.notes:
             self.warn(note)
 

@@ -30,7 +30,7 @@ NO_FIX = {
     safe_fixes.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
     safe_fixes.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
 }
-GONE = "an edit before has removed it too"
+GONE = "an edit before it has removed it, too"
 
 PresetOf = Callable[[Chart], Preset]
 
@@ -51,6 +51,11 @@ class Left:
     chart: str
     finding: Finding
     why: str
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether an edit made for another one has removed it too."""
+        return self.why == GONE
 
 
 @dataclass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,8 +19,11 @@ from dancetutor_cli.meter.bill import AUTO
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.lint.meters import Meters
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.play.preset import Preset
+
+_OTHERS = 20  # charts of a file that are solved only because they tell the scale of its meters
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,8 @@ def _chart_results(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask) -
     for subject in solved(song, selected, task):  # one play at a time: a file may hold thousands of charts
         charts.append(_chart_result(subject, task))
         meters.add(subject, task.rate)
+    for subject in _others(song, selected, task, meters):
+        meters.add(subject, task.rate)
     told = meters.told(task.meter_scale)
     return tuple(
         replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
@@ -91,6 +97,16 @@ def _chart_results(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask) -
         else chart
         for chart in charts
     )
+
+
+def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
+    """Charts that were not asked for, solved nevertheless: a chart plays like the same meter whatever is asked for."""
+    from dancetutor_cli.lint.solved import solved_chart
+
+    kinds, meant = meters.ask_for_others(task.meter_scale), {chart.index for chart in selected}
+    others = (chart for chart in song.charts if chart.steps_type in kinds and chart.index not in meant)
+    for chart in islice(others, _OTHERS):
+        yield solved_chart(song, chart, preset_for(chart, task.path, task.presets))
 
 
 def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from dancetutor_cli.lint.rule import Played, SongRule
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.meter.bill import AUTO, Estimate
-from dancetutor_cli.meter.estimate import Sized, on_scale, scales_of, size
+from dancetutor_cli.meter.estimate import Sized, on_scale, says_scale, scales_of, size
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +46,12 @@ class Meters:
         found = size(subject.play, chart.steps_type, (chart.meter, chart.difficulty), rate)
         if found is not None:
             self._sized[chart.steps_type].append((chart.index, found))
+
+    def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
+        """Steps types of which the song's other charts have to tell the scale, for nothing else does."""
+        if scale != AUTO or says_scale(self._song.tags.get("METERTYPE", "")):
+            return frozenset()
+        return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0][1].on) > 1)
 
     def told(self, scale: str = AUTO) -> dict[int, Told]:
         """Index of the chart -> what is told of it."""

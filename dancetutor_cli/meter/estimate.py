@@ -57,6 +57,11 @@ def _interval(scale: Scale, meter: float) -> tuple[float, float]:
     return max(meter - scale.below[band], 0.0), meter + scale.above[band]
 
 
+def says_scale(tag: str) -> bool:
+    """Whether a value of #METERTYPE names a scale."""
+    return tag.strip().upper() in _TAGS
+
+
 def scales_of(charts: Sequence[Sized], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
@@ -67,7 +72,7 @@ def scales_of(charts: Sequence[Sized], tag: str = "", said: str = AUTO) -> list[
         return [(next(iter(charts[0].on)), True)] * len(charts)
     if said != AUTO:
         return [(said, True)] * len(charts)
-    if tag.strip().upper() in _TAGS:
+    if says_scale(tag):
         return [(_TAGS[tag.strip().upper()], True)] * len(charts)
     all_, main = _Misses(), _Misses()
     tells = [one.difficulty != "Edit" and one.label > 0 for one in charts]  # an Edit may be a guest's

@@ -14,10 +14,14 @@ from annotating import Said as Annotated
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
+from dancetutor_cli.commands.fixing import _Talk
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.files import temporary_name
+from dancetutor_cli.fixes.mend import GONE, NO_MOVE, Left
 from dancetutor_cli.jobs.analyze import analyze_file
+from dancetutor_cli.jobs.fix import FixOutcome
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+from dancetutor_cli.lint.finding import Finding
 
 HARD = ["--steps-type", "dance-single", "--difficulty", "hard"]
 BROKEN = (
@@ -93,6 +97,17 @@ def test_safe_mends_what_no_one_hears(tmp_path: Path) -> None:
     assert "a mine out from under the head of the hold on beat 0" in said.out
     again = Said(path, "--fix", "safe")
     assert "nothing to change" in again.out and again.status == 0
+
+
+def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.CaptureFixture[str]) -> None:
+    finding = Finding("DT207", "ambiguous-start", "warning", "m", line=4)
+    gone, kept = Left("dance-single Hard 9", finding, GONE), Left("dance-single Hard 9", finding, NO_MOVE)
+    for left, status in ((gone, 0), (kept, 1)):
+        talk = _Talk(diff=False)
+        talk.tell(Path("x.sm"), FixOutcome(left=(left,)))
+        assert talk.end() == status
+        said = capsys.readouterr().out
+        assert ("left alone" in said) == (status == 1) and ("] gone: an edit before it" in said or status == 1)
 
 
 def test_what_cannot_be_mended_is_told_and_left(tmp_path: Path) -> None:

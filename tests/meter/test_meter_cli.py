@@ -60,6 +60,14 @@ def test_a_higher_rate_and_another_scale_are_told() -> None:
         assert (c["plays_like"]["scale"], c["plays_like"]["scale_known"]) == ("ddr", True)
 
 
+def test_a_chart_plays_like_the_same_whatever_is_asked_for() -> None:
+    """The song's other charts tell the scale of its meters, also when they are not asked for."""
+    whole = json.loads(printed("--format", "json"))["files"][0]["charts"]
+    for index in (0, 3, 4):
+        (alone,) = json.loads(printed("--format", "json", "--index", str(index)))["files"][0]["charts"]
+        assert alone["plays_like"] == whole[index]["plays_like"] and alone["findings"] == whole[index]["findings"]
+
+
 def test_a_kept_result_has_its_estimates() -> None:
     configuration = load_configuration(None)
     result = analyze_file(AnalyzeTask(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
