@@ -23,6 +23,7 @@ from build_character_skin import ORDER, Skin, four
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.formats.glb import write_glb
+from dancetutor_cli.rig.skeleton import FINGERS, KNUCKLES
 
 DATA = Path(__file__).resolve().parent.parent / "dancetutor_cli" / "character" / "data"
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -43,7 +44,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     if part.skin == "heat":
         normals = gradient(part.on, points) if part.on else normals
         out = skin.at(points, normals)
-        return _with_ankles(out, points) if part.ankles else out
+        return _with_ankles(out, points) if part.ankles else _with_fingers(out, points)
     if part.skin == "foot":
         toes = _smooth((points[:, 2] - 0.078) / 0.040)
         shin = _smooth((points[:, 1] - 0.072) / 0.090)
@@ -78,6 +79,22 @@ def _with_ankles(weights: Array, points: Array) -> Array:
         shin = _smooth((points[here, 1] - 0.072) / 0.090)
         weights[here] = 0
         weights[here, knee], weights[here, ankle] = shin, 1 - shin
+    return weights
+
+
+def _with_fingers(weights: Array, points: Array) -> Array:
+    """The left hand's fingers, all but the thumb, bend at the knuckles and at their middle joints."""
+    away = points - body.SHOULDER
+    along, aside = away @ body.ARM - body.WRIST_ALONG, away @ body.FRONT - body.WRIST_AHEAD
+    across = [row[1] for row in body.HAND[::-1]]
+    knuckle, middle = (np.interp(aside, across, at) for at in body.finger_joints())
+    no_thumb = _smooth((0.048 - aside) / 0.006)
+    finger = _smooth((along - knuckle + 0.010) / 0.020) * no_thumb * (points[:, 0] > 0)
+    tip = _smooth((along - middle + 0.007) / 0.014)
+    hand, first, second = (ORDER[f"l_{name}"] for name in ("radiocarpal", KNUCKLES, FINGERS))
+    whole = weights[:, hand].copy()
+    weights[:, hand] = whole * (1 - finger)
+    weights[:, first], weights[:, second] = whole * finger * (1 - tip), whole * finger * tip
     return weights
 
 

@@ -106,19 +106,28 @@ def leggings() -> Shape:
     return common(blend(0.040, pelvis, both(leg())), half_space((0, 0.066, 0), -UP), 0.01)
 
 
+# fingers, the first one first: knuckle along the hand and towards the thumb, lengths of the three bones, spread in
+# degrees, radius
+HAND = (
+    (0.080, 0.0290, (0.037, 0.023, 0.018), 7, 0.0098),
+    (0.085, 0.0098, (0.042, 0.026, 0.019), 1.5, 0.0102),
+    (0.080, -0.0096, (0.038, 0.024, 0.018), -4, 0.0098),
+    (0.070, -0.0275, (0.029, 0.018, 0.016), -11, 0.0088),
+)
+WRIST_ALONG, WRIST_AHEAD = 0.492, 0.008  # from the shoulder
+
+
+def finger_joints() -> tuple[list[float], list[float]]:
+    """How far along the hand knuckles and middle joints are, of the last finger first."""
+    return [along for along, *_ in HAND[::-1]], [along + 0.95 * bones[0] for along, _, bones, *_ in HAND[::-1]]
+
+
 def hand() -> Shape:
     """The left hand, slightly curled as a relaxed hand is; thumb to the front, palm to the thigh."""
-    wrist = 0.492
+    wrist = WRIST_ALONG
     palm: list[Shape] = []
     fingers: list[Shape] = []
-    # knuckle: along, towards the thumb; lengths of the three bones; spread in degrees; radius
-    table = (
-        (0.080, 0.0290, (0.037, 0.023, 0.018), 7, 0.0098),
-        (0.085, 0.0098, (0.042, 0.026, 0.019), 1.5, 0.0102),
-        (0.080, -0.0096, (0.038, 0.024, 0.018), -4, 0.0098),
-        (0.070, -0.0275, (0.029, 0.018, 0.016), -11, 0.0088),
-    )
-    for k, (along, aside, bones, spread, radius) in enumerate(table):
+    for k, (along, aside, bones, spread, radius) in enumerate(HAND):
         knuckle = on_arm(wrist + along, aside + 0.008, palm=-0.002)
         palm.append(cone(on_arm(wrist - 0.005, aside * 0.45 + 0.008), knuckle, 0.0155, 0.0125))
         points, bend = [knuckle], 14.0 + 4 * k

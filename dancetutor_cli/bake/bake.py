@@ -16,13 +16,14 @@ from dancetutor_cli.bake.settle import mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.motion.bar import bar_of, hold_share, holding
+from dancetutor_cli.motion.bar import bar_of, holding
 from dancetutor_cli.motion.context import Context, context_of
 from dancetutor_cli.motion.footwork import plan_footwork
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.full_body import Poses, solve
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
+from dancetutor_cli.motion.layers.fingers import add_fingers, curls, hand_use
 from dancetutor_cli.motion.layers.gaze import look
 from dancetutor_cli.motion.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.motion.plan import Plan
@@ -190,10 +191,10 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     poses = solve(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
-    feet = both_feet(plan.feet, at, context.settings)
-    free = 1.0 - sample_path(body.reaching, body.times, at).max(axis=1)
-    free *= 1.0 - hold_share(plan.grips, at, context.settings.bar.reach_time).max(axis=1)
-    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last, waiting_at(plan, at, context))
+    feet, waiting = both_feet(plan.feet, at, context.settings), waiting_at(plan, at, context)
+    hands = hand_use(plan, body, at, waiting, context)
+    free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
+    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last, waiting)
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)
@@ -204,6 +205,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     ease_ankles(skeleton, poses.rotations, feet)
     look(poses, body, at, context)
     add_layers(poses, at, doing, context)
+    add_fingers(skeleton, poses, curls(at, hands, context.settings.fingers))
     return poses
 
 

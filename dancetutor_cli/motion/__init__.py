@@ -11,7 +11,7 @@
     ik.full_body.Targets
       |   ik.full_body.solve         all joints at once
     ik.full_body.Poses             local rotations and root
-      |   layers.gaze.look, layers.additive.add_layers   gaze, breath, blinks, wrists
+      |   layers.gaze.look, layers.additive.add_layers, layers.fingers   gaze, breath, blinks, wrists, hands
     model.Motion                   what files, films and the quality report get
 
 No stage calls a later one. Only `bake` orders them: `bake.bake.posed` runs the arrows from a trajectory to poses,

@@ -64,7 +64,10 @@ class ArmSettings:
     down: float
     stream_up: float
     stream_forward: float
+    stream_out: float
+    unlike: float
     step: float
+    step_effort: float
     jump: float
     jump_up: float
     wander: float
@@ -80,6 +83,12 @@ class ArmSettings:
     turn_quick: float
     drawn_in: float
     drawn_back: float
+    quick: float
+    quicker: float
+    hold_back: float
+    held_back: float
+    clear_aside: float
+    clear_ahead: float
     twist_slowest: float
     twist_fastest: float
     wander_slow: float
@@ -211,6 +220,22 @@ class WaitSettings:
     shrug: float
     neck: float
     heel: float
+
+
+@dataclass(frozen=True, slots=True)
+class FingerSettings:
+    """How far fingers are bent."""
+
+    rest: float
+    rest_middle: float
+    fist: float
+    fist_middle: float
+    bar: float
+    bar_middle: float
+    flat: float
+    flat_middle: float
+    wander: float
+    wander_time: float
 
 
 @dataclass(frozen=True, slots=True)

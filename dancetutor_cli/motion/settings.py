@@ -21,6 +21,7 @@ from dancetutor_cli.motion.sections import (
     ArmSettings,
     BarSettings,
     BodySettings,
+    FingerSettings,
     HairSettings,
     HandSettings,
     InertiaSettings,
@@ -45,6 +46,7 @@ __all__ = [
     "AsideSettings",
     "BarSettings",
     "BodySettings",
+    "FingerSettings",
     "HairSettings",
     "HandSettings",
     "HomeSettings",
@@ -86,6 +88,7 @@ class MotionSettings:
     aside: AsideSettings
     home: HomeSettings
     wait: WaitSettings
+    fingers: FingerSettings
     unplayable: UnplayableSettings
     sampling: SamplingSettings
 

@@ -27,7 +27,8 @@ class Waiting:
     share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips shall be on the left of the middle
     between the feet
     hands : (n, 2, 3) metres that the left and the right hand are elsewhere, in the chest's upright axes
-    flap : (n, 2) radians that hands are bent at the wrist; shrug : (n, 2) that shoulders are raised
+    flap : (n, 2) radians that hands are bent at the wrist; loose : (n, 2) 0 to 1, how much fingers hang
+    shrug : (n, 2) radians that shoulders are raised
     tilt : (n,) radians that the head leans to the left; heels : (n, 2) radians that they are raised
     """
 
@@ -35,6 +36,7 @@ class Waiting:
     shift: Array
     hands: Array
     flap: Array
+    loose: Array
     shrug: Array
     tilt: Array
     heels: Array
@@ -43,7 +45,7 @@ class Waiting:
     def none(cls, count: int) -> Waiting:
         """Nothing, for so many times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
-        return cls(one(), one(), np.zeros((count, 2, 3)), two(), two(), one(), two())
+        return cls(one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
@@ -135,6 +137,7 @@ def _shake(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = 2 * np.pi * numbers.shakes * act.times - 0.9 * (hand != act.side)
         out.flap[near, hand] += np.radians(numbers.flap) * np.sin(turn) * act.fade
+        out.loose[near, hand] = act.fade
         out.hands[near, hand] += act.fade[:, None] * [sign * numbers.aside, -numbers.lower, 0.0]
         out.hands[near, hand, 0] += sign * numbers.trembling * np.sin(turn - 0.5) * act.fade
 

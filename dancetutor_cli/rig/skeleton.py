@@ -42,6 +42,8 @@ class Skeleton:
 EYELID_CLOSING = 66.0  # degrees about +x that close the dancer's upper lids; the rest pose has them open
 JAW_LAUGH = 11.0  # degrees about +x that open her mouth to a laugh; at rest she smiles
 
+KNUCKLES, FINGERS = "metacarpophalangeal_3", "carpal_proximal_interphalangeal_3"  # the four fingers move as one
+
 _DOWN = np.sqrt(0.5)
 _LEFT_SIDE: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("l_hip", "HumanoidRoot", (0.088, 0.895, 0.0)),
@@ -52,6 +54,8 @@ _LEFT_SIDE: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("l_shoulder", "l_sternoclavicular", (0.160, 1.380, -0.015)),
     ("l_elbow", "l_shoulder", (0.160 + 0.262 * _DOWN, 1.380 - 0.262 * _DOWN, -0.015)),
     ("l_radiocarpal", "l_elbow", (0.160 + 0.492 * _DOWN, 1.380 - 0.492 * _DOWN, -0.007)),
+    (f"l_{KNUCKLES}", "l_radiocarpal", (0.160 + 0.574 * _DOWN, 1.380 - 0.570 * _DOWN, -0.007)),
+    (f"l_{FINGERS}", f"l_{KNUCKLES}", (0.160 + 0.601 * _DOWN, 1.380 - 0.619 * _DOWN, -0.007)),
     ("l_eyeball_joint", "skullbase", (0.039, 1.589, 0.060)),
     ("l_eyelid_joint", "skullbase", (0.039, 1.589, 0.060)),
 )
@@ -77,11 +81,12 @@ ORDER = (
     *(f"{s}_{n}" for s in "lr" for n in ("eyeball_joint", "eyelid_joint")),
     "braid1", "braid2", "braid3", "braid4",
     "temporomandibular",
+    *(f"{s}_{n}" for s in "lr" for n in (KNUCKLES, FINGERS)),
 )  # fmt: skip
 
 
 def dancer_skeleton() -> Skeleton:
-    """The skeleton of the project's own dancer: 1.70 m tall, 31 joints."""
+    """The skeleton of the project's own dancer: 1.70 m tall, 35 joints."""
     world: dict[str, tuple[str | None, tuple[float, float, float]]] = {n: (p, x) for n, p, x in _MIDDLE}
     for name, parent, (x, y, z) in _LEFT_SIDE:
         world[name] = (parent, (x, y, z))

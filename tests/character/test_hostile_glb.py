@@ -54,7 +54,7 @@ CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "no such buffer": put("bufferViews", 1, "buffer", 7),
     "no such accessor": put("meshes", 0, "primitives", 0, "attributes", "POSITION", 10**9),
     "no such material": put("meshes", 0, "primitives", 0, "material", 99),
-    "no such skin": put("nodes", 31, "skin", 3),
+    "no such skin": put("nodes", 35, "skin", 3),
     "no such joint": put("skins", 0, "joints", [9999]),
     "too many joints": put("skins", 0, "joints", [0] * 5000),
     "fewer matrices than joints": put("accessors", 0, "count", 2),

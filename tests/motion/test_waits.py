@@ -80,7 +80,7 @@ def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
     np.testing.assert_allclose(image.shift, -waiting.shift, atol=1e-12)
     np.testing.assert_allclose(image.tilt, -waiting.tilt, atol=1e-12)
     np.testing.assert_allclose(image.hands, waiting.hands[:, ::-1] * [-1.0, 1.0, 1.0], atol=1e-12)
-    for name in ("flap", "shrug", "heels"):
+    for name in ("flap", "loose", "shrug", "heels"):
         np.testing.assert_allclose(getattr(image, name), getattr(waiting, name)[:, ::-1], atol=1e-12)
 
 

@@ -11,7 +11,7 @@ from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import palm_down
-from dancetutor_cli.motion.ik.rail import hold
+from dancetutor_cli.motion.ik.rail import hold, kept_clear
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import ArmSettings, MotionSettings
@@ -34,12 +34,14 @@ EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; h
 BEHIND = (0.37, 0.23)  # how much of a slow and a quick wave each hand and axis is behind the last
 WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
+HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
+ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
 def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: Context) -> HandTargets:
     """Targets at times `at` (f,); torso : at the same times, as the IK will be asked for it."""
     lean, upright = quat.swing_twist(torso.chest, UP)
-    hang, lag = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
+    hang, lag, held = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
     arms = context.settings.arms
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
     first, last = np.radians((arms.bend_from, arms.bend_full))
@@ -49,6 +51,8 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
         [[arms.bend_out, 0.0, arms.bend_ahead], [-arms.bend_out, 0.0, arms.bend_ahead]]
     )
     wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
+    clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
+    wrists += held[..., None] * kept_clear(wrists, torso, clear)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
     out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
     elbows = quat.rotate(upright[:, None], out)
@@ -60,23 +64,26 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     return hands
 
 
-def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array]:
+def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
     """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
-    Both (n, 2, 3) at the body's times, the second in the world.
+    Both (n, 2, 3) at the body's times, the second in the world; and (n, 2) how much they are held back, 0 to 1.
     """
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
-    swing = _swing(plan, body, settings)
-    hang = np.empty((len(swing), 2, 3))
     rate = 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
-    hang[..., 0] = np.array([1.0, -1.0]) * arms.out
-    hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort
+    wander = _wandering(body.times, plan.lead, arms)
+    # none is ever quite as high, or swings quite as far, as the other one
+    unlike = 1.0 + arms.unlike * wander[..., 1] / ASKEWED
+    swing = unlike * _swing(plan, body, effort, settings)
+    hang = np.empty((len(swing), 2, 3))
+    hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
+    hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort * unlike
     hang[..., 2] = arms.forward + swing + arms.stream_forward * effort
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
     hang[..., 2] += arms.jump * jump
-    hang += arms.wander * _wandering(body.times, plan.lead, arms)
+    hang += arms.wander * wander
     hang += waiting_at(plan, body.times, context).hands
     if context.bar is None:  # a hand that has let go of the bar is soon on it again
         hang = _behind_the_chest(hang, body.chest_yaw, rate, arms)
@@ -84,13 +91,32 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
     controller = Controller.of(settings.inertia.hand_frequency, settings.inertia.hand_damping)
-    lag = np.empty_like(hang)
+    lag, held = np.empty_like(hang), np.empty(hang.shape[:2])
     for side, name in enumerate(SIDES):
         arm = skeleton.rest[skeleton.index(f"{name}_shoulder")] - skeleton.offsets[0]
         target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
-        lag[:, side] = follow(target, rate, controller) - target
-    far = np.linalg.norm(lag, axis=2, keepdims=True)
-    return hang, lag * (arms.lag * np.tanh(far / arms.lag) / np.maximum(far, 1e-9))
+        late = _at_most(follow(target, rate, controller) - target, arms.lag)
+        back, held[:, side] = _held_back(target + late, rate, arms)
+        lag[:, side] = late + back
+    return hang, lag, held
+
+
+def _at_most(way: Array, most: float) -> Array:
+    """Ways (n, 3) that are softly kept shorter than `most`."""
+    far = np.linalg.norm(way, axis=1, keepdims=True)
+    return np.asarray(way * (most * np.tanh(far / most) / np.maximum(far, 1e-9)))
+
+
+def _held_back(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
+    """How a hand on a path (n, 3) in the world leaves it, (n, 3): where it is too quick it takes a shorter way; and how
+    much (n,) it is held back, 0 to 1."""
+    ones = np.ones(len(path))
+    quick = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
+    if quick.max() <= arms.quick:
+        return np.zeros_like(path), np.zeros(len(path))
+    held = lately(smooth((quick - arms.quick) / arms.quicker), rate, 2.0 * arms.hold_back)
+    share = smooth(held / HELD_BACK)[:, None]
+    return _at_most(share * (smooth_path(path, ones, rate, arms.hold_back) - path), arms.held_back), share[:, 0]
 
 
 def lately(tempo: Array, rate: float, around: float) -> Array:
@@ -126,8 +152,11 @@ def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
     return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
 
-def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
-    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot."""
+def _swing(plan: Plan, body: Trajectory, effort: Array, settings: MotionSettings) -> Array:
+    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot.
+
+    effort : (n, 1); farthest half-way between waiting and the quickest streams, for which there is no time
+    """
     front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
     ahead, lifted = [], []
     for track in plan.feet[::-1]:  # the left hand goes with the right foot
@@ -135,7 +164,8 @@ def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
         ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
         lifted.append(np.sin(np.pi * path.progress))
     both = settings.arms.swing * np.clip(np.column_stack(ahead), -settings.arms.swing_most, settings.arms.swing_most)
-    both += settings.arms.step * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
+    far = settings.arms.step * (1.0 + 4.0 * settings.arms.step_effort * effort * (1.0 - effort))
+    both += far * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
     gait = walking(plan.walks, body.times, settings.walk)
     if gait is not None:
         both = (1.0 - gait.own[:, None]) * both + gait.hands

@@ -43,10 +43,18 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
 
 def _around(wrists: Array, weight: Array, torso: Torso) -> Array:
     """By how much wrists (f, 2, 3) on their way to the rail or from it keep clear of the trunk, (f, 2, 3)."""
+    share = smooth(weight / FIRST) * (1.0 - weight**LAST)
+    return share[..., None] * kept_clear(wrists, torso, CLEAR)
+
+
+def kept_clear(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
+    """By how much wrists (f, 2, 3) are pushed out of an upright ellipse about the trunk, softly, (f, 2, 3).
+
+    axes : its half axes aside and ahead, metres
+    """
     upright = quat.swing_twist(torso.chest, UP)[1][:, None]
     middle = torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
-    off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / CLEAR[0], 0.0, 1.0 / CLEAR[1]]
+    off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / axes[0], 0.0, 1.0 / axes[1]]
     far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
     beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft most of 0 and 1 - far
-    clear = quat.rotate(upright, off / far * beyond * [CLEAR[0], 0.0, CLEAR[1]])
-    return np.asarray((smooth(weight / FIRST) * (1.0 - weight**LAST))[..., None] * clear)
+    return quat.rotate(upright, off / far * beyond * [axes[0], 0.0, axes[1]])
