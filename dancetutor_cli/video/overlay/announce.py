@@ -114,6 +114,8 @@ class Calls:
         y = float(self.box[1])
         for one in self._shown(second):
             label = self._sprite(one.text, one.severity)
+            if y > self.box[1] and y + label.shape[0] > self.box[3]:
+                break  # it would cover what stands below; the tag beside the notes says it, too
             x = self.box[2] - label.shape[1]
             fade = min(1.0, (second - one.begin) / 0.12, (max(one.end, one.second) + CALL_STAYS - second) / CALL_STAYS)
             blit(frame, label, x, round(y), fade)

@@ -101,6 +101,22 @@ def test_what_comes_next_stands_below_what_goes_on() -> None:
     assert not late.any()
 
 
+@pytest.mark.parametrize("name", ["practice", "vertical"])
+def test_calls_stay_in_a_box_of_their_own(name: str) -> None:
+    """One of three lines and the next: the next waits, for below stands what is taught. Two short ones both fit."""
+    layout = load_layout(name)
+    box = layout.box("calls", layout.size, 4)
+    assert layout.calls is not None
+    long = "left foot: heel left, toe up ×3, right foot: heel down, toe right"
+    for texts, least in ((("crossover", "spin"), 0.5), ((long, "spin"), 0.4), ((long, long + " ×2"), 0.4)):
+        found = tuple(Callout(5.0 + k, 10.0, text, "move", 4.0, 9.0, text) for k, text in enumerate(texts))
+        frame = np.zeros((layout.size[1], layout.size[0], 3), dtype=np.uint8)
+        Calls(found, box, layout.calls.text, FACE, highway_style()).draw(frame, 6.5)
+        _, top, _, bottom = drawn(frame)
+        assert top >= box[1] and bottom <= box[3], texts
+        assert bottom - top > least * (box[3] - box[1])
+
+
 @pytest.mark.parametrize("width", [90, 200, 330])
 def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
     written: list[str] = []
