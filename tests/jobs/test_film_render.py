@@ -96,8 +96,12 @@ def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int)
 
     pictures = decode_pictures(film, size)
     assert len(pictures) == clock.frames
-    lane = 240 / 1080 * 88
-    x, y = round(0.65 * 240 + 0.5 * lane), round(0.15 * 0.933 * 240)
+    from dancetutor_cli.video.film import Film
+
+    highway = Film(plan).highway
+    assert highway is not None
+    lane, y = highway.geometry.lane, round(highway.geometry.receptor)
+    x = round(highway.geometry.left + 2.5 * lane)  # the third of its lanes, where all notes are
     r = round(0.6 * lane)
     light = pictures[:, y - r : y + r, x - r : x + r].astype(float).mean(axis=(1, 2, 3))
     jumps = np.flatnonzero(np.diff(light) > 0.35 * np.diff(light).max()) + 1
