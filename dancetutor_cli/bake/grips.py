@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Grip
-from dancetutor_cli.motion.bar import on_rail
+from dancetutor_cli.motion.bar import grip_phrases, on_rail
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import arm_rotations, solve
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
@@ -51,9 +51,9 @@ class _Trunk:
 def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     """The plan with when each hand rests on the bar between the seconds of `span`, in order of start.
 
-    A hand lets go before the body goes or turns so far that its arm would not reach, would bend beyond its joints'
-    limits or go through the trunk, and whenever a hand goes to a panel; it takes the rail anew, farther on, when
-    the body has travelled along.
+    She holds it with both hands or with one, by turns as `bar.grip_phrases` says. A hand lets go before the body goes
+    or turns so far that its arm would not reach, would bend beyond its joints' limits or go through the trunk, and
+    whenever a hand goes to a panel; it takes the rail anew, farther on, when the body has travelled along.
     """
     times = np.arange(span[0], span[1], 1.0 / RATE)
     if len(times) < 2:
@@ -62,8 +62,9 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in _runs(~busy))
     trunk = _trunk(replace(plan, grips=leaning_back), times, context)
     found: list[Grip] = []
+    holds, apart = grip_phrases(plan, times, trunk.yaw, context.settings.bar)
     for side in (0, 1):
-        arm = _Arm(side, trunk, busy, context)
+        arm = _Arm(side, trunk, busy | ~holds[:, side], apart, context)
         found += list(_pieces(times, arm, context.settings.bar))
     return replace(plan, grips=tuple(sorted(found, key=lambda g: (g.start, g.side))))
 
@@ -109,13 +110,11 @@ def _part(plan: Plan, at: Array, context: Context) -> _Trunk:
 class _Arm:
     """One arm, and where on the rail its hand can be at which of the n times."""
 
-    def __init__(self, side: int, trunk: _Trunk, busy: Flags, context: Context) -> None:
+    def __init__(self, side: int, trunk: _Trunk, busy: Flags, apart: Array, context: Context) -> None:
         assert context.bar is not None
         self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
         self.skeleton, self.settings = context.skeleton, context.settings
-        self.place = on_rail(
-            trunk.pelvis[:, 0] + (1.0, -1.0)[side] * self.settings.bar.apart, self.bar, self.settings.bar.from_end
-        )
+        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * apart, self.bar, self.settings.bar.from_end)
 
     def fits(self, x: Array, when: slice) -> Flags:
         """Whether the hand may rest on the rail at x (k,) at the times `when`, k of them."""

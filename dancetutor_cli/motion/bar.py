@@ -14,9 +14,12 @@ from dancetutor_cli.motion.swing.panels import HALF_PANEL, panels_on_ground, squ
 from dancetutor_cli.numerics.ease import smooth
 
 if TYPE_CHECKING:
+    from dancetutor_cli.motion.plan import Plan
     from dancetutor_cli.pads import Pad
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+SEED = 19981121
 
 
 def bar_of(pad: Pad, settings: BarSettings) -> Bar:
@@ -44,6 +47,32 @@ def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
     choices = np.stack([np.clip(x, low + from_end, high - from_end) for low, high in bar.spans])
     nearest = np.argmin(np.abs(choices - x), axis=0)
     return np.asarray(np.take_along_axis(choices, nearest[None], axis=0)[0])
+
+
+def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) -> tuple[Flags, Array]:
+    """Which hands (n, 2) may be on the rail at even times (n,), and how far (n,) each is beside the body then, metres.
+
+    A song has phrases of some seconds. In each she holds on with both hands, as mostly in quick ones, or with one:
+    where she is turned, with the one on the rail's side, else with either. Chance decides, always the same way for a
+    song.
+    yaw : (n,) radians that the chest is turned
+    """
+    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)
+    notes, start = np.array([touch.start for touch in plan.touches]), float(times[0])
+    while start < times[-1]:
+        end = start + chance.uniform(settings.phrase_least, settings.phrase_most)
+        near = slice(*np.searchsorted(times, (start, end)).tolist())
+        quick = float(((notes >= start) & (notes < end)).sum()) / (end - start) > settings.quick
+        one, side, nearer = chance.random(), int(chance.integers(2)) ^ plan.lead, chance.uniform(-1.0, 1.0)
+        apart[near] += nearer * settings.nearer
+        if one < (settings.one_quick if quick else settings.one_slow):
+            turned = float(yaw[near].mean())
+            if abs(turned) > np.radians(settings.turned):
+                side = int(turned > 0.0)  # turned to the left she has the rail at her right
+            holds[near, 1 - side] = False
+        start = end
+    return holds, apart
 
 
 def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:

@@ -262,6 +262,13 @@ class BarSettings:
     radius: float
     posts: float
     apart: float
+    nearer: float
+    phrase_least: float
+    phrase_most: float
+    one_slow: float
+    one_quick: float
+    quick: float
+    turned: float
     dip: float
     forward: float
     soft: float

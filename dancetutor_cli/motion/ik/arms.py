@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.bar import hold_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.ik.full_body import arm_rotations
@@ -85,8 +86,8 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     hang[..., 2] += arms.jump * jump
     hang += arms.wander * wander
     hang += waiting_at(plan, body.times, context).hands
-    if context.bar is None:  # a hand that has let go of the bar is soon on it again
-        hang = _behind_the_chest(hang, body.chest_yaw, rate, arms)
+    free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)
+    hang += free[..., None] * (_behind_the_chest(hang, body.chest_yaw, rate, arms) - hang)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
