@@ -67,17 +67,18 @@ class Timing:
         stopped = np.array([tick for tick, _ in (*self.stops, *self.delays)], dtype=np.int64)
         return ~((_inside(self.warps, ticks) & ~np.isin(ticks, stopped)) | _inside(self.fakes, ticks))
 
-    def milliseconds(self, ticks: NDArray[np.int64]) -> NDArray[np.int64]:
+    def milliseconds(self, ticks: NDArray[np.int64], seconds: NDArray[np.float64] | None = None) -> NDArray[np.int64]:
         """Time since the previous of the given ascending ticks, rounded half up to milliseconds; the first is 0.
 
         The time is that of the exact decimals in the file: where floats could round the wrong way, fractions decide.
+        seconds : what `seconds` says of these ticks, where it has been asked
         """
         ticks = np.asarray(ticks, dtype=np.int64)
         out = np.zeros(ticks.shape, dtype=np.int64)
         if len(ticks) < 2:
             return out
-        seconds = self.seconds(ticks)
-        halves = np.diff(seconds) * 1000 + 0.5
+        seconds = self.seconds(ticks) if seconds is None else seconds
+        halves = (seconds[1:] - seconds[:-1]) * 1000 + 0.5
         out[1:] = np.floor(halves)
         doubt = np.abs(halves - np.rint(halves)) < 1e-6 + 4e-12 * np.abs(seconds).max()
         for n, exact in self._exact_milliseconds(ticks, np.flatnonzero(doubt) + 1):

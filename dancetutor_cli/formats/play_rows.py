@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from functools import lru_cache
-from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -30,23 +29,27 @@ def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
     A row of mines alone is there too if it costs something, so that the rows add up to the chart's cost.
     file_lines : (rows,), the line in the file of each row
     """
-    shown = np.flatnonzero(play.rows.steps.any(axis=1) | (play.cost != 0).any(axis=1))
+    is_shown = np.asarray(play.rows.steps.any(axis=1))
+    others = np.flatnonzero(~is_shown)
+    is_shown[others] = (play.cost[others] != 0).any(axis=1)
+    shown = np.flatnonzero(is_shown)
     beats = map(_beat, play.rows.tick[shown].tolist())
-    seconds, lines = play.rows.second[shown].tolist(), file_lines[shown].tolist()
+    seconds, lines = map(_second, play.rows.second[shown].tolist()), file_lines[shown].tolist()
     said = _said(play, shown)
     margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
     if play.confidence is not None:
         sure = ["null" if one != one else _percent(one) for one in play.confidence[shown].tolist()]
         margins = [f'{margin}, "confidence": {one}' for margin, one in zip(margins, sure, strict=True)]
     rows = zip(beats, seconds, lines, said, margins, strict=True)
-    return f"[{', '.join(starmap(_row, rows))}]"
+    texts = [f'{beat}{second}, "line": {line}, {what}{margin}}}' for beat, second, line, what, margin in rows]
+    return f"[{', '.join(texts)}]"
 
 
-def _row(beat: str, second: float, line: int, said: str, margin: str) -> str:
+def _second(second: float) -> str:
     if abs(second) < _SMALL or second > _LARGE:
-        return f'{beat}{round(second, 6)!r}, "line": {line}, {said}{margin}}}'
+        return repr(round(second, 6))
     decimals = f"{second:.6f}".rstrip("0")  # what `repr` of the rounded number is, in a third of the time
-    return f'{beat}{decimals}{"0" if decimals[-1] == "." else ""}, "line": {line}, {said}{margin}}}'
+    return f"{decimals}0" if decimals[-1] == "." else decimals
 
 
 @lru_cache(maxsize=_MOST_KNOWN)

@@ -81,10 +81,8 @@ class ChartSubject:
 
     @cached_property
     def _kinds_of_row(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
-        """Moves that happen together in a row, in the order in which they come first; and of each row which of them."""
-        moves = self.play.moves if self.play else ()
-        kinds = {names: code for code, names in enumerate(dict.fromkeys(moves))}
-        return list(kinds), np.fromiter(map(kinds.__getitem__, moves), np.intp, len(moves))
+        """`Play.kinds`, also of a chart without a play."""
+        return self.play.kinds() if self.play else ([], np.zeros(0, dtype=np.intp))
 
     def _rows_with(self, moves: Collection[str]) -> list[int]:
         kinds, codes = self._kinds_of_row

@@ -81,15 +81,19 @@ def _steps_of(play: Play, pad: Pad) -> _Steps:
     first[1:] = at[1:] != at[:-1]
     row, number = at[first], np.cumsum(first) - 1
     limb, toe = play.limb.ravel()[cell], play.part.ravel()[cell] == _TOE
+    brackets = bool(toe.any())
     places = np.append(pad.panels[:, 0], np.nan)  # column -1: no place
     heels, toes, x, heel_x = [], [], [], []
     for foot in (0, 1):
         mine = limb == foot
-        heel, toe_of = _first(number, column, mine & ~toe, len(row)), _first(number, column, mine & toe, len(row))
-        heels.append(heel)
-        toes.append(toe_of)
-        heel_x.append(places[heel])
-        x.append(np.where(toe_of >= 0, (heel_x[foot] + places[toe_of]) / 2, heel_x[foot]))
+        heels.append(_first(number, column, mine & ~toe if brackets else mine, len(row)))
+        heel_x.append(places[heels[foot]])
+        if brackets:
+            toes.append(_first(number, column, mine & toe, len(row)))
+            x.append(np.where(toes[foot] >= 0, (heel_x[foot] + places[toes[foot]]) / 2, heel_x[foot]))
+        else:
+            toes.append(np.full(len(row), -1, dtype=np.int64))
+            x.append(heel_x[foot])
     gap = np.rint(np.diff(play.rows.second[row]) * 1e6).astype(np.int64)
     feet = (limb == 0) | (limb == 1)
     return _Steps(

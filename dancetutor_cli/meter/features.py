@@ -87,12 +87,12 @@ def _spans(wanted: tuple[Feature, ...]) -> tuple[float, ...]:
 
 def _sums(play: Play, rows: NDArray[np.int64], windows: NDArray[np.int64]) -> NDArray[np.float64]:
     """(`THINGS`,): how often each happens in all windows together. rows : those with a step; windows : of each row"""
-    number = {names: n for n, names in enumerate(dict.fromkeys(play.moves))}
-    codes = np.fromiter(map(number.__getitem__, play.moves), np.intp, len(play.moves))[rows]
-    marks = np.array([_marked(names) for names in number])
+    kinds, codes = play.kinds()
+    codes = codes[rows]
+    marks = np.array([_marked(names) for names in kinds])
     out = np.empty(len(THINGS))
     out[0] = windows.sum()
-    out[1:-2] = np.bincount(codes, windows, len(number)) @ marks
+    out[1:-2] = np.bincount(codes, windows, len(kinds)) @ marks
     crossed = marks[:, _CROSSOVERS - 1].astype(bool)[codes]
     stays = crossed[1:] & crossed[:-1]
     out[_CROSSOVERS] -= windows[1:][stays].sum()

@@ -83,6 +83,19 @@ class Play:
     ambiguity: NDArray[np.uint8] | None = None
     confidence: NDArray[np.float64] | None = None
 
+    def kinds(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
+        """What `moves` holds, in the order in which it comes first, and (n,) which of that each row is.
+
+        Rows of the same moves are the same object where the solver made them, and are told apart by that: to look at
+        the names of each takes five times as long. Others may be listed more than once.
+        """
+        objects = np.fromiter(map(id, self.moves), np.int64, len(self.moves))
+        _, first, codes = np.unique(objects, return_index=True, return_inverse=True)
+        order = first.argsort()
+        rank = np.empty(len(order), dtype=np.intp)
+        rank[order] = np.arange(len(order))
+        return [self.moves[row] for row in first[order].tolist()], rank[codes]
+
     @property
     def total(self) -> int:
         """Cost of the whole play: the minimum possible."""

@@ -59,7 +59,7 @@ def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     second = chart.timing.seconds(known)
     return Rows(
         known, second, line, steps.reshape(n, c), hold_end.reshape(n, c), mines.reshape(n, c),
-        chart.timing.milliseconds(known),
+        chart.timing.milliseconds(known, second),
     )  # fmt: skip
 
 
