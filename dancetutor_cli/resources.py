@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from dancetutor_cli.errors import UnavailableError
@@ -18,6 +18,7 @@ def _root(name: str) -> Path:
     raise UnavailableError(f"the installation is incomplete: folder '{name}' is missing; install dancetutor again")
 
 
+@lru_cache(maxsize=256)
 def config_path(name: str) -> Path:
     """Path of a file or folder in `configs/`, for example ``config_path("presets/thesis.yaml")``."""
     return _root("configs") / name

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 # Below this number of files the start of workers costs more than they save.
 _WORTH_WORKERS = 8
+_SHARES = 4  # a worker gets at once this part of what would be its share of the rest
+_MOST_AT_ONCE = 8  # files, whose results wait for each other
 
 
 def analyze_all(
@@ -59,16 +61,33 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
     from dancetutor_cli.jobs.pool import Task as Work
     from dancetutor_cli.jobs.pool import default_jobs, open_workers
 
-    workers = open_workers(jobs or default_jobs(), lambda key, n: None)
+    count = jobs or default_jobs()
+    workers = open_workers(count, lambda key, n: None)
     try:
-        for place, task in enumerate(tasks):
-            workers.submit(Work(place, _analyze, (task,)))
+        for places in _batches(len(tasks), count):
+            workers.submit(Work(places, _analyze, ([tasks[place] for place in places],)))
         for done in workers.done():
-            result = done.result if done.error is None else failed(tasks[done.key], str(done.error))
-            yield done.key, result, done.error is None
+            if done.error is None:
+                for place, result in zip(done.key, done.result, strict=True):
+                    yield place, result, True
+            elif len(done.key) > 1:  # one of them: each has a try of its own
+                for place in done.key:
+                    workers.submit(Work(range(place, place + 1), _analyze, ([tasks[place]],)))
+            else:
+                yield done.key[0], failed(tasks[done.key[0]], str(done.error)), False
     finally:
         workers.close()
 
 
-def _analyze(_: Callable[[int], None], task: AnalyzeTask) -> FileResult:
-    return analyze_file(task)
+def _batches(tasks: int, jobs: int) -> Iterator[range]:
+    """The places of tasks that go to a worker at once: many at first, so that it need not wait for more after each,
+    and has neighbours, whose charts are alike; one by one in the end, so that all are done at about the same time."""
+    first = 0
+    while first < tasks:
+        after = first + min(max((tasks - first) // (_SHARES * jobs), 1), _MOST_AT_ONCE)
+        yield range(first, after)
+        first = after
+
+
+def _analyze(_: Callable[[int], None], tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
+    return [analyze_file(task) for task in tasks]

@@ -14,7 +14,7 @@ import pytest
 
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.jobs.analyze_all import analyze_all
+from dancetutor_cli.jobs.analyze_all import _batches, analyze_all
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.jobs.pool import Finished, SerialWorkers
@@ -169,6 +169,41 @@ def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest
     cache = ResultCache(tmp_path / "cache")
     (result,) = analyze_all([LintRun(LintRequest()).task(song)], 2, cache)
     assert result.error and "killed" in result.error and not (tmp_path / "cache").exists()
+
+
+def test_of_files_sent_together_only_the_one_that_breaks_a_worker_is_lost(
+    song: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a worker that the system kills, for it has taken too much memory: what it had in hand fails as one."""
+
+    class Dying(SerialWorkers):
+        def done(self) -> Iterator[Finished]:
+            while self._queue:
+                task = self._queue.popleft()
+                deadly = any(one.path.name == "5.sm" for one in task.arguments[0])
+                error = UnavailableError("killed") if deadly else None
+                yield Finished(task.key, None if deadly else task.function(lambda n: None, *task.arguments), error)
+
+    tasks = []
+    for n in range(40):
+        path = song.with_name(f"{n}.sm")
+        path.write_text(NOTES.format(n))
+        tasks.append(LintRun(LintRequest()).task(path))
+    whole = list(analyze_all(tasks, 1, None))
+    monkeypatch.setattr("dancetutor_cli.jobs.pool.open_workers", lambda jobs, report: Dying(report))
+    found = list(analyze_all(tasks, 2, None))
+    assert [n for n, one in enumerate(found) if one.error] == [5] and "killed" in str(found[5].error)
+    assert [*found[:5], *found[6:]] == [*whole[:5], *whole[6:]]
+
+
+@pytest.mark.parametrize(("tasks", "jobs"), [(0, 2), (1, 2), (8, 2), (435, 2), (4000, 16)])
+def test_files_go_to_workers_many_at_once_and_one_by_one_in_the_end(tasks: int, jobs: int) -> None:
+    batches = [*_batches(tasks, jobs)]
+    assert [place for batch in batches for place in batch] == list(range(tasks))
+    sizes = [len(batch) for batch in batches]
+    assert sizes == sorted(sizes, reverse=True) and max(sizes, default=1) <= 8
+    assert all(size == 1 for size in sizes[-jobs:])
+    assert len(batches) <= max(tasks / 8 + 8 * jobs * 4, 1)
 
 
 def test_workers_give_the_same_in_the_same_order(song: Path) -> None:
