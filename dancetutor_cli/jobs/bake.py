@@ -82,7 +82,7 @@ def ask(task: BakeTask) -> Asked:
     from dancetutor_cli.bake.rate import at_rate
 
     check_motion(task.motion, task.gait, task.form)
-    check_style(task.style, task.bar)
+    check_style(task.style)
     wishes_of(task.push, task.trip)
     song, chart, preset, notes = chosen(task.path, task.selection, task.preset, task.section)
     play, pad = _play(task, song, chart, preset)
@@ -104,7 +104,7 @@ def check_motion(motion: Path | None, gait: str, form: str = USUAL) -> None:
     load_gait(gait)
 
 
-def check_style(style: str | None, bar: bool) -> None:
+def check_style(style: str | None) -> None:
     """Say what is wrong with a style: FileError or UsageError, before the work; UnavailableError without the engine."""
     if style is None:
         return
@@ -112,8 +112,6 @@ def check_style(style: str | None, bar: bool) -> None:
     from dancetutor_cli.physics.style import load_style
 
     load_style(style)
-    if bar:
-        raise UsageError("a style moves her arms, and hands on the bar stay where they are; leave --bar or --style out")
     engine()
 
 

@@ -93,7 +93,7 @@ def look_up(request: FilmRequest) -> Subject:
         from dancetutor_cli.jobs.bake import check_motion, check_style, wishes_of
 
         check_motion(request.motion, request.gait, request.form)
-        check_style(request.style, request.bar)
+        check_style(request.style)
         wishes_of(request.push, request.trip)
     song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section, both=True)
     music, missing = (None, None) if request.mute else find_music(song, chart)

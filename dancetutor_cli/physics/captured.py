@@ -79,6 +79,7 @@ def on_body(captured: Captured, joints: Mapping[str, int], body: Skeleton) -> Mo
             world[:, joint] = given.delta(name)
         else:
             world[:, joint] = world[:, parent] if parent >= 0 else [1.0, 0.0, 0.0, 0.0]
+    world[:, 0] = _level(world[:, 0], given)
     _spread(body, joints, world)
     for side in "lr":
         for chain in _LIMBS:
@@ -105,7 +106,10 @@ def _without_reference(captured: Captured) -> Captured:
 
 
 class _Upright:
-    """The captured motion turned to look to +Z over y, in the lengths of the body's legs."""
+    """The captured motion turned to look to +Z over y, in the lengths of the body's legs.
+
+    theirs : metres between the captured hips; wider : by which each of the body's hips is farther from the middle
+    """
 
     def __init__(self, captured: Captured, joints: Mapping[str, int], body: Skeleton) -> None:
         self.captured, self.joints = captured, joints
@@ -122,6 +126,9 @@ class _Upright:
         self.turn = _from_matrix(matrix)
         self.scale = _leg(body.rest, {n: body.index(n) for n in joints if n in body.names}) / _leg(rest, joints)
         self.rest = {name: quat.rotate(self.turn, place) for name, place in at.items()}
+        hips = [body.rest[body.index(f"{s}_hip")] for s in "lr"]
+        self.theirs = self.scale * float(np.linalg.norm(self.rest["l_hip"] - self.rest["r_hip"]))
+        self.wider = (float(np.linalg.norm(hips[0] - hips[1])) - self.theirs) / 2
 
     def place(self, name: str) -> Array:
         """World path (f, 3), metres of the body."""
@@ -150,6 +157,15 @@ def _from_matrix(matrix: Array) -> Array:
     y = quat.rotate(first, _UP)
     second = quat.from_axis_angle(matrix[:, 0], np.arctan2(np.cross(y, matrix[:, 1]) @ matrix[:, 0], y @ matrix[:, 1]))
     return quat.multiply(second, first)
+
+
+def _level(pelvis: Array, given: _Upright) -> Array:
+    """Turns (f, 4) of a pelvis wider than the captured one, leaning aside so much less that its hips rise no more."""
+    if given.wider <= 0.0:
+        return pelvis
+    line = quat.rotate(pelvis, np.array([1.0, 0.0, 0.0]))
+    level = line * [1.0, given.theirs / (given.theirs + 2 * given.wider), 1.0]
+    return quat.multiply(quat.between(line, level), pelvis)
 
 
 def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
@@ -222,31 +238,36 @@ def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Feet:
-    """Where ankles and feet shall be; lift : metres (f,) by which the file's body must rise to stand on y = 0."""
+    """Where ankles and feet shall be; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
 
     feet: AnkleTracks
     lift: Array
 
 
 def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
-    """Feet flat where they stand, their balls over the places of the captured ones; writes feet and toes of `world`."""
-    places, turns, stands = [], [], []
+    """Feet flat where they stand, their balls over the places of the captured ones; writes feet and toes of `world`.
+
+    As far aside as the body's hips are wider: legs that slanted to a narrow stance would need ankles that nobody has.
+    """
+    places, turns, stands, raised = [], [], [], []
     for side in "lr":
         ankle, toes = f"{side}_talocrural", f"{side}_metatarsal"
-        path, ahead_of = given.place(ankle), body.offsets[body.index(toes)][2]
+        path, own = given.place(ankle), body.offsets[body.index(toes)]
         standing = _standing(path, given.captured.fps)
-        level, theirs = quat.IDENTITY, ahead_of
+        level, theirs = quat.IDENTITY, own
         if toes in given.rest:
             way = given.bone(ankle, toes)
             level = quat.from_axis_angle(_UP, np.asarray(np.arctan2(way[0], way[2])))
-            theirs = given.scale * float(np.hypot(way[0], way[2]))
+            theirs = given.scale * np.array([0.0, way[1], np.hypot(way[0], way[2])])
         turn = quat.multiply(given.delta(ankle), level)
         up = quat.rotate(quat.conjugate(turn[standing]), _UP).mean(axis=0)
         level = quat.multiply(level, quat.between(_UP, up))
         turn = quat.multiply(given.delta(ankle), level)
         world[:, body.index(ankle)] = turn
         world[:, body.index(toes)] = quat.multiply(given.delta(toes), level) if toes in given.rest else turn
-        places.append(path + quat.rotate(turn, np.array([0.0, 0.0, theirs - ahead_of])))
+        wider = np.array([given.wider if side == "l" else -given.wider, 0.0, 0.0])
+        places.append(path + quat.rotate(turn, wider + (theirs - own) * [0.0, 1.0, 1.0]))
+        raised.append(float(theirs[1] - own[1]))
         turns.append(turn)
         stands.append(standing)
     feet = AnkleTracks(np.stack(places, axis=1), np.stack(turns, axis=1))
@@ -254,7 +275,7 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
     lift = -_floor(low, np.stack(stands, axis=1))
     lifted = feet.places + lift[:, None, None] * _UP
     lifted += np.maximum(-(low + lift[:, None]), 0.0)[..., None] * _UP
-    return _Feet(AnkleTracks(lifted, feet.turns), lift)
+    return _Feet(AnkleTracks(lifted, feet.turns), lift + float(np.mean(raised)))
 
 
 def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.smoothing import upper_envelope
-from dancetutor_cli.physics.repin import AnkleTracks, Leg
+from dancetutor_cli.physics.plants import Plants
+from dancetutor_cli.physics.repin import AnkleTracks, Leg, repinned
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
@@ -19,6 +21,8 @@ FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stret
 ROUND = 0.01  # metres over which a foot in the air begins to come nearer
 SLOWLY = 0.20  # seconds that the last of a stretch takes to come and to go
 SINK = 0.25  # seconds over which the pelvis sinks
+BENT = np.radians(20.0)  # of a knee that a rise leaves: straighter ones pop
+RISES, RISE = 12, 0.0008  # rounds of rising, and metres in each for a degree that an ankle is past its limit
 
 
 def soft_legs(
@@ -50,6 +54,42 @@ def soft_legs(
         short = np.where(held[:, side] < 1.0, short, np.maximum(2 * less, 0.0))
         places[:, side] -= way * (short / np.maximum(far, 1e-9))[:, None]
     return root, AnkleTracks(places, feet.turns)
+
+
+def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, plants: Plants, times: Array) -> Array:
+    """Root (f, 3), so high that ankles of feet whose heels are held are within their limits, as far as legs reach.
+
+    Where thighs are long and shanks short a captured squat would bend ankles too far.
+    """
+    rotations, root = poses
+    for _ in range(RISES):
+        past = np.zeros(len(root))
+        for side, name in enumerate(("l_talocrural", "r_talocrural")):
+            beyond_by = beyond(skeleton, name, rotations[:, skeleton.index(name)])
+            past = np.maximum(past, np.where(plants.heel[:, side], beyond_by, 0.0))
+        if past.max(initial=0.0) <= 0.0:
+            break
+        up = upper_envelope(times, RISE * past, SINK)
+        root = root + up[:, None] * quat.UP
+        need = np.minimum(too_high(skeleton, (rotations[:, 0], root), feet, BENT), up)
+        root -= need[:, None] * quat.UP
+        rotations, root = repinned(skeleton, (rotations, root), feet)
+    return root
+
+
+def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks, bent: float) -> Array:
+    """Metres (f,) by which a pelvis must sink so that no knee is bent by less than `bent` radians.
+
+    pelvis : its turns (f, 4) and root (f, 3)
+    """
+    turns, root = pelvis
+    need = np.zeros(len(root))
+    for k, side in enumerate("lr"):
+        leg = Leg(skeleton, side)
+        way = feet.places[:, k] - root - quat.rotate(turns, skeleton.offsets[leg.hip])
+        aside = way[:, 0] ** 2 + way[:, 2] ** 2
+        need = np.maximum(need, -way[:, 1] - np.sqrt(np.maximum(leg.length(bent) ** 2 - aside, 0.0)))
+    return need
 
 
 def _soft(leg: Leg, distance: Array, times: Array) -> Array:

@@ -15,7 +15,8 @@ from dancetutor_cli.physics.actors import Actor, BreakableSoles, StiffKnees
 from dancetutor_cli.physics.apart import arms_apart
 from dancetutor_cli.physics.distances import Distances
 from dancetutor_cli.physics.follower import follow_all
-from dancetutor_cli.physics.legs import soft_legs
+from dancetutor_cli.physics.holds import hands_held
+from dancetutor_cli.physics.legs import risen, soft_legs
 from dancetutor_cli.physics.plants import Plants, let_go, planted, tidied
 from dancetutor_cli.physics.points import place_points, points_of
 from dancetutor_cli.physics.pushes import Blow, Push, Struck, Stumble, disturbed, recovered, told
@@ -95,7 +96,13 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     else:
         rotations = arms_apart(skeleton, motion.rotations, (rotations, root), feet, motion.times)
         path = (motion.times, mass_of(skeleton, (motion.rotations, motion.root)))
-        poses = kept_mass(skeleton, (rotations, root), feet, path, _undisturbed(motion, wishes), share)
+        calm = _undisturbed(motion, wishes)
+        poses = kept_mass(skeleton, (rotations, root), feet, path, calm, share)
+        if motion.grips:  # arms that are moved there have mass
+            poses = kept_mass(skeleton, hands_held(motion, poses, feet), feet, path, calm, share)
+    if plants is not None:
+        root = risen(skeleton, poses, feet, plants, motion.times)
+        poses = repinned(skeleton, (rotations, root), feet)
     for _ in range(EASINGS if plants is not None else 0):
         assert plants is not None
         feet, changed = eased_ankles(skeleton, poses[0], feet, plants, held)
@@ -104,7 +111,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         poses = repinned(skeleton, (rotations, root), feet)
     if wishes.pushes or wishes.trips:
         poses = _possible(motion, poses, feet)
-    rotations, root = poses
+    rotations, root = hands_held(motion, poses, feet)
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
         if style.limits:

@@ -52,6 +52,18 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
     return AnkleTracks(places, feet.turns)
 
 
+def _pitched(turns: Array, wanted: Array, ball: Flags) -> Array:
+    """Turns (n, 4) of feet that stand on one end, pitched as `wanted`: any other turn would make that end slide.
+
+    ball : (n,) which of them stand on that end; the other end is up
+    """
+    ahead, towards = quat.rotate(turns, _AHEAD), quat.rotate(wanted, _AHEAD)
+    level = quat.from_axis_angle(_UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
+    pitch = np.arcsin(np.clip(-towards[:, 1], -1.0, 1.0))
+    pitch = np.where(ball, np.maximum(pitch, 0.0), np.minimum(pitch, 0.0))
+    return quat.multiply(level, quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), pitch))
+
+
 def _frames_to(flags: Flags) -> Array:
     """How many frames (f,) it is to the nearest flag."""
     at = np.flatnonzero(flags)
@@ -80,6 +92,8 @@ def eased_ankles(
             continue
         shank = world[past, skeleton.parents[ankle]]
         turn = quat.multiply(shank, within(skeleton, name, rotations[past, ankle], 0.6))
+        stands = (plants.heel | plants.ball)[past, side]
+        turn = np.where(stands[:, None], _pitched(turns[past, side], turn, plants.ball[past, side]), turn)
         anchor = np.where(plants.ball[past, side][:, None], sole.ball, sole.heel)
         moved = quat.rotate(turns[past, side], anchor) - quat.rotate(turn, anchor)
         places[past, side] += held[past, side][:, None] * moved

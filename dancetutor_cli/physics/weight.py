@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.numerics.smoothing import cubic, low_pass, upper_envelope
-from dancetutor_cli.physics.repin import AnkleTracks, Leg, repinned
+from dancetutor_cli.physics.legs import BENT, too_high
+from dancetutor_cli.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
@@ -20,7 +21,6 @@ Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 ROUNDS = 4  # of moving the root: legs follow, and have mass
 STANCE = 0.5  # Hz below which her height may be another one
-BENT = np.radians(17.0)  # of a knee that a rise leaves; straighter ones pop
 SINKS = 1.5  # seconds over which she stands lower than a style would have her
 RATE = 120.0  # at which height is filtered
 
@@ -47,25 +47,11 @@ def kept_mass(
         if stands is None:
             stands = free * _slowly(times, off[:, 1])
             raised = poses[1] - share[:, None] * (off - stands[:, None] * quat.UP)
-            stands -= _too_high(skeleton, (rotations[:, 0], raised), feet, times, np.maximum(stands, 0.0))
+            need = too_high(skeleton, (rotations[:, 0], raised), feet, BENT)
+            stands -= upper_envelope(times, np.minimum(need, np.maximum(stands, 0.0)), SINKS)
         off[:, 1] -= stands
         root = poses[1] - share[:, None] * off
     return repinned(skeleton, (rotations, root), feet)
-
-
-def _too_high(skeleton: Skeleton, pelvis: Poses, feet: AnkleTracks, times: Array, rise: Array) -> Array:
-    """How much (f,) of a rise (f,) must go so that no knee is so straight that it may pop.
-
-    pelvis : its turns (f, 4) and root (f, 3)
-    """
-    turns, root = pelvis
-    need = np.zeros(len(root))
-    for k, side in enumerate("lr"):
-        leg = Leg(skeleton, side)
-        way = feet.places[:, k] - root - quat.rotate(turns, skeleton.offsets[leg.hip])
-        aside = way[:, 0] ** 2 + way[:, 2] ** 2
-        need = np.maximum(need, -way[:, 1] - np.sqrt(np.maximum(leg.length(BENT) ** 2 - aside, 0.0)))
-    return upper_envelope(times, np.minimum(need, rise), SINKS)
 
 
 def _slowly(times: Array, values: Array) -> Array:

@@ -92,6 +92,20 @@ def test_arms_that_a_style_sends_through_her_go_back(hard: Motion) -> None:
     assert made["limb in torso"].met and made["arm in arm"].met and made["arm in leg"].met
 
 
+@pytest.mark.parametrize("name", ["fierce", "lazy"])
+def test_hands_stay_on_the_bar(name: str) -> None:
+    task = BakeTask(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection("dance-single", "hard"))
+    task = replace(task, section="8:11", bar=True)
+    plain = bake_asked(ask(task), task)
+    assert plain.grips and max(g.end for g in plain.grips) > 9.0
+    motion = styled(plain, name, default_settings()).motion
+    made, head = report(motion), motion.skeleton.index("skullbase")
+    for figure in ("palm off the bar", "frames past joint limits", "limb in torso", "contact error", "plant slide"):
+        assert made[figure].met, made[figure]
+    places = [world_transforms(m.skeleton, m.rotations, m.root)[0][:, head] for m in (plain, motion)]
+    assert np.linalg.norm(places[0] - places[1], axis=1).mean() > 0.01, "and the style is seen"
+
+
 def test_palms_press_their_panels_on_time_in_every_style() -> None:
     events = [
         (1.0, {0: plays.L}),
