@@ -68,7 +68,8 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
 def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
     """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
-    Both (n, 2, 3) at the body's times, the second in the world; and (n, 2) how much they are held back, 0 to 1.
+    Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of
+    the trunk: as far as they are held back, and all the time where there is a bar.
     """
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     rate = 1.0 / float(body.times[1] - body.times[0])
@@ -99,6 +100,8 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
         late = _at_most(follow(target, rate, controller) - target, arms.lag)
         back, held[:, side] = _held_back(target + late, rate, arms)
         lag[:, side] = late + back
+    if context.bar is not None:  # behind her back, a hand has the trunk in its way
+        held[:] = 1.0
     return hang, lag, held
 
 
