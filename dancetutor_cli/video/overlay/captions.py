@@ -61,8 +61,9 @@ class Header:
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
             x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
-            if face.width(words.detail, 0.8 * size) <= self._right - x:
-                self.lines.append(self._beside(words.detail, size, x, top + badge.shape[0] / 2))
+            if face.width(words.detail, size) <= self._right - x:
+                ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)
+                self.lines.append((ink, x, top + (badge.shape[0] - ink.shape[0]) / 2))
             else:
                 self._line(words.detail, size, box[0], 3 * scale)
         if words.credit:
@@ -75,11 +76,6 @@ class Header:
     def _line(self, text: str, size: float, x: float, gap: float, weight: float = 0.0) -> None:
         text, size = self._face.shrink(text, size, self._right - x)
         self._add(self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale), x, gap)
-
-    def _beside(self, text: str, size: float, x: float, middle: float) -> tuple[Sprite, float, float]:
-        text, size = self._face.shrink(text, size, self._right - x)
-        sprite = self._face.sprite(text, size, SOFT, shadow=1.5 * self._scale)
-        return sprite, x, middle - sprite.shape[0] / 2
 
     @property
     def boxes(self) -> list[Box]:
