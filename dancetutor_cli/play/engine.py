@@ -97,9 +97,9 @@ class Engine:
         store.fill_patterns(t.pattern, count + 1, t.pattern_hash)
         return count
 
-    def room(self, rows: int) -> RowStates:
-        """Room for the nodes of a few rows, until the next are asked for."""
-        return _nodes(rows, self._node)
+    def room(self, rows: int, known: int) -> RowStates:
+        """Room for the nodes of a few rows, until the next are asked for; known : how many are to be filled in."""
+        return _nodes(rows, self._node if 2 * known <= _NODES_KEPT else np.empty(2 * known, dtype=np.int64))
 
     def go_on(self, arrays: RowArrays, nodes: RowStates) -> None:
         """Nodes of all rows but the first, for which they are filled in."""

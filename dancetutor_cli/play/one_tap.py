@@ -90,7 +90,7 @@ class OneTap:
         """Nodes of the rows from `row` to `stop`, of which the first has another pattern; its place in them is 1."""
         old, a, around = self._nodes, self._arrays, slice(row - 1, stop)
         low, high = old.row[row : row + 2, store.FIRST].tolist()
-        new = self._engine.room(stop - row + 1)
+        new = self._engine.room(stop - row + 1, high - low)
         new.row[1], new.row[2, store.FIRST] = (0, old.row[row, store.BASE]), high - low
         new.node[: high - low] = old.node[low:high]
         new.transition[0] = old.transition[row - 1]
