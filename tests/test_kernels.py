@@ -169,9 +169,9 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
 def test_a_kernel_is_compiled_again_when_one_beside_it_changes(tmp_path: Path) -> None:
     """Those of the software renderer have a decorator of their own, and go into each other."""
     shutil.copytree(Path(cpu.__file__).parent, tmp_path / "cpu", ignore=shutil.ignore_patterns("__pycache__"))
-    ground, surfaces = tmp_path / "cpu" / "floor.py", tmp_path / "cpu" / "stage_colours.py"
+    ground, standing = tmp_path / "cpu" / "floor.py", tmp_path / "cpu" / "standing.py"
     before = kernels.stamp_of.__wrapped__(ground)
-    surfaces.write_text(surfaces.read_text("utf-8").replace("return", "return 1 *", 1), "utf-8")
+    standing.write_text(standing.read_text("utf-8").replace("return", "return 1 *", 1), "utf-8")
     assert kernels.stamp_of.__wrapped__(ground) != before
 
 

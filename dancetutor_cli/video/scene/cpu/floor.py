@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import inner_kernel, njit
-from dancetutor_cli.video.scene.cpu.stage_colours import smooth
 from dancetutor_cli.video.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.prepare import PLANTED, Cast
@@ -18,6 +17,13 @@ Array = NDArray[np.float64]
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
 OUTSIDE = 0.030  # metres from the sole: no ring is farther out
 LIT = 0.80  # of its light that a lit panel keeps in the deepest shadow: hers must not hide what she presses
+
+
+@njit(cache=True, inline="always")
+def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
+    """0 below `low`, 1 above `high`, a cubic between."""
+    t = min(1.0, max(0.0, (x - low) / (high - low)))
+    return t * t * (3.0 - 2.0 * t)
 
 
 @njit(cache=True)

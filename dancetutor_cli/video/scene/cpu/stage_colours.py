@@ -1,4 +1,7 @@
-"""Colours of the stage, one rule for each kind of surface."""
+"""Colours of the stage, one rule for each kind of surface.
+
+Drawn once a camera, with numpy: compiling it took as long as fifty pictures of it.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,38 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.look import RGB, StageLook
-from dancetutor_cli.video.scene.stage import PANEL, Stage, pad_extent
+from dancetutor_cli.video.scene.stage import PANEL, Stage, SurfaceKind, pad_extent
 
 COLOURS = (
     "floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel", "panel_blank",
     "groove", "arrow",
 )  # fmt: skip
+Array = NDArray[np.float64]
 _NUMBERS = len(COLOURS)  # row of the palette with tile, pool; the next has the pad's middle and half size
+
+
+class Place(NamedTuple):
+    """Places on a surface, n each. x, z : in the world; u, v : on the surface; footprint : metres of it in a pixel"""
+
+    x: Array
+    z: Array
+    u: Array
+    v: Array
+    footprint: Array
+
+
+class Painted(NamedTuple):
+    """What places look like. colour : (n, 3), 0..1; takes : how much of shadows; panel : int32 (n,), column or -1
+
+    glow, white : (n,), of a fully lit panel
+    """
+
+    colour: Array
+    takes: float
+    panel: NDArray[np.int32]
+    glow: Array
+    white: Array
 
 
 class Paints(NamedTuple):
@@ -24,9 +50,9 @@ class Paints(NamedTuple):
     palette : colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4); panel, arrow : of `stage.Tiles`
     """
 
-    palette: NDArray[np.float64]
+    palette: Array
     panel: NDArray[np.int32]
-    arrow: NDArray[np.float64]
+    arrow: Array
 
 
 def paints_of(look: StageLook, stage: Stage) -> Paints:
@@ -42,112 +68,95 @@ def paints_of(look: StageLook, stage: Stage) -> Paints:
     return Paints(out, stage.tiles.panel, stage.tiles.arrow)
 
 
-@njit(cache=True, inline="always")
-def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
+def _smooth(low: float, high: float, x: Array) -> Array:
     """0 below `low`, 1 above `high`, a cubic between."""
-    t = min(1.0, max(0.0, (x - low) / (high - low)))
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
 
 
-@njit(cache=True, inline="always")
-def _mix(palette: Any, a: int, b: int, t: float) -> Any:  # pragma: no cover
-    return (
-        palette[a, 0] + (palette[b, 0] - palette[a, 0]) * t,
-        palette[a, 1] + (palette[b, 1] - palette[a, 1]) * t,
-        palette[a, 2] + (palette[b, 2] - palette[a, 2]) * t,
-    )
+def _mix(palette: Array, a: int, b: int, t: Array) -> Array:
+    """From colour a to colour b, (n, 3)."""
+    return np.asarray(palette[a, :3] + (palette[b, :3] - palette[a, :3]) * t[:, None])
 
 
-@inner_kernel
-def _line(x: float, tile: float, half: float, footprint: float) -> float:  # pragma: no cover
+def _cover(x: Array) -> Array:
+    """How much of a pixel is covered whose middle is so many pixels inside of an edge."""
+    return np.clip(x + 0.5, 0.0, 1.0)
+
+
+def _line(x: Array, tile: float, half: float, footprint: Array) -> Array:
     """How much of a footprint around x is covered by lines of half width `half`, one every `tile` metres."""
-    d = abs(x / tile - np.floor(x / tile + 0.5)) * tile
-    cover = min(1.0, max(0.0, (half - d) / footprint + 0.5))
-    return float(cover * min(1.0, 2.0 * half / footprint))
+    d = np.abs(x / tile - np.floor(x / tile + 0.5)) * tile
+    return np.asarray(_cover((half - d) / footprint) * np.minimum(1.0, 2.0 * half / footprint))
 
 
-@inner_kernel
-def _floor(x: float, z: float, footprint: float, palette: Any) -> Any:  # pragma: no cover
+def _floor(place: Place, palette: Array) -> Painted:
+    x, z, footprint = place.x, place.z, place.footprint
     px, pz, tile = palette[13, 0], palette[13, 1], palette[12, 0]
     half_x, half_z, pool = palette[13, 2], palette[13, 3], palette[12, 1]
-    dx = max(abs(x - px) - half_x, 0.0)
-    dz = max(abs(z - pz) - half_z, 0.0)
-    away = (dx * dx + dz * dz) / (pool * pool)
-    light = 1.0 / (1.0 + away)
+    dx = np.maximum(np.abs(x - px) - half_x, 0.0)
+    dz = np.maximum(np.abs(z - pz) - half_z, 0.0)
+    light = 1.0 / (1.0 + (dx * dx + dz * dz) / (pool * pool))
     light = light * light
-    line = max(
-        _line(x - px - half_x, tile, 0.007, footprint),
-        _line(z - pz - half_z, tile, 0.007, footprint),
-    )
-    r, g, b = _mix(palette, 1, 0, light)
-    line *= light
-    return r + (palette[2, 0] - r) * line, g + (palette[2, 1] - g) * line, b + (palette[2, 2] - b) * line
+    line = np.maximum(_line(x - px - half_x, tile, 0.007, footprint), _line(z - pz - half_z, tile, 0.007, footprint))
+    colour = _mix(palette, 1, 0, light)
+    colour = colour + (palette[2, :3] - colour) * (line * light)[:, None]
+    return Painted(colour, 1.0, *_unlit(len(x)))
 
 
-@njit(cache=True)
-def arrow_distance(a: float, b: float) -> float:  # pragma: no cover
+def arrow_distance(a: Any, b: Any) -> Any:
     """How far outside of an arrow a place is (negative: inside), in panel widths; it points along a, |a|, |b| < 0.5."""
-    b = abs(b)
-    head = max(0.02 - a, (a + 1.12 * b - 0.36) * 0.666)
-    shaft = max(b - 0.105, max(-0.33 - a, a - 0.05))
-    return min(head, shaft)
+    b = np.abs(b)
+    head = np.maximum(0.02 - a, (a + 1.12 * b - 0.36) * 0.666)
+    shaft = np.maximum(b - 0.105, np.maximum(-0.33 - a, a - 0.05))
+    return np.minimum(head, shaft)
 
 
-@inner_kernel
-def _pad(x: float, z: float, footprint: float, paints: Any) -> Any:  # pragma: no cover
-    """Colour, column of the panel or -1, how much it glows when lit, and how white."""
+def _pad(place: Place, paints: Paints) -> Painted:
     palette, panel, arrow = paints.palette, paints.panel, paints.arrow
     size = palette[12, 2]
-    across, deep = (palette[14, 0] - x) / size, (z - palette[14, 1]) / size
-    i = min(max(int(np.floor(across)), 0), panel.shape[0] - 1)
-    j = min(max(int(np.floor(deep)), 0), panel.shape[1] - 1)
+    across, deep = (palette[14, 0] - place.x) / size, (place.z - palette[14, 1]) / size
+    i = np.clip(np.floor(across), 0, panel.shape[0] - 1).astype(np.int64)
+    j = np.clip(np.floor(deep), 0, panel.shape[1] - 1).astype(np.int64)
     lx, lz = -(across - i - 0.5), deep - j - 0.5  # world directions, in panel widths from the tile's middle
-    soft = max(footprint / size, 1e-4)
-    edge = max(abs(lx), abs(lz))
-    inside = min(1.0, max(0.0, (0.478 - edge) / soft + 0.5))
-    border = min(1.0, max(0.0, (edge - 0.425) / soft + 0.5)) * inside
+    soft = np.maximum(place.footprint / size, 1e-4)
+    edge = np.maximum(np.abs(lx), np.abs(lz))
+    inside = _cover((0.478 - edge) / soft)
+    border = _cover((edge - 0.425) / soft) * inside
     column = panel[i, j]
-    if column < 0:
-        r, g, b = _mix(palette, 10, 9, inside)
-        return r, g, b, -1, 0.0, 0.0
     ax, az = arrow[i, j, 0], arrow[i, j, 1]
-    d = arrow_distance(lx * ax + lz * az, lx * az - lz * ax) if ax * ax + az * az > 0.0 else edge - 0.24
-    sign = min(1.0, max(0.0, -d / soft + 0.5))
-    sheen = 1.0 + 0.10 * (lz + 0.5)
-    r, g, b = _mix(palette, 10, 8, inside)
-    r, g, b = r * sheen, g * sheen, b * sheen
-    mark = max(sign, 0.30 * border)
-    r += (palette[11, 0] - r) * mark
-    g += (palette[11, 1] - g) * mark
-    b += (palette[11, 2] - b) * mark
-    return r, g, b, column, inside * max(0.72, max(border, sign)), max(0.62 * sign, 0.35 * border)
+    d = np.where(ax * ax + az * az > 0.0, arrow_distance(lx * ax + lz * az, lx * az - lz * ax), edge - 0.24)
+    sign = _cover(-d / soft)
+    colour = _mix(palette, 10, 8, inside) * (1.0 + 0.10 * (lz + 0.5))[:, None]
+    colour = colour + (palette[11, :3] - colour) * np.maximum(sign, 0.30 * border)[:, None]
+    glow, white = inside * np.maximum(0.72, np.maximum(border, sign)), np.maximum(0.62 * sign, 0.35 * border)
+    blank = column < 0
+    colour = np.where(blank[:, None], _mix(palette, 10, 9, inside), colour)
+    return Painted(colour, 1.0, column, np.where(blank, 0.0, glow), np.where(blank, 0.0, white))
 
 
-@inner_kernel
-def _wall(u: float, v: float, palette: Any) -> Any:  # pragma: no cover
-    r, g, b = _mix(palette, 3, 4, smooth(0.0, 0.6, v))
+def _wall(place: Place, palette: Array) -> Painted:
+    u, v = place.u, place.v
     core, halo = u / 0.045, u / 0.30
     core, halo = 1.0 / (1.0 + core * core), 1.0 / (1.0 + halo * halo)
-    fade = smooth(0.02, 0.10, v) * (1.0 - smooth(0.25, 0.75, v))
+    fade = _smooth(0.02, 0.10, v) * (1.0 - _smooth(0.25, 0.75, v))
     light = fade * (0.75 * core * core + 0.16 * halo)
-    return r + palette[5, 0] * light, g + palette[5, 1] * light, b + palette[5, 2] * light
+    colour = _mix(palette, 3, 4, _smooth(0.0, 0.6, v)) + palette[5, :3] * light[:, None]
+    return Painted(colour, 0.0, *_unlit(len(u)))
 
 
-@inner_kernel
-def surface(kind: int, place: Any, footprint: float, paints: Any) -> Any:  # pragma: no cover
-    """Colour (r, g, b), how much it takes shadows, column of the panel or -1, glow and whiteness of a lit panel.
+def _unlit(count: int) -> tuple[NDArray[np.int32], Array, Array]:
+    """Column, glow and whiteness of places that are on no panel."""
+    return np.full(count, -1, np.int32), np.zeros(count), np.zeros(count)
 
-    place : x and z in the world, u and v on the surface; footprint : metres of the surface in a pixel
-    """
-    x, z, u, v = place
+
+def surface(kind: int, place: Place, paints: Paints) -> Painted:
+    """What a kind of surface (`stage.SurfaceKind`) looks like at some places of it."""
     palette = paints.palette
-    if kind == 0:
-        r, g, b = _floor(x, z, footprint, palette)
-        return r, g, b, 1.0, -1, 0.0, 0.0
-    if kind == 1:
-        r, g, b, column, glow, white = _pad(x, z, footprint, paints)
-        return r, g, b, 1.0, column, glow, white
-    if kind == 2:
-        return palette[7, 0], palette[7, 1], palette[7, 2], 0.0, -1, 0.0, 0.0
-    r, g, b = _wall(u, v, palette)
-    return r, g, b, 0.0, -1, 0.0, 0.0
+    if kind == SurfaceKind.FLOOR:
+        return _floor(place, palette)
+    if kind == SurfaceKind.PAD:
+        return _pad(place, paints)
+    if kind == SurfaceKind.WALL:
+        return _wall(place, palette)
+    return Painted(np.tile(palette[7, :3], (len(place.x), 1)), 0.0, *_unlit(len(place.x)))

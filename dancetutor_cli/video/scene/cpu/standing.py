@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
-from dancetutor_cli.video.scene.camera import Camera
-from dancetutor_cli.video.scene.cpu.stage_colours import Paints, paints_of, surface
+from dancetutor_cli.kernels import njit
+from dancetutor_cli.video.scene.camera import NEAR, Camera
+from dancetutor_cli.video.scene.cpu.stage_colours import Paints, Place, paints_of, surface
 from dancetutor_cli.video.scene.look import Look
 from dancetutor_cli.video.scene.stage import Stage
 
 F32 = NDArray[np.float32]
 TILE = 8
+BAND = 64  # rows that are drawn together: large pictures need no more room than small ones
 SEVERAL = -2  # panels in a tile
 Array = NDArray[np.float64]
 
@@ -31,6 +33,10 @@ class GroundTiles(NamedTuple):
     high: F32
     panel: NDArray[np.int16]
     coarse: F32
+
+
+_NONE = np.zeros((0, 0, 3), np.float32)
+NO_TILES = GroundTiles(_NONE, _NONE, np.zeros((0, 0), np.int16), np.zeros((0, 0), np.float32))
 
 
 class Background(NamedTuple):
@@ -64,6 +70,16 @@ class _Rays(NamedTuple):
     focal: float
 
 
+class _Places(NamedTuple):
+    """Places of a picture, n each: rows and columns of pixels, and where in the unpanned picture a ray goes through."""
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    x: NDArray[np.floating]
+    y: NDArray[np.floating]
+    drawn: Background
+
+
 class _Stage(NamedTuple):
     """What rays may meet. quads : `_quads`; kinds : `stage.SurfaceKind` of each"""
 
@@ -72,91 +88,115 @@ class _Stage(NamedTuple):
     paints: Paints
 
 
-@inner_kernel
-def _nearest(eye: Any, direction: Any, quads: Any) -> Any:  # pragma: no cover
-    """Number of the nearest surface and the distance along the ray, -1 if there is none."""
-    ex, ey, ez = eye[0], eye[1], eye[2]
+def _distance(quad: Array, rays: _Rays, direction: Array) -> Array:
+    """How far along rays (3, ...) the plane of a surface is; not finite or negative: nowhere."""
+    ex, ey, ez = rays.eye
     dx, dy, dz = direction
-    best, found = 1e30, -1
-    for q in range(quads.shape[0]):
-        facing = quads[q, 0] * dx + quads[q, 1] * dy + quads[q, 2] * dz
-        if facing >= 0.0:
+    facing = quad[0] * dx + quad[1] * dy + quad[2] * dz
+    with np.errstate(divide="ignore"):
+        far = (quad[3] - (quad[0] * ex + quad[1] * ey + quad[2] * ez)) / facing
+    return np.where(facing < 0.0, far, -1.0)
+
+
+def _within(quad: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+    """Where world points are on a surface: both 0..1 inside of it."""
+    u = quad[4] * x + quad[5] * y + quad[6] * z + quad[7]
+    v = quad[8] * x + quad[9] * y + quad[10] * z + quad[11]
+    return u, v
+
+
+def _direction(x: NDArray[np.floating], y: NDArray[np.floating], rays: _Rays) -> Array:
+    """Rays through places of the unpanned picture, (3, ...)."""
+    return np.stack(np.broadcast_arrays(*(row[0] * x + row[1] * y + row[2] for row in rays.back)))
+
+
+def _find(
+    rays: _Rays, quads: Array, x: NDArray[np.floating], y: NDArray[np.floating], boxes: NDArray[np.int64] | None = None
+) -> NDArray[np.int16]:
+    """Number of the nearest surface at places of the unpanned picture, -1 where there is none.
+
+    x, y : of one shape, or columns (1, w) and rows (h, 1); boxes : what part of those each surface can be in at most,
+    (q, 4): first column and row, last column and row + 1
+    """
+    shape = np.broadcast_shapes(x.shape, y.shape)
+    found, best = np.full(shape, -1, np.int16), np.full(shape, 1e30)
+    for number, quad in enumerate(quads):
+        part: tuple[slice, ...] = (slice(None),) * len(shape)
+        px, py = x, y
+        if boxes is not None:
+            left, top, right, bottom = boxes[number]
+            part = slice(top, bottom), slice(left, right)
+            px, py = x[:, left:right], y[top:bottom]
+        direction = _direction(px, py, rays)
+        t = _distance(quad, rays, direction)
+        u, v = _within(quad, *(e + t * d for e, d in zip(rays.eye, direction, strict=True)))
+        here = (t > 0.0) & (t < best[part]) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
+        found[part][here], best[part][here] = number, t[here]
+    return found
+
+
+def _boxes(stage: Stage, camera: Camera, size: tuple[int, int], left: int, wide: int) -> NDArray[np.int64]:
+    """The part of the picture that each surface can be in, int64 (q, 4); all of it for one that comes near the eye."""
+    height = size[1]
+    out = np.tile(np.array([0, 0, wide, height], np.int64), (len(stage.corners), 1))
+    for number, corners in enumerate(stage.corners):
+        places = replace(camera, pan=0.0).project(corners, size)
+        if (places[:, 2] < NEAR).any():
             continue
-        t = (quads[q, 3] - (quads[q, 0] * ex + quads[q, 1] * ey + quads[q, 2] * ez)) / facing
-        if t <= 0.0 or t >= best:
-            continue
-        x, y, z = ex + t * dx, ey + t * dy, ez + t * dz
-        u = quads[q, 4] * x + quads[q, 5] * y + quads[q, 6] * z + quads[q, 7]
-        v = quads[q, 8] * x + quads[q, 9] * y + quads[q, 10] * z + quads[q, 11]
-        if 0.0 <= u <= 1.0 and 0.0 <= v <= 1.0:
-            best, found = t, q
-    return found, best
+        low, high = np.floor(places[:, :2].min(0)) - 2, np.ceil(places[:, :2].max(0)) + 3
+        edges = np.array([low[0] + left, low[1], high[0] + left, high[1]])
+        out[number] = np.clip(edges, 0, [wide, height, wide, height])
+    return out
 
 
-@inner_kernel
-def _look(x: float, y: float, rays: Any, quads: Any) -> Any:  # pragma: no cover
-    back = rays.back
-    dx = back[0, 0] * x + back[0, 1] * y + back[0, 2]
-    dy = back[1, 0] * x + back[1, 1] * y + back[1, 2]
-    dz = back[2, 0] * x + back[2, 1] * y + back[2, 2]
-    found, t = _nearest(rays.eye, (dx, dy, dz), quads)
-    return found, t, dx, dy, dz
-
-
-@njit(cache=True)
-def _find(rays: Any, quads: Any, left: int, found: Any) -> None:  # pragma: no cover
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            found[row, column] = _look(column - left + 0.5, row + 0.5, rays, quads)[0]
-
-
-@inner_kernel
-def _same_around(found: Any, row: int, column: int) -> bool:  # pragma: no cover
+def _alike(found: NDArray[np.int16]) -> NDArray[np.bool_]:
+    """Do all pixels around one, and itself, see the same surface?"""
     height, width = found.shape
-    for r in range(max(row - 1, 0), min(row + 2, height)):
-        for c in range(max(column - 1, 0), min(column + 2, width)):
-            if found[r, c] != found[row, column]:
-                return False
-    return True
+    around = np.pad(found, 1, mode="edge")
+    out = np.ones(found.shape, dtype=bool)
+    for r in range(3):
+        for c in range(3):
+            out &= around[r : r + height, c : c + width] == found
+    return out
 
 
-@njit(cache=True)
-def _shade(rays: Any, stage: Any, samples: int, found: Any, out: Any) -> None:  # pragma: no cover
-    """Colour the picture that `out`, a `Background`, has room for; found : number of the surface in each pixel."""
-    eye, quads, left = rays.eye, stage.quads, out.left
-    colour, ground, takes, panel, glow, white = out.colour, out.ground, out.takes, out.panel, out.glow, out.white
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            n = 1 if _same_around(found, row, column) else samples
-            panel[row, column] = -1
-            for i in range(n):
-                for j in range(n):
-                    x, y = column - left + (i + 0.5) / n, row + (j + 0.5) / n
-                    q, t, dx, dy, dz = _look(x, y, rays, quads)
-                    if q < 0:
-                        continue
-                    wx, wy, wz = eye[0] + t * dx, eye[1] + t * dy, eye[2] + t * dz
-                    u = quads[q, 4] * wx + quads[q, 5] * wy + quads[q, 6] * wz + quads[q, 7]
-                    v = quads[q, 8] * wx + quads[q, 9] * wy + quads[q, 10] * wz + quads[q, 11]
-                    slope = -(quads[q, 0] * dx + quads[q, 1] * dy + quads[q, 2] * dz)
-                    slope = slope / np.sqrt(dx * dx + dy * dy + dz * dz)
-                    footprint = t / rays.focal / np.sqrt(max(slope, 0.05))
-                    r, g, b, take, where, lit, hot = surface(
-                        stage.kinds[q], (wx, wz, 2.0 * v - 1.0, u), footprint, stage.paints
-                    )
-                    share = 1.0 / (n * n)
-                    colour[row, column, 0] += 255.0 * r * share
-                    colour[row, column, 1] += 255.0 * g * share
-                    colour[row, column, 2] += 255.0 * b * share
-                    takes[row, column] += take * share
-                    glow[row, column] += lit * share
-                    white[row, column] += hot * share
-                    if where >= 0:
-                        panel[row, column] = where
-                    ground[row, column, 0] = wx
-                    ground[row, column, 1] = wy
-                    ground[row, column, 2] = wz
-                    out.footprint[row, column] = footprint
+def _paint(rays: _Rays, stage: _Stage, places: _Places, found: NDArray[np.int16], share: float) -> None:
+    """Add to a picture what it sees at places, whose surfaces are `found`; share : of the pixel that each is worth."""
+    drawn = places.drawn
+    for number in np.unique(found[found >= 0]):
+        at = np.flatnonzero(found == number)
+        row, column, quad = places.row[at], places.column[at], stage.quads[number]
+        dx, dy, dz = _direction(places.x[at], places.y[at], rays)
+        t = _distance(quad, rays, np.stack((dx, dy, dz)))
+        x, y, z = rays.eye[0] + t * dx, rays.eye[1] + t * dy, rays.eye[2] + t * dz
+        u, v = _within(quad, x, y, z)
+        slope = -(quad[0] * dx + quad[1] * dy + quad[2] * dz) / np.sqrt(dx * dx + dy * dy + dz * dz)
+        footprint = t / rays.focal / np.sqrt(np.maximum(slope, 0.05))
+        painted = surface(int(stage.kinds[number]), Place(x, z, 2.0 * v - 1.0, u, footprint), stage.paints)
+        drawn.colour[row, column] += 255.0 * painted.colour * share
+        drawn.takes[row, column] += painted.takes * share
+        drawn.glow[row, column] += painted.glow * share
+        drawn.white[row, column] += painted.white * share
+        lit = painted.panel >= 0
+        drawn.panel[row[lit], column[lit]] = painted.panel[lit]
+        drawn.ground[row, column] = np.column_stack((x, y, z))
+        drawn.footprint[row, column] = footprint
+
+
+def _shade(rays: _Rays, stage: _Stage, samples: int, found: NDArray[np.int16], drawn: Background) -> None:
+    """Colour the picture that `drawn` has room for: samples x samples rays a pixel where surfaces meet."""
+    alike = _alike(found)
+    for top in range(0, len(found), BAND):
+        row, column = np.nonzero(alike[top : top + BAND])
+        row += top
+        places = _Places(row, column, column - drawn.left + 0.5, row + 0.5, drawn)
+        _paint(rays, stage, places, found[row, column], 1.0)
+    row, column = np.nonzero(~alike)
+    for i in range(samples):
+        for j in range(samples):
+            x, y = column - drawn.left + (i + 0.5) / samples, row + (j + 0.5) / samples
+            places = _Places(row, column, x, y, drawn)
+            _paint(rays, stage, places, _find(rays, stage.quads, x, y), 1.0 / (samples * samples))
 
 
 @njit(cache=True)
@@ -168,38 +208,34 @@ def quantise(value: float, row: int, column: int) -> int:  # pragma: no cover
     return int(min(255.0, max(0.0, value + (rank + 0.5) / 16.0)))
 
 
-@njit(cache=True)
-def _quantise_all(colour: Any, out: Any) -> None:  # pragma: no cover
-    for row in range(colour.shape[0]):
-        for column in range(colour.shape[1]):
-            for k in range(3):
-                out[row, column, k] = quantise(colour[row, column, k], row, column)
+def _dithered(colour: F32) -> NDArray[np.uint8]:
+    """What `quantise` makes of every pixel."""
+    r, c = np.ogrid[: colour.shape[0], : colour.shape[1]]
+    r, c = r & 3, c & 3
+    rank = ((r ^ c) & 1) * 8 + (r & 1) * 4 + (((r ^ c) >> 1) & 1) * 2 + ((r >> 1) & 1)
+    return np.asarray(np.clip(colour + ((rank + 0.5) / 16.0)[..., None], 0.0, 255.0), dtype=np.uint8)
 
 
-@njit(cache=True)
-def _note_tiles(drawn: Any) -> None:  # pragma: no cover
-    """Fill the tiles of a `Background` from what its pixels hold."""
-    tiles, ground, takes, panel = drawn.tiles, drawn.ground, drawn.takes, drawn.panel
-    low, high, coarse = tiles.low, tiles.high, tiles.coarse
-    for row in range(takes.shape[0]):
-        for column in range(takes.shape[1]):
-            if takes[row, column] <= 0.0:
-                continue
-            t, u, p = row // TILE, column // TILE, panel[row, column]
-            if low[t, u, 0] > high[t, u, 0]:
-                tiles.panel[t, u] = p
-            elif tiles.panel[t, u] != p:
-                tiles.panel[t, u] = SEVERAL
-            coarse[t, u] = max(coarse[t, u], drawn.footprint[row, column])
-            for k in range(3):
-                low[t, u, k] = min(low[t, u, k], ground[row, column, k])
-                high[t, u, k] = max(high[t, u, k], ground[row, column, k])
+def _tiles_of(drawn: Background) -> GroundTiles:
+    """What the tiles of a picture hold."""
+    ground, takes = drawn.ground, drawn.takes > 0.0
+    height, width = takes.shape
+    spare = (0, -height % TILE), (0, -width % TILE)
 
+    def tiles(values: NDArray[Any], empty: float) -> NDArray[Any]:
+        """The pixels of each tile that are ground beside each other, (t, u, TILE * TILE); `empty` for the others."""
+        padded = np.pad(np.where(takes, values, np.asarray(empty, values.dtype)), spare, constant_values=empty)
+        t, u = padded.shape[0] // TILE, padded.shape[1] // TILE
+        return padded.reshape(t, TILE, u, TILE).swapaxes(1, 2).reshape(t, u, TILE * TILE)
 
-def _empty_tiles(height: int, width: int) -> GroundTiles:
-    shape = -(-height // TILE), -(-width // TILE)
-    low, high = np.full((*shape, 3), np.inf, np.float32), np.full((*shape, 3), -np.inf, np.float32)
-    return GroundTiles(low, high, np.full(shape, -1, np.int16), np.zeros(shape, np.float32))
+    low, high = (
+        np.stack([extreme(tiles(ground[..., k], empty), axis=2) for k in range(3)], axis=2)
+        for extreme, empty in ((np.min, np.inf), (np.max, -np.inf))
+    )
+    first = tiles(drawn.panel, np.iinfo(np.int16).max).min(axis=2)
+    last = tiles(drawn.panel, np.iinfo(np.int16).min).max(axis=2)
+    panel = np.where(first == last, first, SEVERAL).astype(np.int16)
+    return GroundTiles(low, high, panel, tiles(drawn.footprint, 0.0).max(axis=2))
 
 
 def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, int], samples: int) -> Background:
@@ -208,21 +244,19 @@ def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, i
     # Panned to the right, the picture shows what is farther left: positive pans need room on the left.
     left, right = (max(0, round(pan * width)) for pan in (camera.pan_range[1], -camera.pan_range[0]))
     wide = width + left + right
-    rays = _rays(camera, size)
-    shape = (height, wide)
-    found = np.empty(shape, np.int16)
+    rays, shape = _rays(camera, size), (height, wide)
     surfaces = _Stage(_quads(stage), stage.kinds, paints_of(look.stage, stage))
-    _find(rays, surfaces.quads, left, found)
+    columns, rows = np.arange(wide)[None, :] - left + 0.5, np.arange(height)[:, None] + 0.5
+    found, boxes = np.empty(shape, np.int16), _boxes(stage, camera, size, left, wide)
+    for top in range(0, height, BAND):
+        part = slice(top, top + BAND)
+        found[part] = _find(rays, surfaces.quads, columns, rows[part], np.clip(boxes - [0, top, 0, top], 0, None))
     colour, ground = np.zeros((*shape, 3), np.float32), np.zeros((*shape, 3), np.float32)
     takes, glow, white, foot = (np.zeros(shape, np.float32) for _ in range(4))
-    panel = np.empty(shape, np.int16)
-    picture = np.empty((*shape, 3), np.uint8)
-    tiles = _empty_tiles(*shape)
-    drawn = Background(colour, picture, ground, takes, panel, glow, white, foot, tiles, left)
+    panel = np.full(shape, -1, np.int16)
+    drawn = Background(colour, np.empty((0, 0, 3), np.uint8), ground, takes, panel, glow, white, foot, NO_TILES, left)
     _shade(rays, surfaces, samples, found, drawn)
-    _note_tiles(drawn)
-    _quantise_all(colour, picture)
-    return drawn
+    return drawn._replace(picture=_dithered(colour), tiles=_tiles_of(drawn))
 
 
 def _rays(camera: Camera, size: tuple[int, int]) -> _Rays:
