@@ -141,6 +141,13 @@ def test_markers_of_both_stand_in_the_file_and_go_again(both: Path) -> None:
     assert both.read_bytes() == before
 
 
+def test_nothing_is_put_beside_a_song_that_has_only_charts_for_two(both: Path) -> None:
+    before = sorted(both.parent.iterdir())
+    status, said = run("annotate", both, "--style", "sidecar,theme,smeditor")
+    assert status == 0 and "only in the styles measure and rows" in said
+    assert sorted(both.parent.iterdir()) == before
+
+
 def test_pins_of_each_player_are_kept(both: Path) -> None:
     """The letters of a couple's row are the first player's and then the second's; in a routine each has rows."""
     run("annotate", both)
