@@ -27,3 +27,12 @@ test("reduced motion has no flash", async () => {
   for (let t = 10; t < 10.5; t += 0.01) assert.ok(at(t) <= 0.4);
   assert.equal(at(10.5), 0);
 });
+
+test("a note that nobody plays lights no panel, until it is given to a foot", async () => {
+  const { lightOf } = await import("../../../dancetutor_cli/page/js/feet.js?reduce=0");
+  const note = { second: [1], end: [1], limb: [-2], given: new Map(), lastPress: () => 0 };
+  assert.deepEqual(lightOf(note, 0, 1, 0.4), { level: 0, limb: -1 });
+  const given = { ...note, given: new Map([[0, 1]]) };
+  assert.ok(lightOf(given, 0, 1, 0.4).level > 0.3);
+  assert.equal(lightOf(given, 0, 1, 0.4).limb, 1);
+});
