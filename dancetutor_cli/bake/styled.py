@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.hair import add_hair
-from dancetutor_cli.physics.style import load_style
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.settings import MotionSettings
@@ -32,6 +31,7 @@ def styled(motion: Motion, style: str | None, settings: MotionSettings, wishes: 
     if style is None:
         return Styled(motion)
     from dancetutor_cli.physics.pipeline import Wishes, through_ragdoll
+    from dancetutor_cli.physics.style import load_style
 
     passed = through_ragdoll(motion, load_style(style), wishes or Wishes())
     add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, settings.hair)

@@ -20,7 +20,13 @@ from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig.kinematics import world_transforms
 
 APART = 0.02  # metres of mean joint distance between any two
-FACE = ("braid", "l_eye", "r_eye", "temporo")
+FACE = (
+    "braid",
+    "l_eye",
+    "r_eye",
+    "temporo",
+    *(f"{s}_{n}" for s in "lr" for n in ("metacarpo", "carpal")),
+)  # and fingers
 
 
 @pytest.fixture(scope="module")

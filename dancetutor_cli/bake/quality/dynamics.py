@@ -64,8 +64,9 @@ def residuals(motion: Motion, body: Body) -> Array:
     use = _looked_at(motion, body)
     out = np.empty((len(use), 2))
     soles = body.soles.reshape(len(body.times), -1, 3)
+    near = _near(soles[..., 1] <= CONTACT, body.rate)
     for row, k in enumerate(use.tolist()):
-        down = soles[k][soles[k][:, 1] <= CONTACT]
+        down = soles[k][near[k]]
         wanted = np.concatenate((force[k], moment[k]))
         left = wanted
         if len(down):
@@ -84,6 +85,13 @@ def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
         free &= (body.times < start - HANDS) | (body.times > end + HANDS)
     use = np.flatnonzero(free)
     return use[:: max(1, -(-len(use) // MOST))]
+
+
+def _near(down: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
+    """Where (f, s) a sole point is down within half a period of the cut: force and moment are known no finer."""
+    half = round(rate / (2.0 * CUT))
+    padded = np.pad(down, ((half, half), (0, 0)))
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).any(axis=-1))
 
 
 def _rays(arms: Array) -> Array:
