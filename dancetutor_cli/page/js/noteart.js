@@ -3,23 +3,37 @@
 // Corners of an arrow that points up, in halves of its size (video/sprites.py).
 const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
   [-0.62, 0.32], [-0.94, 0]];
-const SQUARE = [[-0.7, -0.7], [0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
+const SQUARE = [[-0.86, -0.86], [0.86, -0.86], [0.86, 0.86], [-0.86, 0.86]];
+const WIDTH = 1.88; // of an arrow, whichever way it points
+/** @type {Map<number | null, number[][]>} */
+const shapes = new Map();
 export const INK = "#0a0b14";
 export const NOBODY = "#969aaa"; // of a note that nobody plays
 
 /** @typedef {CanvasRenderingContext2D} Context */
 
 /**
+ * Corners of a note's shape, in halves of its size; a diagonal fills its lane as others do.
+ * @param {number | null} way
+ */
+export function corners(way) {
+  if (way === null) return SQUARE;
+  const [cos, sin] = [Math.cos((way * Math.PI) / 180), Math.sin((way * Math.PI) / 180)];
+  const turned = ARROW.map(([px, py]) => [px * cos - py * sin, px * sin + py * cos]);
+  if (way % 90 === 0) return turned;
+  const spans = [0, 1].map((i) => [Math.min(...turned.map((p) => p[i])), Math.max(...turned.map((p) => p[i]))]);
+  const scale = WIDTH / Math.max(...spans.map(([least, most]) => most - least));
+  return turned.map((p) => p.map((value, i) => (value - (spans[i][0] + spans[i][1]) / 2) * scale));
+}
+
+/**
  * Path of a note's shape: an arrow turned by some degrees, a square where there is none to be turned.
  * @param {Context} c @param {number | null} way @param {number} x @param {number} y @param {number} size
  */
 export function notePath(c, way, x, y, size) {
-  const angle = ((way ?? 0) * Math.PI) / 180;
-  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  if (!shapes.has(way)) shapes.set(way, corners(way));
   c.beginPath();
-  for (const [px, py] of way === null ? SQUARE : ARROW) {
-    c.lineTo(x + ((px * cos - py * sin) * size) / 2, y + ((px * sin + py * cos) * size) / 2);
-  }
+  for (const [px, py] of shapes.get(way) ?? SQUARE) c.lineTo(x + (px * size) / 2, y + (py * size) / 2);
   c.closePath();
 }
 

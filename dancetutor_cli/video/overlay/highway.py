@@ -24,10 +24,8 @@ from dancetutor_cli.video.scroll import Scroll
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
 TURNED = "she faces you: arrows turned with her"
-FLAG_LEAST, FLAG_SHARE = (
-    10.0,
-    0.026,
-)  # pixels of a label's letters: smaller ones are not read; share of the box's height
+MARK_SHARE, MARK_MOST = 0.04, 0.54  # an L or R is at least so many heights of the box, but at most so many lanes
+FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +110,8 @@ class Highway:
         body = max(4, round(0.62 * size))
         self.bodies = {k: sprites.hold_body(body, c, k[0] == Kind.ROLL) for k, c in self._hold_colours()}
         self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
-        mark = max(6, round(style.mark * self.geometry.lane))
+        least = min(MARK_SHARE * (self.geometry.box[3] - self.geometry.box[1]), MARK_MOST * self.geometry.lane)
+        mark = max(6, round(max(style.mark * self.geometry.lane, least)))
         self.marks = [sprites.marker(mark, limb, self.face) for limb in (0, 1, 2, 3, -1)]  # -1 is the last one
         self._danced = bool((self.notes.limb >= 0).any())
         self.mark_shade = sprites.shade(round(1.35 * mark))

@@ -23,7 +23,8 @@ _ARROW = np.array([
     (0.0, -0.94), (0.94, 0.0), (0.62, 0.32), (0.36, 0.06), (0.36, 0.88),
     (-0.36, 0.88), (-0.36, 0.06), (-0.62, 0.32), (-0.94, 0.0),
 ])  # fmt: skip
-_SQUARE = np.array([(-0.7, -0.7), (0.7, -0.7), (0.7, 0.7), (-0.7, 0.7)])
+_SQUARE = np.array([(-0.86, -0.86), (0.86, -0.86), (0.86, 0.86), (-0.86, 0.86)])
+_WIDTH = 0.94  # of an arrow, in its size, whichever way it points
 
 
 FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
@@ -61,12 +62,16 @@ def highway_style() -> HighwayStyle:
 
 
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
-    """Corners of the note shape; direction in degrees clockwise from up."""
+    """Corners of the note shape; direction in degrees clockwise from up. A diagonal fills its lane as others do."""
     if direction is None:
         return np.asarray(_SQUARE * size / 2)
     a = np.radians(direction)
     turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
-    return np.asarray(_ARROW @ turn * size / 2)
+    corners = np.asarray(_ARROW @ turn / 2)
+    if direction % 90:
+        least, most = corners.min(axis=0), corners.max(axis=0)
+        corners = (corners - (least + most) / 2) * _WIDTH / (most - least).max()
+    return corners * size
 
 
 @lru_cache(maxsize=64)

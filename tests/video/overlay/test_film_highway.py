@@ -66,6 +66,14 @@ def test_arrows_point_where_their_panels_are() -> None:
         assert ink[rows[2]].sum() < 0.6 * ink[rows[-3]].sum(), direction  # the tip is narrow, the shaft is not
 
 
+@pytest.mark.parametrize("direction", [0.0, 90.0, 45.0, 135.0, 225.0, 315.0, None])
+def test_every_note_fills_its_lane(direction: float | None) -> None:
+    shown = sprites.arrow(64, direction, (200, 40, 40))[..., 3] > 128
+    rows, columns = np.flatnonzero(shown.any(axis=1)), np.flatnonzero(shown.any(axis=0))
+    assert 0.82 * 64 <= np.ptp(columns) + 1 <= 64 and 0.8 * 64 <= np.ptp(rows) + 1 <= 64
+    assert min(columns[0], rows[0], 63 - columns[-1], 63 - rows[-1]) >= 1  # and is not cut
+
+
 def test_left_and_right_markers_differ_in_colour_letter_and_shape() -> None:
     left, right = (sprites.marker(40, limb, Typeface()) for limb in (0, 1))
     corners = [int(mark[4, 4, 3]) for mark in (left, right)]
