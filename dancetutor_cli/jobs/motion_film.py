@@ -46,7 +46,7 @@ def film(path: Path, character: Character, motion: Motion) -> int:
     count = max(1, int((motion.times[-1] - motion.times[0]) * FPS) + 1)
     encoding = Encoding("mp4", SIZE, FPS, "good")
     with work_folder(path) as folder:
-        part, whole = folder / f"film{encoding.format.segment}", folder / "film.mp4"
+        part, whole = folder / f"part{encoding.format.segment}", folder / "film.mp4"
         encode_segment(_frames(character, motion, count), encoding, part)
         join([part], encoding, None, folder, whole)
         whole.replace(path)

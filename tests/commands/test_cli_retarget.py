@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,9 @@ from dancetutor_cli.commands.retarget import _CORRECTIONS, command
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.npz import read_npz, write_npz
+from dancetutor_cli.jobs import motion_film
 from dancetutor_cli.physics.pipeline import CORRECTIONS
+from dancetutor_cli.video.media.encoder import Encoding, join
 
 
 @pytest.fixture
@@ -108,3 +111,21 @@ def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp
     line = said(bvh, "-o", out, "--style", wild)
     assert line.startswith(f"{bvh}: style wild: the simulation fails at ") and ", joint " in line
     assert not out.exists()
+
+
+def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    joined = []
+
+    def joining(parts: list[Path], encoding: Encoding, sound: None, work: Path, output: Path) -> None:
+        joined.append((parts, output))
+        join(parts, encoding, sound, work, output)
+
+    monkeypatch.setattr(motion_film, "SIZE", (64, 64))
+    monkeypatch.setattr(motion_film, "join", joining)
+    film = tmp_path / "a.mp4"
+    assert "31 frames, 1.0 s" in run(bvh, "-o", film, "--correct", "none")
+    data = film.read_bytes()
+    at = data.index(b"stsz")  # version and flags, the one size of all samples or 0, and how many there are
+    assert struct.unpack(">I", data[at + 12 : at + 16]) == (31,)
+    ((parts, output),) = joined
+    assert output not in parts, "written over while it was read: a film of one frame"
