@@ -115,6 +115,7 @@ class Chart:
     players : of a chart for two what each of them steps, see `chart.players`; else empty
     player : of such a part whose it is, 1 or 2, else 0; written : the chart that it is a part of, without `players`;
         first_column : its first column there
+    marked : letters mark whose a note is (StepF2); of such a chart and of both parts
     """
 
     index: int
@@ -135,6 +136,7 @@ class Chart:
     player: int = 0
     written: Chart | None = None
     first_column: int = 0
+    marked: bool = False
 
     @property
     def written_type(self) -> str:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from dancetutor_cli.chart.model import Chart, NoteTable, RowTable
+from dancetutor_cli.chart.names import is_routine
 from dancetutor_cli.chart.note_data import NoteData
 
 # Steps type of a chart for two -> that of the pad on which each of them stands.
@@ -36,11 +37,6 @@ def shares_rows(part: Chart) -> bool:
     return part.written is not None and part.written.steps_type not in ONE_PAD
 
 
-def is_marked(part: Chart) -> bool:
-    """Whether a chart is a part of one whose letters mark whose a note is."""
-    return part.written is not None and part.written.steps_type == part.steps_type
-
-
 def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
     """The chart with the parts of its players, if it is for two. read : its note data; data : bytes of its file"""
     if chart.steps_type in OWN_PADS:
@@ -48,10 +44,11 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
         tables = [_columns(chart, data, first, half) for first in (0, half)]
         columns = half
         pad = OWN_PADS[chart.steps_type]
-    elif read.players:
+    elif read.players and (chart.steps_type in ONE_PAD or not is_routine(chart.steps_type)):
         tables = [(own.notes, own.rows) for own in read.players]
         columns = chart.columns
         pad = ONE_PAD.get(chart.steps_type, chart.steps_type)
+        chart = replace(chart, marked=pad == chart.steps_type)
     else:
         return chart
     on_one_pad = chart.steps_type not in OWN_PADS

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Chart, Kind
-from dancetutor_cli.chart.players import is_marked
 from dancetutor_cli.chart.stepf2 import PLAYERS
 from dancetutor_cli.feet.notation import MARKER
 
@@ -49,13 +48,12 @@ def step_rows(data: bytes, chart: Chart) -> StepRows:
         special = _SPECIAL[text].any(axis=1)
         steps[regular] = _STEP[text]
         regular[np.flatnonzero(regular)[special]] = False
-    marked = is_marked(chart)
-    if marked:
+    if chart.marked:
         regular[:] = False
     for i in np.flatnonzero(~regular).tolist():
         cells = _KEYSOUND.sub(b"", data[start[i] : end[i]].replace(b"\\", b""))
         steps[i] = False
-        if marked or _FOREIGN.search(cells):
+        if chart.marked or _FOREIGN.search(cells):
             steps[i, _columns_at(chart, int(chart.rows.tick[i]))] = True
         else:
             cells = cells[:columns]

@@ -203,6 +203,15 @@ def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(mark
     assert marked.read_bytes() == before
 
 
+def test_a_head_without_an_end_beside_marked_notes_is_nobodys_step(tmp_path: Path) -> None:
+    path = tmp_path / "marked.sm"
+    path.write_text(HEAD + block("pump-double", MARKED + ",\n2000000000\n0000000000\n00000x0000\n000X000Y00\n"))
+    assert run("annotate", path, "--style", "measure,rows")[0] == 0
+    sides = re.findall(r"\{dt1 ([^}]*)\}", path.read_text())
+    assert [len(re.sub(r"[()]", "", one)) for one in sides] == [7, 5, 2]
+    assert run("annotate", path, "--check", "--style", "measure,rows")[0] == 0
+
+
 def test_a_marked_note_keeps_its_letter_when_it_is_moved(tmp_path: Path) -> None:
     path = tmp_path / "marked.sm"
     path.write_text(HEAD + block("pump-double", MARKED))
