@@ -197,3 +197,10 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
             super()._save_overload(sig, data)
         except OSError:  # a full disk: the kernel is there, only not kept
             return
+
+
+def is_kept(kernel: Any) -> bool:
+    """Whether machine code of a kernel, as it is now, is there from an earlier run."""
+    cache = getattr(kernel, "_cache", None)
+    files = (getattr(cache, "_cache_file", None), getattr(cache, "_installed", None))
+    return any(file is not None and bool(file._load_index()) for file in files)

@@ -219,3 +219,16 @@ def test_inner_kernels_are_only_called_by_kernels() -> None:
             if isinstance(node, ast.ImportFrom):
                 known |= {one.asname or one.name for one in node.names if (node.module, one.name) in inner}
         assert not known & set(_named(tree, inside)), path
+
+
+def test_it_is_known_whether_a_kernel_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module, folder = tmp_path / "twice.py", tmp_path / "kernels"
+    module.write_text(MODULE, "utf-8")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(folder))
+    kernel = loaded(module).double
+    assert not kernels.is_kept(kernel)
+    kernel(3)
+    assert kernels.is_kept(kernel) and kernels.is_kept(loaded(module).double)
+    module.write_text(MODULE.replace("2 *", "3 *"), "utf-8")
+    kernels.stamp_of.cache_clear()
+    assert not kernels.is_kept(loaded(module).double)

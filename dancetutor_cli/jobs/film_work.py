@@ -198,6 +198,18 @@ def forget() -> None:
     _film.cache_clear()
 
 
+def ready_at_once(jobs: int, kind: RendererKind) -> int:
+    """How many of `jobs` fresh workers shall `warm_up` at once: one alone where kernels must be compiled first.
+
+    The others fetch what that one has compiled, instead of compiling the same beside it.
+    """
+    from dancetutor_cli.kernels import is_kept
+    from dancetutor_cli.video.scene import renderer
+    from dancetutor_cli.video.scene.cpu.shade import resolve
+
+    return jobs if is_kept(resolve) or renderer.chosen(kind) != "cpu" else 1
+
+
 def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
     """Do in a fresh worker what comes before any first frame, while the film is still being prepared.
 

@@ -90,7 +90,7 @@ def make_film(
     """
     with _workers(jobs, progress) as workers, work_folder(output) as folder:
         if jobs > 1:
-            for number in range(jobs):
+            for number in range(work.ready_at_once(jobs, renderer)):
                 workers.submit(Task(("warm-up", number), work.warm_up, (encoding.quality, renderer)))
         prepared = prepare()
         plan = prepared.plan

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.render import make_film
 from dancetutor_cli.video.clock import Clock, Pass
@@ -195,3 +196,9 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
         make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
     assert film.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == ["film.mp4"]
+
+
+@pytest.mark.parametrize(("kept", "ready"), [(True, 3), (False, 1)])
+def test_one_worker_compiles_for_all(monkeypatch, kept, ready):
+    monkeypatch.setattr("dancetutor_cli.kernels.is_kept", lambda kernel: kept)
+    assert film_work.ready_at_once(3, "cpu") == ready
