@@ -214,7 +214,7 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     c = g.place.shape[0]
     rest = asked.steps & ~(pressed[0] | pressed[1])
     left_free, right_free = before[LEFT_HOLDS] == 0, before[LEFT_HOLDS + 1] == 0
-    hands = min(_bits(rest), left_free + right_free)
+    hands = min(_bits(rest), int(left_free) + int(right_free))  # as Python, the sum of two of its flags is a flag
     crowded = _bits(rest) > hands and not forced & _FORCED
     leftmost = _outermost(rest, g.left, -1)
     rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)

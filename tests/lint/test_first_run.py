@@ -95,6 +95,19 @@ def test_kernels_and_their_python_find_the_same(preset: str, tmp_path: Path) -> 
     assert found[0].stdout == found[1].stdout and found[0].stdout.count(b'"beat"') > 400
 
 
+def test_kernels_as_python_have_two_hands(tmp_path: Path) -> None:
+    """Four panels of both pads at once, which no two feet press."""
+    song = tmp_path / "x.sm"
+    song.write_bytes(
+        b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-double::Hard:9::\n01000100\n00000000\n00000000\n01100110\n;\n"
+    )
+    command = [sys.executable, "-m", "dancetutor_cli", "analyze", song, "--format", "json", "--no-cache", "--exit-zero"]
+    run = subprocess.run(command, env={**os.environ, compiled.VARIABLE: "python"}, capture_output=True, text=True)
+    for limb in ("left_foot", "right_foot", "left_hand", "right_hand"):
+        assert f'"{limb}"' in run.stdout, limb
+    assert "unplayable" not in run.stdout
+
+
 def test_little_work_imports_no_numba(tmp_path: Path) -> None:
     song = tmp_path / "x.sm"
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n0100\n0010\n;\n")
