@@ -16,8 +16,8 @@ BESIDE = 140.0  # degrees: one foot is across the other, more beside it than bef
 _REST = 0.25  # seconds
 _MANY = 4  # spins that are the idea of a chart: one finding
 _TWISTS = 20  # meter of Pump charts whose players expect to turn
-_RINGS = 13  # the same, to turn with one foot on the centre
-_CENTRE, _OF_PAD = 2, 5  # columns of a Pump pad
+_ONE_RING = 4  # panels of a pad on which who turns all the way can only go round the same four
+_UNROUND = 1.3  # how much further one of four panels may lie from their middle than another, if she goes round them
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
@@ -26,11 +26,10 @@ class Spin(MoveRule):
 
     Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot; a rest
     is about twice the pace of the passage, or the long half of a swing rhythm; two panels at once may always be a jump.
-    Nor of a walk along two pads, on
-    which one foot passes the other; nor where after two panels at once one crossover takes its place, nor in a burst,
-    of which DT305 tells. More than four in a chart are one finding. On Pump pads it is an info from meter 20, and from
-    13 where one foot goes round the centre, corner by corner, on which the other steps; on all pads where mines leave
-    no other panel. A spin in a jump is DT203.
+    Nor of a walk along two pads, on which one foot passes the other; nor of a phrase that begins after a jump and needs
+    one crossover in place of the spin; nor in a burst, of which DT305 tells. More than four in a chart are one finding.
+    It is an info on Pump pads from meter 20, on pads of more than four panels where the steps go round no four of them,
+    as in twists about a Pump centre, and on all pads where mines leave no other panel. A spin in a jump is DT203.
 
     `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
     back.
@@ -109,12 +108,12 @@ class Spin(MoveRule):
         return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether the author means it: a Pump chart made of twists, one foot round a centre, steps between mines."""
+        """Whether the author means it: a Pump chart made of twists, steps that go round no panels or between mines."""
         pump, meter = subject.chart.steps_type.startswith("pump"), subject.chart.meter
         if pump and meter >= _TWISTS:
             return True
-        ringed = pump and meter >= _RINGS
-        return all((ringed and _round_the_centre(subject, row)) or _between_mines(subject, row) for row in rows)
+        twisted = subject.pad is not None and len(subject.pad) > _ONE_RING
+        return all((twisted and not _goes_round(subject, row)) or _between_mines(subject, row) for row in rows)
 
     def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
         """Each spin, or all of a chart that is made of them."""
@@ -131,15 +130,25 @@ class Spin(MoveRule):
         return bool(beside and np.ptp(pad.panels[:, 0]) > ONE_PAD)
 
 
-def _round_the_centre(subject: ChartSubject, row: int) -> bool:
-    """Whether one foot goes round a Pump pad's centre, corner by corner, while the other steps on the centre."""
-    rows = subject.step_rows
-    at = int(rows.searchsorted(row))
-    if at < 3:
+def _goes_round(subject: ChartSubject, row: int) -> bool:
+    """Whether four steps, that of the row among them, go round four panels in their order."""
+    import numpy as np
+
+    rows, pad = subject.step_rows, subject.pad
+    if pad is None:
         return False
-    steps = [subject.pressed(int(one)) for one in rows[at - 3 : at + 1]]
-    centre = [len(step) == 1 and step[0] % _OF_PAD == _CENTRE for step in steps]
-    return centre == [True, False, True, False] and len(steps[1]) == len(steps[3]) == 1
+    at = int(rows.searchsorted(row))
+    for first in range(max(0, at - 3), min(at, len(rows) - 4) + 1):
+        steps = [subject.pressed(int(one)) for one in rows[first : first + 4]]
+        if any(len(step) != 1 for step in steps):
+            continue
+        places = pad.panels[[step[0] for step in steps]]
+        x, y = (places - places.mean(axis=0)).T
+        far, turned = np.hypot(x, y), np.diff(np.degrees(np.arctan2(y, x)))
+        turned = (turned + 180.0) % 360.0 - 180.0
+        if far.max() <= _UNROUND * far.min() and abs(np.sign(turned).sum()) == 3 and abs(turned).max() < 180.0:
+            return True
+    return False
 
 
 def _between_mines(subject: ChartSubject, row: int) -> bool:
