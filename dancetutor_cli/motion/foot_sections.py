@@ -17,6 +17,9 @@ class StepSettings:
     hasty: float
     height_slow: float
     height_fast: float
+    height_hasty: float
+    height_far: float
+    far: float
     fast: float
     jack_height: float
     edge: float
@@ -49,6 +52,7 @@ class StepSettings:
     overlap: float
     following: float
     staying: float
+    resting: float
     body_turn: float
     rising: float
     off_ground: float
@@ -125,6 +129,9 @@ class JumpSettings:
     heel_time: float
     farther: float
     gallop_flight: float
+    leap_flight: float
+    lift_flat: float
+    swing_flat: float
 
 
 @dataclass(frozen=True, slots=True)

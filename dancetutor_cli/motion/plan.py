@@ -12,6 +12,7 @@ from dancetutor_cli.motion.foot_moves import Move, Swing
 from dancetutor_cli.motion.let_go import LetGo
 
 Array = NDArray[np.float64]
+LEAST_FLIGHT = 0.012  # seconds; in streams feet leave so long before the other one lands: nobody sees that as a flight
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +117,7 @@ def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
     i = j = 0
     while i < len(left) and j < len(right):
         start, end = max(left[i].lift, right[j].lift), min(left[i].land, right[j].land)
-        if start < end:
+        if end - start > LEAST_FLIGHT:
             out.append((start, end))
         if left[i].land <= right[j].land:
             i += 1

@@ -10,10 +10,9 @@ from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, mines_of, plan_of, report
 from dancetutor_cli.motion.foot_moves import Hover, Pivot
-from dancetutor_cli.motion.plan import Plan, airborne
+from dancetutor_cli.motion.plan import LEAST_FLIGHT, Plan, airborne
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.trajectory.height import LEAST_PHASE
 from dancetutor_cli.play.played import Part, Play
 
 CLEAR = ("feet on mines", "penetration", "flight gravity off by", "flight residual", "foot in foot", "contacts missed")
@@ -34,7 +33,7 @@ def planned(steps: Play, double: bool = False) -> Plan:
 
 def flights(plan: Plan) -> np.ndarray:
     air = airborne(plan.feet)
-    return air[air[:, 1] - air[:, 0] > LEAST_PHASE]
+    return air[air[:, 1] - air[:, 0] > LEAST_FLIGHT]
 
 
 def meets(steps: Play, double: bool = False) -> None:

@@ -11,29 +11,32 @@ from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import place, sole_points
 
 Array = NDArray[np.float64]
-PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
-CUT_PIVOT = np.radians(0.2)
+PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose: on its ball, which must not slide
+CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
+BALL = slice(2, 4)  # of a sole's points, those of the ball
 MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
 
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
     """Figures and notes. mines : (m, 3) of second, x, z; None if not known."""
-    slide, pivots = plant_slides(body)
+    slide, pivots = plant_slides(body, motion.skeleton)
     figures = (
         Figure("plant slide", 1000 * slide, "mm", 1.0),
         Figure("penetration", 1000 * deepest(motion), "mm", 1.0),
         Figure("feet on mines", float("nan") if mines is None else float(feet_on_mines(motion, mines)), "", 0.0),
     )
-    notes = (f"{pivots} pivots on a planted foot, on purpose, are not counted as slides",) if pivots else ()
+    notes = (f"of {pivots} pivots on a planted foot, on purpose, the slide of the ball is counted",) if pivots else ()
     return figures, notes
 
 
-def plant_slides(body: Body) -> tuple[float, int]:
-    """Longest path (metres) of a sole point during one plant, and the number of plants left out because they pivot."""
+def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
+    """Longest path (metres) of a sole point during one plant, of the ball's joint if it pivots; and how many do."""
     worst, pivots = 0.0, 0
+    balls = [body.joints[:, skeleton.index(f"{side}_metatarsal")] for side in "lr"]
     for side in (0, 1):
         soles = body.soles[:, side]
         for first, end in intervals(body.standing[:, side]):
@@ -42,11 +45,10 @@ def plant_slides(body: Body) -> tuple[float, int]:
             piece = soles[first:end]
             across = piece[:, 2] - piece[:, 3]  # ball_in to ball_out
             yaw = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
-            cut = first == 0 or end == len(soles)  # of a pivot at the section's edge only the rest is seen
+            cut, down = first == 0 or end == len(soles), piece[..., 1] <= GROUND
             if np.ptp(yaw) > (CUT_PIVOT if cut else PIVOT):
                 pivots += 1
-                continue
-            down = piece[..., 1] <= GROUND
+                down, piece = np.asarray(down[:, BALL].any(axis=1, keepdims=True)), balls[side][first:end, None]
             both = (down[1:] & down[:-1])[..., None]
             path = np.linalg.norm(np.where(both, np.diff(piece[..., [0, 2]], axis=0), 0.0), axis=2).sum(axis=0)
             worst = max(worst, float(path.max()))

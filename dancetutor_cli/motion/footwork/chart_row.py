@@ -46,6 +46,12 @@ class Row:
         step = self.context.settings.step
         return float(reduction(self.duration, step.fast, step.longest))
 
+    @property
+    def haste(self) -> float:
+        """How much faster than fast it is, 0 to 1."""
+        step = self.context.settings.step
+        return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
+
     def following(self, side: int) -> Array | None:
         """The place (2,) of the next step of a foot, if it comes soon."""
         second, limb = self.play.rows.second, self.play.limb

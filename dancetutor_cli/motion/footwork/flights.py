@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.foot_moves import Jump
 from dancetutor_cli.motion.footwork.chart_row import Row
-from dancetutor_cli.motion.footwork.foothold import Pitches, around, heel_up
+from dancetutor_cli.motion.footwork.foothold import Heel, Pitches, around, heel_up
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal, pair
 from dancetutor_cli.motion.settings import JumpSettings
 from dancetutor_cli.motion.swing.jump_ways import jump_ways
@@ -71,7 +71,8 @@ def hop(
     jump, step = footing.settings.jump, footing.settings.step
     eased = 1.0 - jump.quick_flat * row.cut
     lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
-    pitches = [heel_up(step, row.cut, lift, lift, land, c) for c in columns]
+    heel = Heel((lift, lift, land), (jump.lift_flat, jump.swing_flat))
+    pitches = [heel_up(step, row.cut, heel, c) for c in columns]
     flight = Flight(take_off, row.time, turned, eased, _first(row, footing, take_off, goals))
     return Proposal(flown(footing, flight, goals, pitches), take_off)
 

@@ -62,6 +62,22 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
+class Heel:
+    """How far a heel is raised in a slow move: as the toes leave, at most, at landing, degrees.
+
+    flat : by which parts the first two are less in the fastest
+    """
+
+    degrees: tuple[float, float, float]
+    flat: tuple[float, float]
+
+
+def heel_of_step(step: StepSettings) -> Heel:
+    """Of a step."""
+    return Heel((step.lift_pitch, step.swing_pitch, step.land_pitch), (step.lift_flat, step.swing_flat))
+
+
+@dataclass(frozen=True, slots=True)
 class Spot:
     """Where a ball may be: a centre (2,), and how far (2,) from it along x and z."""
 
@@ -76,11 +92,12 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
         return _bracket(footing, foot, goal)
     panels, following = footing.context.panels, goal.following
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
-    cut = max(goal.cut, step.edge)
+    hurry = goal.cut * (step.resting if following is None else 1.0)  # who stays a while stands on the panel's middle
+    cut = max(hurry, step.edge)
     ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
-    ball = ball + step.on_the_way * goal.cut * (np.clip(way, panel - room, panel + room) - ball)
+    ball = ball + step.on_the_way * hurry * (np.clip(way, panel - room, panel + room) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
         ball = ball + step.staying * (foot.ball - ball)
     return beside(footing, foot, Spot(panel, room), ball, goal.yaw, other)
@@ -167,15 +184,16 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
     return ball_of(middle, toes), toes - foot.outward * footing.toe_out
 
 
-def heel_up(step: StepSettings, cut: float, lift: float, most: float, land: float, columns: list[int]) -> Pitches:
+def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
     """Pitches of a swing, radians: as the toes leave, at most, at landing and afterwards; fast steps stay flat."""
+    lift, most, land = heel.degrees
     rest = step.stream_pitch * cut
     if len(columns) > 1:
         land = rest = 0.0  # heel and toes of a bracket come down together
     out = np.radians(
         [
-            lift * (1.0 - step.lift_flat * cut),
-            most * (1.0 - step.swing_flat * cut),
+            lift * (1.0 - heel.flat[0] * cut),
+            most * (1.0 - heel.flat[1] * cut),
             land + step.land_stream * rest,
             rest,
         ]

@@ -31,7 +31,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     flight = min(float(np.sqrt(8 * apex / GRAVITY)), jump.flight_share * row.duration)
     take_off = take_off_for(footing, time, flight)
     bound = other.free if in_the_way else max(foot.free, other.free)
-    if time - take_off < jump.gallop_flight or bound > take_off:
+    if time - take_off < (jump.leap_flight if in_the_way else jump.gallop_flight) or bound > take_off:
         return None
     yaw = footing.limited(other.yaw + step.yaw_to_normal * (footing.body_yaw() - other.yaw), footing.body_yaw())
     goals = [goal, goal]

@@ -153,13 +153,16 @@ def left_standing(other: FootState, settings: MotionSettings, lift: float, time:
     return sooner, max(lift, sooner.landed)
 
 
-def resumed(foot: FootState, other: FootState, time: float, longest: float) -> tuple[FootState, float | None]:
+def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
     """A step soon after a mine: the foot stays up and goes straight to it, unless the other one stepped meanwhile.
+
+    Even then it does so if it would be down for no time at all.
 
     Returns the foot, evading nothing any more, and when it left the ground.
     """
     evading = foot.evading
-    if evading is None or time - evading.last > longest or other.landed > evading.last:
+    stepped = evading is not None and other.landed > evading.last and time - foot.landed > settings.mines.push
+    if evading is None or time - evading.last > settings.step.longest or stepped:
         return replace(foot, evading=None), None
     return foot.not_moved(evading), foot.moves[-1].lift
 

@@ -16,7 +16,7 @@ from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Sidestep
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
-from dancetutor_cli.motion.footwork.foothold import around, heel_up
+from dancetutor_cli.motion.footwork.foothold import around, heel_of_step, heel_up
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal, pair
 from dancetutor_cli.motion.footwork.walks import places_along, walk_there
 from dancetutor_cli.motion.plan import Press, Turn
@@ -155,7 +155,7 @@ def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, dur
     step = footing.settings.step
     cut = float(reduction(duration, step.fast, step.longest))
     height = step.height_slow + cut * (step.height_fast - step.height_slow)
-    pitches = heel_up(step, cut, step.lift_pitch, step.swing_pitch, step.land_pitch, [0])
+    pitches = heel_up(step, cut, heel_of_step(step), [0])
     lift = max(start + step.double_support * duration, foot.free)
     bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
     aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)

@@ -11,7 +11,7 @@ from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Step, Swing
 from dancetutor_cli.motion.footwork.brackets import under_the_foot
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import tuck_for
-from dancetutor_cli.motion.footwork.foothold import Goal, around, heel_up, landing, pose
+from dancetutor_cli.motion.footwork.foothold import Goal, around, heel_of_step, heel_up, landing, pose
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal, TakeOff, pair
 from dancetutor_cli.motion.footwork.gallops import galloping
 from dancetutor_cli.motion.footwork.leaps import leap
@@ -25,7 +25,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     """One foot steps at a row: from the ground, out of the air over a mine, or as a part of a gallop."""
     numbers, time = footing.settings.step, row.time
     footing = galloping(row, side, footing)
-    resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, numbers.longest)
+    resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
     footing = footing.with_foot(resuming)
     foot, other = footing.feet[side], footing.feet[1 - side]
     body = footing.body_yaw()
@@ -50,8 +50,12 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         if leapt is not None:
             return replace(leapt, leaves=leapt.footing.feet[side].moves[-1].lift)
         footing = _given_way(footing, foot, (target, yaw), (lift, time))
-    pitches = heel_up(numbers, row.cut, numbers.lift_pitch, numbers.swing_pitch, numbers.land_pitch, columns)
+    heel = heel_of_step(numbers)
+    if kind is Jump:  # legs that push off need it
+        heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
+    pitches = heel_up(numbers, row.cut, heel, columns)
     bulge = around(footing, foot, (lift, time), target, yaw, footing.other(foot))
+    height += numbers.height_far * float(np.hypot(*bulge)) * (kind is Step)
     swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
     if isinstance(swing, Jump):
         jump = footing.settings.jump
@@ -71,8 +75,7 @@ def _lift(row: Row, footing: Footing, far: float) -> float:
     what there is, of a fast step the less the farther it is."""
     numbers = footing.settings.step
     least = numbers.double_support_near * max(1.0 - far / numbers.double_support_far, 0.0)
-    hasty = float(np.clip((numbers.fast - row.duration) / (numbers.fast - numbers.hasty), 0.0, 1.0))
-    fast = numbers.double_support_fast + hasty * (least - numbers.double_support_fast)
+    fast = numbers.double_support_fast + row.haste * (least - numbers.double_support_fast)
     both = numbers.double_support + row.cut * (fast - numbers.double_support)
     return row.time - max(row.duration * (1.0 - both), min(numbers.least_swing, row.duration + numbers.overlap))
 
@@ -80,14 +83,18 @@ def _lift(row: Row, footing: Footing, far: float) -> float:
 def _kind(row: Row, footing: Footing, foot: FootState, target: Array, hovering: bool) -> tuple[type[Swing], float]:
     """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time."""
     numbers, mines = footing.settings.step, footing.settings.mines
-    height = numbers.height_slow + row.cut * (numbers.height_fast - numbers.height_slow)
-    if np.linalg.norm(target - foot.ball) < numbers.on_the_spot:
-        height = max(height * numbers.jack_height, numbers.height_fast)
+    far = float(np.linalg.norm(target - foot.ball))
+    fast = numbers.height_fast + row.haste * (numbers.height_hasty - numbers.height_fast)
+    fast += numbers.height_far * max(far - numbers.far, 0.0)
+    height = numbers.height_slow + row.cut * (fast - numbers.height_slow)
+    if far < numbers.on_the_spot:
+        height = max(height * numbers.jack_height, fast)
     kind: type[Swing] = Step
     if hovering:
         kind, height = Hover, max(height, mines.height)
     if _gallop(row, foot.side, footing) is not None:
-        kind, height = Gallop, max(height, mines.height)
+        jump = footing.settings.jump
+        kind, height = Gallop, max(height, mines.height, jump.apex_near + 2 * jump.tuck)  # up with the body
         assert footing.take_offs is not None
         if footing.take_offs[1 - foot.side].row > row.index:  # the first of the two
             kind = Jump

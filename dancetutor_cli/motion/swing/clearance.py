@@ -16,12 +16,20 @@ from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, b
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
-_ASIDE, _AHEAD = np.meshgrid(np.arange(-12, 13) * 0.03, np.array([-0.12, -0.06, 0.0, 0.06, 0.12]))
-_WAYS = np.column_stack((_ASIDE.ravel(), _AHEAD.ravel()))  # metres beside a path's middle, and along the path
-_WAYS = _WAYS[np.argsort(np.abs(_WAYS).sum(axis=1), kind="stable")]
+
+
+def _ways(aside: int, ahead: int) -> Array:
+    """Detours (k, 2), so many steps of 3 and 6 cm to each side: metres beside a path's middle, and along it."""
+    sides, along = np.meshgrid(np.arange(-aside, aside + 1) * 0.03, np.arange(-ahead, ahead + 1) * 0.06)
+    ways = np.column_stack((sides.ravel(), along.ravel()))
+    return np.asarray(ways[np.argsort(np.abs(ways).sum(axis=1), kind="stable")])
+
+
+_WAYS = _ways(12, 2), _ways(16, 5)  # the far ones are asked only where none of the others will do
 SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
 WRONG = 0.10  # metres of room that a radian of legs crossed too far counts as
+TOLERATED = 0.004  # metres of room that a way may lack before farther ones are tried
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
@@ -65,10 +73,14 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     free = wrung(way, outward * (straight - ANKLE * ahead) - aside, step)
     if (gaps >= need).all() and free <= 0.0:
         return 0.0, 0.0
-    places = straight + bend(e)[:, None] * (_WAYS @ axes)[:, None]
-    room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
-    room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside, step)
-    chosen = _WAYS[np.argmax(room >= min(0.0, room.max()))] @ axes
+    chosen = np.zeros(2)
+    for ways in _WAYS:
+        places = straight + bend(e)[:, None] * (ways @ axes)[:, None]
+        room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
+        room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside, step)
+        chosen = ways[np.argmax(room >= min(0.0, room.max()))] @ axes
+        if room.max() >= -TOLERATED:
+            break
     return float(chosen[0]), float(chosen[1])
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.plan import LEAST_FLIGHT
 from dancetutor_cli.motion.settings import BodySettings, LayerSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import Feet, FootPath
 from dancetutor_cli.motion.trajectory.height import span
@@ -74,7 +75,7 @@ def balanced_path(
     slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
     offset = sample_path(pendulum.offset, times, nodes)
     room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
-    feet = _carrying(feet)
+    feet = _carrying(feet, rate)
     low, high, middle = _support(feet, float(np.radians(body.heel_carries)))
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     if shift is not None:
@@ -126,9 +127,10 @@ def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
     return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
 
 
-def _carrying(feet: Feet) -> Feet:
+def _carrying(feet: Feet, rate: float) -> Feet:
     """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
     down = np.stack([f.down for f in feet])
+    down = down | _brief(np.asarray(~down.any(axis=0)), np.ceil(LEAST_FLIGHT * rate))
     firm = down.copy()
     firm[:, 1:] &= down[:, :-1]
     firm[:, :-1] &= down[:, 1:]

@@ -22,7 +22,7 @@ NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
 GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
 LOOSE = 1e-3  # how much the wanted height counts in flight
-LEAST_PHASE = 0.012  # seconds; shorter flights are left out: nobody sees them
+LEAST_STAND = 0.012  # seconds; a flight that begins so soon after another one is left out
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,6 @@ class HeightWish:
 def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
     """Solve the programme. flights : (k, 2) of take-off and landing, seconds, in order; body : settings"""
     times = wish.times
-    flights = flights[(flights[:, 1] - flights[:, 0] > LEAST_PHASE)]
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
     flights = _apart(flights)
     nodes, flying = _nodes(times[0], times[-1], flights)
@@ -97,7 +96,7 @@ def _apart(flights: Array) -> Array:
     """Flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
     keep, landed = [], -np.inf
     for k, (start, end) in enumerate(flights):
-        if start - landed >= LEAST_PHASE:
+        if start - landed >= LEAST_STAND:
             keep.append(k)
             landed = end
     return np.asarray(flights[keep])

@@ -94,7 +94,8 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
-    legs = LegWish(leg, sink, bent, settings.jump.drive * np.maximum(push, catch))
+    most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
+    legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch))
     mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
@@ -166,11 +167,12 @@ def _slowness(y: Array, acceleration: Array, least: float) -> Array:
 class LegWish:
     """How she would like to stand at n times.
 
-    length : (n,) hip to ankle; sink : (n,) how far a plant or a beat lets her sink, metres
+    length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
     bent : (n, 2) as in `reach.bent_down`; firm : (n,) as in `HeightWish`
     """
 
     length: Array
+    most: Array
     sink: Array
     bent: Array
     firm: Array
@@ -182,7 +184,7 @@ def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> Height
     wanted = np.full(len(course.yaw), np.inf)
     highest = np.full(len(course.yaw), np.inf)
     for side in (0, 1):
-        most = leg_room(feet, course, context.skeleton, settings.body.soft_reach, side)
+        most = leg_room(feet, course, context.skeleton, legs.most, side)
         soft = leg_room(feet, course, context.skeleton, legs.length, side)
         highest = np.minimum(highest, most)
         standing = feet[side].down | (legs.firm > 0.0)
