@@ -35,7 +35,8 @@ class _Film:
 class Batch:
     """Runs film jobs on workers; yields one outcome per job as they end, whatever happens to single ones.
 
-    ahead : films opened at a time; the next one is prepared while the last segments of the one before are drawn
+    ahead : pieces of work, for each that is done at a time, below which the next film is opened. A film to be opened
+        is one, and so is each of its segments: short films are opened by many workers at once, long ones one by one.
     """
 
     jobs: Sequence[FilmJob]
@@ -56,15 +57,16 @@ class Batch:
                 yield outcome
 
     def _fill(self) -> None:
-        """Open films until enough are in work. One whose last segments are being drawn does not count."""
-        while self._queue and sum(1 for film in self._films.values() if self._is_fresh(film)) < self.ahead:
+        """Open films until there is enough to do."""
+        enough = self.ahead * self.workers.at_once()
+        while self._queue and sum(map(self._left, self._films.values())) < enough:
             number = self._queue.popleft()
             self._films[number] = _Film(self.jobs[number], time.monotonic())
             self.workers.submit(Task(("open", number), film_work.open_film, (self.jobs[number],)))
 
     @staticmethod
-    def _is_fresh(film: _Film) -> bool:
-        return film.opened is None or film.waiting > 1
+    def _left(film: _Film) -> int:
+        return 1 if film.opened is None else film.waiting
 
     def _ended(self, done: Finished) -> FilmOutcome | None:
         kind, number = done.key[:2]

@@ -38,6 +38,11 @@ class ClusterWorkers:
         self._running = as_completed()
         self._tasks: dict[Any, Task] = {}
 
+    def at_once(self) -> int:
+        """How many threads the workers have that are there now; one that joins later counts from then on."""
+        threads: dict[str, int] = self._client.nthreads()
+        return max(1, sum(threads.values()))
+
     def submit(self, task: Task) -> None:
         """Add a piece of work."""
         future = self._client.submit(perform, task, pure=False, retries=RETRIES)

@@ -49,6 +49,9 @@ class Finished:
 class Workers(Protocol):
     """What does the work. `submit` may be called at any time, also between the items of `done`."""
 
+    def at_once(self) -> int:
+        """How many pieces are worked on at a time."""
+
     def submit(self, task: Task) -> None:
         """Add a piece of work to the end of the queue."""
 
@@ -94,6 +97,9 @@ class SerialWorkers:
     def __init__(self, report: Callable[[Any, int], None]) -> None:
         self._queue: deque[Task] = deque()
         self._report = report
+
+    def at_once(self) -> int:
+        return 1
 
     def submit(self, task: Task) -> None:
         self._queue.append(task)
@@ -177,6 +183,9 @@ class ProcessWorkers:
             process.start()
         theirs.close()
         self._workers.append(_Worker(process, ours))
+
+    def at_once(self) -> int:
+        return self.jobs
 
     def submit(self, task: Task) -> None:
         self._queue.append(task)

@@ -97,6 +97,31 @@ def test_one_bad_chart_does_not_stop_the_rest(pack: Path, tmp_path: Path) -> Non
     assert sum(o.status == "done" for o in outcomes.values()) == 3
 
 
+class Many(SerialWorkers):
+    """Says that it does many pieces at a time; keeps which kinds of pieces it has done."""
+
+    def __init__(self, count: int) -> None:
+        super().__init__(lambda key, frames: None)
+        self.count = count
+        self.kinds: list[str] = []
+
+    def at_once(self) -> int:
+        return self.count
+
+    def done(self) -> Iterator[Finished]:
+        for done in super().done():
+            self.kinds.append(done.key[0])
+            yield done
+
+
+@pytest.mark.parametrize(("workers", "films"), [(1, 2), (8, 3)])
+def test_short_films_are_opened_for_all_workers(workers: int, films: int, pack: Path, tmp_path: Path) -> None:
+    jobs, _, _ = film_list(batch_request((pack,), tmp_path / "videos"))
+    many = Many(workers)
+    assert all(outcome.status == "done" for outcome in run(jobs, many).values()) and many.kinds.count("open") == 3
+    assert many.kinds.index("segment") == films  # opened before anything is drawn
+
+
 class Stopping(SerialWorkers):
     """Is interrupted after a number of segments."""
 
