@@ -100,6 +100,29 @@ def test_a_jump_soon_after_a_mine(after: float) -> None:
     meets(steps)
 
 
+@pytest.mark.parametrize("after", [0.08, 0.13, 0.19])
+def test_a_jump_right_after_mines_under_both_feet_is_one_flight_over_them(after: float) -> None:
+    """A hop to the middle of the pad, and from there to the notes in the time that is left, nobody does."""
+    steps = danced([*ROWS, (2.5, {}), (2.5 + after, {1: L, 2: R}), (3.5, {0: L})], {2: [0, 3]})
+    air = flights(planned(steps))
+    assert len(air) == 1
+    assert air[0, 0] <= 2.5 - default_settings().mines.before + 1e-6
+    assert air[0, 1] == pytest.approx(2.5 + after)
+    meets(steps)
+
+
+def test_with_time_to_push_off_a_jump_after_such_mines_is_a_second_flight() -> None:
+    steps = danced([*ROWS, (2.5, {}), (2.9, {1: L, 2: R}), (3.5, {0: L})], {2: [0, 3]})
+    assert len(flights(planned(steps))) == 2
+    meets(steps)
+
+
+def test_a_step_right_after_mines_under_both_feet_comes_from_the_hop() -> None:
+    steps = danced([*ROWS, (2.5, {}), (2.75, {1: L}), (3.5, {3: R})], {2: [0, 3]})
+    assert len(flights(planned(steps))) == 1
+    meets(steps)
+
+
 def test_a_foot_that_holds_does_not_leave_for_a_mine() -> None:
     events = [*ROWS, (2.0, {0: L}), (2.5, {}), (3.5, {3: R})]
     plan = planned(danced(events, {3: [0]}, holds={(2, 0): 3.0}))

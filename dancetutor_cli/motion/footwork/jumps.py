@@ -10,7 +10,7 @@ from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import Goals, hop, take_off_for
 from dancetutor_cli.motion.footwork.foothold import Goal, Pose, landing
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal
-from dancetutor_cli.motion.footwork.mines import landed_early
+from dancetutor_cli.motion.footwork.mines import flown_on, landed_early
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 def jump(row: Row, footing: Footing) -> Proposal:
     """Both feet land at a row."""
     numbers, time = footing.settings.jump, row.time
-    latest = np.inf
+    footing, latest = flown_on(footing, time)
     for foot in footing.feet:
         down, until = landed_early(foot, footing.settings, time)
         footing, latest = footing.with_foot(down), min(latest, until)

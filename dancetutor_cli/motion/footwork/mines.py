@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.foot_moves import Hover
+from dancetutor_cli.motion.foot_moves import Hover, Jump
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import Flight, flown
 from dancetutor_cli.motion.footwork.foothold import Pitches, Spot, around, beside, landing_ball, pose
@@ -52,10 +52,11 @@ def _hopped(footing: Footing, time: float) -> Footing:
     take_off = max(time - half, *(f.earliest(time) for f in footing.feet))
     if take_off > time - SHORTEST:
         return footing
-    goals = [_home(footing, foot) for foot in footing.feet]
-    for foot in footing.feet:
-        footing = footing.with_foot(replace(foot, evading=None))
-    return flown(footing, Flight(take_off, time + half), goals, [_pitches(footing.settings.mines)] * 2)
+    goals, before = [_home(footing, foot) for foot in footing.feet], footing.feet
+    footing = flown(footing, Flight(take_off, time + half), goals, [_pitches(footing.settings.mines)] * 2)
+    for foot, stood in zip(footing.feet, before, strict=True):
+        footing = footing.with_foot(replace(foot, evading=Evading(time, time, stood.ball, stood.yaw)))
+    return footing
 
 
 def _pitches(mines: MineSettings) -> Pitches:
@@ -156,15 +157,37 @@ def left_standing(other: FootState, settings: MotionSettings, lift: float, time:
 def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
     """A step soon after a mine: the foot stays up and goes straight to it, unless the other one stepped meanwhile.
 
-    Even then it does so if it would be down for no time at all.
+    Even then it does so if it would be down for no time at all. A hop of both feet is over before any step.
 
     Returns the foot, evading nothing any more, and when it left the ground.
     """
-    evading = foot.evading
+    evading = foot.evading if foot.moves and isinstance(foot.moves[-1], Hover) else None
     stepped = evading is not None and other.landed > evading.last and time - foot.landed > settings.mines.push
     if evading is None or time - evading.last > settings.step.longest or stepped:
         return replace(foot, evading=None), None
     return foot.not_moved(evading), foot.moves[-1].lift
+
+
+def _hopping(foot: FootState) -> bool:
+    """Whether a foot has hopped over a mine with the other one, and not stepped since."""
+    return foot.evading is not None and isinstance(foot.moves[-1], Jump)
+
+
+def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
+    """A jump at `time` so soon after a hop over a mine that there is no time to push off: one flight is both.
+
+    Returns the footing without that hop, and when both feet take off for the jump at the latest.
+    """
+    numbers = footing.settings.mines
+    left, right = (f.evading if _hopping(f) else None for f in footing.feet)
+    landed = max(f.landed for f in footing.feet)
+    if left is None or right is None or left.first != right.first or landed <= time - numbers.haste - numbers.push:
+        return footing, time
+    for foot, evading in zip(footing.feet, (left, right), strict=True):
+        up, swing = foot.not_moved(evading), foot.moves[-1]
+        landed = up.moves[-1].land if up.moves else -np.inf
+        footing = footing.with_foot(replace(up, landed=landed, free=min(swing.lift, foot.free)))
+    return footing, left.first - numbers.before
 
 
 def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tuple[FootState, float]:
