@@ -16,6 +16,7 @@ from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal,
 from dancetutor_cli.motion.footwork.gallops import galloping
 from dancetutor_cli.motion.footwork.leaps import leap
 from dancetutor_cli.motion.footwork.mines import left_standing, resumed
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
@@ -26,7 +27,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     numbers, time = footing.settings.step, row.time
     footing = galloping(row, side, footing)
     resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
-    footing = footing.with_foot(resuming)
+    footing = _room_made(row, side, footing.with_foot(resuming))
     foot, other = footing.feet[side], footing.feet[1 - side]
     body = footing.body_yaw()
     wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
@@ -62,6 +63,19 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump)
         swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
     return Proposal(footing.with_foot(foot.moved(swing, target, yaw)), lift)
+
+
+def _room_made(row: Row, side: int, footing: Footing) -> Footing:
+    """The footing in which the other foot turns with the body, if this one comes to stay beside it on its panel.
+
+    One that lies across the panel would leave room for half a shoe, and the rest would hang over the pad's edge.
+    """
+    foot, other = footing.feet[side], footing.feet[1 - side]
+    panel = row.context.panels[row.pressed[side]].mean(axis=0)
+    if row.following(side) is not None or (np.abs(other.ball - panel) > HALF_PANEL).any():
+        return footing
+    turned = footing.pivot_yaw(other, footing.body_yaw(), foot.ball, footing.toes(foot))
+    return footing.pivoted(other, turned, row.time - row.duration, row.time)
 
 
 def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:

@@ -11,7 +11,7 @@ import pytest
 from bake_plays import context, play
 
 import dancetutor_cli.motion.footwork as room
-from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Step
+from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Pivot, Step
 from dancetutor_cli.motion.footwork import footing as footing_module
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal
@@ -20,7 +20,9 @@ from dancetutor_cli.motion.footwork.jumps import jump
 from dancetutor_cli.motion.footwork.mines import avoid_mines
 from dancetutor_cli.motion.footwork.planner import NEWEST, Planner
 from dancetutor_cli.motion.footwork.steps import step
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.play.played import Limb
+from dancetutor_cli.rig.dimensions import SHOE_OUTLINE
 
 L, R = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 FOLDER = Path(room.__file__).parent
@@ -68,6 +70,32 @@ def test_the_same_footing_gets_the_same_proposal_again() -> None:
         assert repr(footing) == before
         assert repr(first) == repr(again)
         footing = first.footing
+
+
+def test_a_foot_that_lies_across_a_panel_turns_to_make_room_for_one_that_stays_there() -> None:
+    """Both on the left panel, whose outer edge is the pad's: all of the second shoe stands on the pad."""
+    danced, own = play([(1.0, {0: R}), (3.0, {0: L})]), context()
+    footing = Footing.at_home(own, 0)
+    across = replace(footing.feet[1], ball=own.panels[0] + np.array([-0.041, 0.020]), yaw=np.radians(-55.0))
+    footing = footing.with_foot(across)
+    row = Row(danced, own, 1, 3.0, pressed_by(danced, 1), 0.5)
+    left, right = step(row, 0, footing).footing.feet
+    assert [type(move) for move in right.moves] == [Pivot]
+    assert right.moves[0].land == 3.0
+    assert np.degrees(abs(right.yaw)) <= own.settings.step.pivot_to + 1e-6
+    toes = footing.toes(left)
+    ahead, aside = np.array([np.sin(toes), np.cos(toes)]), np.array([np.cos(toes), -np.sin(toes)])
+    outline = left.ball + SHOE_OUTLINE @ np.array([ahead, aside])
+    assert (outline.max(axis=0) <= np.array(own.ground.high) + 0.005).all()
+    assert (np.abs(left.ball - own.panels[0]) <= HALF_PANEL).all()
+
+
+def test_a_foot_stays_as_it_is_for_one_that_goes_on_soon() -> None:
+    danced, own = play([(1.0, {0: R}), (3.0, {0: L}), (3.25, {1: L})]), context()
+    footing = Footing.at_home(own, 0)
+    across = replace(footing.feet[1], ball=own.panels[0] + np.array([-0.041, 0.020]), yaw=np.radians(-55.0))
+    row = Row(danced, own, 1, 3.0, pressed_by(danced, 1), 0.5)
+    assert step(row, 0, footing.with_foot(across)).footing.feet[1].yaw == across.yaw
 
 
 def test_each_rule_is_asked() -> None:
