@@ -89,6 +89,9 @@ class ArmSettings:
     held_back: float
     clear_aside: float
     clear_ahead: float
+    aside_from: float
+    aside_full: float
+    aside_out: float
     twist_slowest: float
     twist_fastest: float
     wander_slow: float

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
-from dancetutor_cli.bake import bake
+from dancetutor_cli.bake import bake, report
 from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.motion.ik.arms import _out_from_a_lean
+from dancetutor_cli.motion.ik.hands import Torso
 from dancetutor_cli.motion.sampling import sample
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 
@@ -47,3 +50,23 @@ def test_wrists_of_free_hands_are_bent_a_little(danced: Motion) -> None:
     for side in "lr":
         turned = quat.angle_between(rotations[:, danced.skeleton.index(f"{side}_radiocarpal")], quat.IDENTITY)
         assert 5.0 < np.degrees(turned).mean() < 30.0
+
+
+def test_no_arm_is_in_a_trunk_that_leans_far_aside() -> None:
+    """Wide steps to and fro on two pads: the hand of the higher shoulder would hang against the trunk."""
+    events = [(1.0 + 0.8 * k, {(0, 4, 3, 7)[k % 4]: (R, L)[k % 2]}) for k in range(12)]
+    measured = report(bake(chart(), play(events, True), pad(True)))
+    assert [f.value for f in measured.figures if f.name == "limb in torso"] == [0.0]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_the_hand_of_the_higher_shoulder_goes_outward(side: int) -> None:
+    """A trunk that leans 20 degrees aside; both wrists hang straight down."""
+    arms, out = default_settings().arms, (1.0, -1.0)[side]
+    turn = quat.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(np.array([0.0, 20.0 * out])))
+    shoulders = quat.rotate(turn[:, None], np.array([[0.16, 0.5, 0.0], [-0.16, 0.5, 0.0]]))
+    wrists = shoulders - [0.0, 0.36, 0.0]
+    way = _out_from_a_lean(wrists, Torso(shoulders, turn), np.tile(quat.IDENTITY, (2, 1)), arms)
+    assert np.abs(way[0]).max() == 0.0
+    assert way[1, side, 0] * out == pytest.approx(arms.aside_out, abs=0.002)
+    assert np.abs(way[1, 1 - side]).max() == 0.0

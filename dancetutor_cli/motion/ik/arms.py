@@ -36,6 +36,7 @@ BEHIND = (0.37, 0.23)  # how much of a slow and a quick wave each hand and axis 
 WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
+ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
@@ -54,6 +55,7 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
     wrists += held[..., None] * kept_clear(wrists, torso, clear)
+    wrists += _out_from_a_lean(wrists, torso, upright, arms)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
     out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
     elbows = quat.rotate(upright[:, None], out)
@@ -63,6 +65,19 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     for press in plan.presses:
         _press(press, at, hands, body, context)
     return hands
+
+
+def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSettings) -> Array:
+    """How wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly outward of the
+    shoulder, which is over the trunk then; as one does for balance."""
+    across = torso.shoulders[:, 0] - torso.shoulders[:, 1]
+    higher = np.degrees(np.arcsin(np.clip(across[:, 1] / np.linalg.norm(across, axis=1), -1.0, 1.0)))
+    outward = np.array([1.0, -1.0])
+    share = smooth((higher[:, None] * outward - arms.aside_from) / (arms.aside_full - arms.aside_from))
+    aside = quat.rotate(upright, np.array([1.0, 0.0, 0.0]))[:, None] * outward[:, None]
+    far = np.sum((wrists - torso.shoulders) * aside, axis=2)
+    missing = np.logaddexp(0.0, (arms.aside_out - far) / ASIDE_SOFT) * ASIDE_SOFT
+    return np.asarray((share * missing)[..., None] * aside)
 
 
 def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
