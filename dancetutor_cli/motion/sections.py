@@ -97,6 +97,9 @@ class ArmSettings:
     wander_slow: float
     wander_quick: float
     wander_share: float
+    wander_behind: float
+    wander_quick_behind: float
+    askew: float
     swing_most: float
     swing_time: float
     swing_up: float
@@ -142,6 +145,8 @@ class LookSettings:
     head_tilt: float
     bent_tilt: float
     bent_yaw: float
+    bent_from: float
+    bent_to: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +181,11 @@ class LayerSettings:
     beat_width: float
     beat_fade: float
     wrist_time: float
+    wrist_wave: float
+    wrist_unlike: float
+    wrist_behind: float
+    sway_quick: float
+    sway_quick_time: float
     blink: float
     laugh_after: float
     laugh_rise: float
@@ -197,6 +207,7 @@ class HairSettings:
     fastest: float
     struck: float
     highest: float
+    droop: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +219,7 @@ class WaitSettings:
     ready: float
     ease: float
     shift: float
+    onto: float
     shift_time: float
     stays: float
     lean: float
@@ -239,6 +251,7 @@ class FingerSettings:
     flat_middle: float
     wander: float
     wander_time: float
+    behind: float
 
 
 @dataclass(frozen=True, slots=True)

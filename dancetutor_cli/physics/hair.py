@@ -32,7 +32,6 @@ LAST = 3  # rounds of pushing it out at the end of a step
 WITHIN = 0.025  # metres that a fast turn may press it into head and back: its own and their softness
 TOUCH = 0.004  # metres from which a point touches
 DOWN = (0.0, -1.0, 0.0)
-DROOP = 0.1  # by how much of it each segment rises less than the one before
 SETTLE = 1.0  # seconds of hanging still before the first frame
 CHUNK = 4800  # steps whose anchors are held at once
 _ARMS = tuple(f"{s}_{n}" for s in "lr" for n in ("shoulder", "elbow", "radiocarpal"))
@@ -59,7 +58,7 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
     parent = np.empty((len(times), 4))
     radii = (settings.head_radius, settings.back_radius, *(settings.upper_arm_radius, settings.forearm_radius) * 2)
     braid = _Braid(settings.rate, settings.gravity, settings.damping, settings.stiffness, radii, settings.rubbing,
-                   settings.fastest, settings.struck * settings.fastest, settings.highest)  # fmt: skip
+                   settings.fastest, settings.struck * settings.fastest, settings.highest, settings.droop)  # fmt: skip
     state = np.zeros((2, len(bones) + 1, 3))
     for first in range(0, len(fixed), CHUNK):
         # from the step before, whose speeds count, to the chunk's end, with what the cubics need of frames
@@ -167,6 +166,7 @@ class _Braid(NamedTuple):
     fastest: float
     struck: float
     highest: float
+    droop: float
 
 
 @inner_kernel
@@ -282,7 +282,7 @@ def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int, state:
             _bent(p, before, held, lengths, braid, ends)
         for k in range(1, n + 1):
             was = scale(sub(_vec(old[k]), _vec(old[k - 1])), 1.0 / lengths[k - 1])
-            most = (highest * (1.0 - DROOP * (k - 1)), fastest, struck)
+            most = (highest * (1.0 - braid.droop * (k - 1)), fastest, struck)
             free, here = _limited(_vec(p[k]), _vec(p[k - 1]), was, most, (lengths[k - 1], braid.radii, ends))
             for d in range(3):
                 before[k, d] += here[d] - free[d]

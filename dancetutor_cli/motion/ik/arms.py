@@ -32,9 +32,8 @@ Array = NDArray[np.float64]
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
-BEHIND = (0.37, 0.23)  # how much of a slow and a quick wave each hand and axis is behind the last
 WAVES = 1.3  # about the size of both waves together
-ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand hangs a little lower and farther back
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
@@ -165,9 +164,9 @@ def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
     lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
     """
     hands = np.arange(6).reshape(2, 3)
-    waves = zip((arms.wander_slow, arms.wander_quick), BEHIND, strict=True)
+    waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
-    ways = np.asarray((slow + arms.wander_share * fast) / WAVES + ASKEW)
+    ways = np.asarray((slow + arms.wander_share * fast) / WAVES + arms.askew * ASKEW)
     return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
 
 

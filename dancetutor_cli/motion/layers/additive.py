@@ -49,9 +49,12 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
     for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
         shrug = doing.waiting.shrug[:, k] * free
         _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * (raised + shrug))
-    for side, phase, bent in (("lr"[lead], 0.0, 0.8), ("rl"[lead], 0.4, 1.2)):
+    for side, phase, bent in (
+        ("lr"[lead], 0.0, 1.0 - settings.wrist_unlike),
+        ("rl"[lead], settings.wrist_behind, 1.0 + settings.wrist_unlike),
+    ):
         hand = hand_direction(skeleton, side)
-        drop = bent + 0.35 * np.sin(2 * np.pi * (times / settings.wrist_time + phase))
+        drop = bent + settings.wrist_wave * np.sin(2 * np.pi * (times / settings.wrist_time + phase))
         _turn(
             skeleton,
             rotations,

@@ -22,7 +22,6 @@ from dancetutor_cli.rig.skeleton import FINGERS, KNUCKLES, Skeleton
 from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal
 
 Array = NDArray[np.float64]
-UNLIKE = 0.4  # of a wave that the other hand is behind
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +62,7 @@ def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
     bar, flat = (np.array([numbers.bar, numbers.bar_middle]), -np.array([numbers.flat, numbers.flat_middle]))
     out = np.empty((len(times), 2, 2))
     for side in (0, 1):
-        behind = UNLIKE * (side != use.lead)
+        behind = numbers.behind * (side != use.lead)
         wave = np.sin(2 * np.pi * (times / numbers.wander_time + behind))
         curl = rest + numbers.wander * wave[:, None] + use.effort[:, None] * (fist - rest)
         for share, goal in ((use.loose, 0.3 * rest), (use.bar, bar), (use.floor, flat)):

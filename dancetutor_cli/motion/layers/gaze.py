@@ -16,7 +16,6 @@ from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.quaternion import UP, leaning
 
 Array = NDArray[np.float64]
-SHALLOW, DEEP = np.radians(25.0), np.radians(85.0)  # of bends: the first changes nothing, the second is deep
 
 
 def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
@@ -27,7 +26,8 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     head_yaw, chest_yaw = (sample_path(yaw, body.times, at) for yaw in (body.head_yaw, body.chest_yaw))
     tilt = sample_path(body.tilt, body.times, at)
     # who bends down to a panel looks at it: no neck turns so far back
-    bent = smooth((np.linalg.norm(tilt, axis=1) - SHALLOW) / (DEEP - SHALLOW))
+    shallow, deep = np.radians(settings.look.bent_from), np.radians(settings.look.bent_to)
+    bent = smooth((np.linalg.norm(tilt, axis=1) - shallow) / (deep - shallow))
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * (head_yaw - chest_yaw)
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
     whole = quat.multiply(quat.conjugate(chest), leaning(lean[:, None] * tilt, head_yaw))

@@ -33,7 +33,6 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one t
 UNIT = 0.03  # metres; scales the programme
 ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
-SHIFTED = 0.85  # of the way to a foot's middle that the zero-moment point goes in waits
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
@@ -79,7 +78,7 @@ def balanced_path(
     low, high, middle = _support(feet, float(np.radians(body.heel_carries)))
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     if shift is not None:
-        middle = middle + _shifted(feet, np.interp(nodes, times, shift), slowness, rate)
+        middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
     down = np.stack([f.down for f in feet])
     both = np.asarray(down.all(axis=0))
     middle_weight = np.where(_brief(both, settings.step.longest * rate), body.middle_weight_fast, body.middle_weight)
@@ -174,16 +173,20 @@ def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
     both = feet[0].down & feet[1].down
-    phase = np.sin(2 * np.pi * times / layers.sway_time) + 0.4 * np.sin(2 * np.pi * times / (0.37 * layers.sway_time))
+    slow = 2 * np.pi * times / layers.sway_time
+    phase = np.sin(slow) + layers.sway_quick * np.sin(slow / layers.sway_quick_time)
     return np.asarray(across * (layers.sway * phase * both)[:, None])
 
 
-def _shifted(feet: Feet, shift: Array, slowness: Array, rate: float) -> Array:
-    """(n, 2): how the zero-moment point goes so that the weight goes `shift` (n,) metres towards the left foot."""
+def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float) -> Array:
+    """(n, 2): how the zero-moment point goes so that the weight goes `shift` (n,) metres towards the left foot.
+
+    onto : the part of the way to the middle of a foot that it goes at most
+    """
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     far = np.maximum(np.linalg.norm(across, axis=1), 0.05)
     point = _zero_moment(shift[:, None], slowness, rate)[:, 0]
-    most = SHIFTED * far / 2
+    most = onto * far / 2
     return np.asarray(across / far[:, None] * (np.clip(point, -most, most) * (feet[0].down & feet[1].down))[:, None])
 
 
