@@ -8,29 +8,20 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
 from dancetutor_cli.motion.footwork.foothold import Pose, legs_crossed
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal
-from dancetutor_cli.motion.footwork.sidesteps import stand_of, stepped, walks_there
-from dancetutor_cli.motion.footwork.walks import places_along
+from dancetutor_cli.motion.footwork.sidesteps import StepsInWaits, stand_of, stepped, walks_there
 from dancetutor_cli.motion.plan import Press, Turn
 from dancetutor_cli.motion.swing.clearance import Way, detour
-from dancetutor_cli.play.played import Play
 
 Array = NDArray[np.float64]
 Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
 
 
-class HomeSteps:
+class HomeSteps(StepsInWaits):
     """Proposes the way home before a row that comes after a long wait."""
-
-    def __init__(self, play: Play, context: Context, lead: int) -> None:
-        self.play, self.panels, self.settings = play, context.panels, context.settings
-        self.places = places_along(context.squares, lead)
-        self.mines = play.rows.second[play.rows.mines.any(axis=1)]
-        self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
         """Both feet step home in the wait before a row, the body turns with them; or None: she stays as she stands.

@@ -38,14 +38,18 @@ class _Next:
     first: tuple[int, ...]
 
 
-class SideSteps:
-    """Proposes side-steps before a row whose notes are far from where she stands."""
+class StepsInWaits:
+    """What is asked of a play by who steps where no note is: places to stand, mines, rows of each foot."""
 
     def __init__(self, play: Play, context: Context, lead: int) -> None:
         self.play, self.panels, self.settings = play, context.panels, context.settings
         self.places = places_along(context.squares, lead)
         self.mines = play.rows.second[play.rows.mines.any(axis=1)]
         self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
+
+
+class SideSteps(StepsInWaits):
+    """Proposes side-steps before a row whose notes are far from where she stands."""
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
         """Step aside before a row if that helps and there is time, and the body's turn meanwhile; or None.
