@@ -53,3 +53,13 @@ def browser() -> Iterator[Browser]:
     one = Browser()
     yield one
     one.close()
+
+
+@pytest.fixture
+def fresh(browser: Browser, page_file: Path) -> None:
+    """The page, opened anew, with nothing stored."""
+    browser.size(1280, 720)
+    browser.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
+    browser.problems.clear()
+    browser.open(page_file)
+    assert browser.run("localStorage.length") == 0

@@ -224,3 +224,8 @@ def pad_script() -> str:
         " buttons: Array.from({length: 10}, () => ({pressed: false, value: 0}))};"
         "navigator.getGamepads = () => [window.pad];"
     )
+
+
+def said(browser: Browser) -> str:
+    """What is said over the picture."""
+    return text(browser, ".said")
