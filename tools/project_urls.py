@@ -1,0 +1,68 @@
+"""The project's URLs for the package's metadata: those of the repository that the wheel or sdist is built from.
+
+A checkout knows its home: the workflow that builds it says so (`GITHUB_SERVER_URL`, `GITHUB_REPOSITORY`), or its git
+remote `origin` does. A fork's wheel so points to the fork. Where neither is known (an archive without git, a clone of
+a local folder) no address is made up; a wheel built from an sdist keeps the sdist's.
+"""
+
+import os
+import re
+import subprocess
+from email.parser import HeaderParser
+from pathlib import Path
+from typing import Any
+
+from hatchling.metadata.plugin.interface import MetadataHookInterface
+
+# https://host/owner/name, ssh://git@host/owner/name, git@host:owner/name; a user or token before @ is left out
+REMOTE = re.compile(
+    r"(?:(?:https?|ssh|git)://(?:[^@/]+@)?(?P<host>[\w.-]+\.\w+)(?::\d+)?/|(?:[\w.-]+@)(?P<scp>[\w.-]+\.\w+):)"
+    r"(?P<path>[\w.~-]+(?:/[\w.~-]+)+)"
+)
+
+
+def home(root: Path) -> str | None:
+    """The web address of the repository at `root`, without a slash at the end, or None if nothing tells it."""
+    server, repository = os.environ.get("GITHUB_SERVER_URL"), os.environ.get("GITHUB_REPOSITORY")
+    if server and repository:
+        return f"{server.rstrip('/')}/{repository}"
+    if not (root / ".git").exists():  # an unpacked archive inside somebody else's checkout is not that checkout
+        return None
+    try:
+        remote = subprocess.run(
+            ["git", "-C", str(root), "remote", "get-url", "origin"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return address(remote)
+
+
+def address(remote: str) -> str | None:
+    """A git remote as a web address, or None for one that is no public place (a folder, a bare host name)."""
+    found = REMOTE.fullmatch(remote.removesuffix("/").removesuffix(".git"))
+    return f"https://{found['host'] or found['scp']}/{found['path']}" if found else None
+
+
+def urls(root: Path) -> dict[str, str]:
+    """Label to URL, as `[project.urls]` has them; empty if the home is not known."""
+    built = root / "PKG-INFO"
+    if built.exists():
+        lines = HeaderParser().parsestr(built.read_text(encoding="utf-8")).get_all("Project-URL") or []
+        return dict(line.split(", ", 1) for line in lines)
+    if (base := home(root)) is None:
+        return {}
+    return {
+        "Homepage": base,
+        "Documentation": f"{base}/tree/main/docs",
+        "Changelog": f"{base}/blob/main/CHANGELOG.md",
+        "Issues": f"{base}/issues",
+        "Source": base,
+    }
+
+
+class ProjectUrls(MetadataHookInterface):
+    """Hatchling's hook: fills the dynamic field `urls`."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        if found := urls(Path(self.root)):
+            metadata["urls"] = found
