@@ -27,7 +27,6 @@ from dancetutor_cli.library.settings_file import (
     check_keys,
     check_not_a_link_out,
     condition_of,
-    find_settings_file,
     texts_of,
 )
 from dancetutor_cli.marked_yaml import read
@@ -56,9 +55,8 @@ class SettingsFeet:
     problems: tuple[FeetProblem, ...] = ()
 
 
-def read_settings(song: Song, chart: Chart) -> SettingsFeet:
-    """What the nearest dancetutor.yaml says about a chart. FileError if it cannot be read."""
-    path = find_settings_file(song.path.parent)
+def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
+    """What a dancetutor.yaml says about a chart; nothing without one. FileError if it cannot be read."""
     if path is None:
         return SettingsFeet()
     status = path.stat()
@@ -68,8 +66,7 @@ def read_settings(song: Song, chart: Chart) -> SettingsFeet:
     for entry in _entries(path, status.st_mtime_ns, status.st_size):
         when = entry.when
         if not (
-            when.holds_for_path(song.path.absolute())
-            and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter)
+            when.holds_for_path(song.path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter)
         ):
             continue
         for tick, letters in entry.steps.items():

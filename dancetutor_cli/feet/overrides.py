@@ -30,7 +30,7 @@ class Overrides:
     @staticmethod
     def none() -> Overrides:
         """No override at all."""
-        return Overrides.of({})
+        return _NONE
 
     @staticmethod
     def of(cells: dict[tuple[int, int], tuple[int, int]]) -> Overrides:
@@ -48,6 +48,9 @@ class Overrides:
         """As {(tick, column): (limb, part)}."""
         keys = zip(self.ticks.tolist(), self.columns.tolist(), strict=True)
         return dict(zip(keys, zip(self.limbs.tolist(), self.part.tolist(), strict=True), strict=True))
+
+
+_NONE = Overrides.of({})
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,8 +64,13 @@ def pinned(song: Song, chart: Chart) -> tuple[list[Said], list[FeetProblem]]:
     return said, problems
 
 
+def has_pins(data: bytes, chart: Chart) -> bool:
+    """Whether there may be a pinned measure in a chart."""
+    return data.find(b"{dt1!", *chart.notes_span) >= 0
+
+
 def _pins(data: bytes, chart: Chart) -> Iterator[_Pin]:
-    if b"{dt1!" not in data[chart.notes_span[0] : chart.notes_span[1]]:
+    if not has_pins(data, chart):
         return
     for line in measure_lines(data, chart):
         for match in markers_in(data[line.start : line.end]):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.bounded import CHART_LIMIT, parse_json, read_bytes
@@ -42,8 +43,8 @@ class ChartData:
 
 def read_sme(song: Song, chart: Chart) -> ChartData:
     """What the `data.sme` in the song's folder says about a chart; nothing if there is none. Never raises."""
-    path = song.path.parent / FILE_NAME
-    if not os.path.lexists(path):  # most often, and an error takes many times as long to raise
+    path = editor_file(song.path)
+    if path is None:
         return ChartData()
     try:
         raw = read_bytes(path, CHART_LIMIT)
@@ -60,6 +61,12 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
         return _unreadable(f"{path.name} {error.message}; it is not used")
     entry = chart_entry(data, chart, place_in_type(song, chart))
     return _chart_data(entry, chart, _our_overrides(data, chart, place_in_type(song, chart)))
+
+
+def editor_file(song: Path) -> Path | None:
+    """The `data.sme` beside a chart file, if there is one, be it only a link."""
+    path = song.parent / FILE_NAME
+    return path if os.path.lexists(path) else None  # most often none, and an error takes many times as long to raise
 
 
 def place_in_type(song: Song, chart: Chart) -> int:

@@ -138,7 +138,7 @@ def _content(
     subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)
     return Content(
         words=words_of(song, chart, preset.name),
-        play=replace(play, moves=shown.moves),
+        play=replace(play, moves=shown.moves, events=None),
         pad=pad,
         notes=note_track(chart, shown, parse_segments("")),
         ticks=ticks_of(chart),

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.bounded import leads_out, shown_key
@@ -70,10 +70,11 @@ class Condition:
         """Whether it can only be decided for a chart."""
         return bool(self.steps_types or self.difficulties or self.meters)
 
-    def holds_for_path(self, path: PurePath) -> bool:
+    def holds_for_path(self, path: Path) -> bool:
         """Whether one of the patterns fits; a pattern without a slash fits any part of the path, as in .gitignore."""
         if not self.paths:
             return True
+        path = path.absolute()
         if path.is_relative_to(self.root):
             path = path.relative_to(self.root)
         whole = path.as_posix()

@@ -26,7 +26,7 @@ _EDITOR_CODES = {
 def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     """Findings about the file as a whole, in order of line and rule."""
     findings: list[Finding] = []
-    for code, options in settings.for_file(subject.song.path.absolute()).items():
+    for code, options in settings.for_file(subject.song.path).items():
         if code in _rules_of_files():
             findings += _rules_of_files()[code](options).check(subject)
     return _in_order(findings)
@@ -45,7 +45,7 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
 def rules_of(subject: ChartSubject, settings: Settings) -> Mapping[str, Options]:
     """The rules that run on a chart, with their options."""
     chart = subject.chart
-    rules = settings.for_chart(subject.song.path.absolute(), chart.written_type, chart.difficulty, chart.meter)
+    rules = settings.for_chart(subject.song.path, chart.written_type, chart.difficulty, chart.meter)
     return {code: options for code, options in rules.items() if code in _rules_of_charts()}
 
 

@@ -77,8 +77,7 @@ class Meters:
         return Played(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
 
     def _findings(self, here: Played, charts: list[Played]) -> tuple[Finding, ...]:
-        path = self._song.path.absolute()
-        rules = self._settings.for_chart(path, here.steps_type, here.difficulty, here.meter)
+        rules = self._settings.for_chart(self._song.path, here.steps_type, here.difficulty, here.meter)
         found: list[Finding] = []
         for code, rule in _rules().items():
             if code in rules:

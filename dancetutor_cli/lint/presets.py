@@ -47,7 +47,6 @@ def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
     """
     if choice.given is not None:
         return choice.given
-    path = path.absolute()
     for when, preset in reversed(choice.ruled):
         if when.holds_for_path(path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter):
             return preset

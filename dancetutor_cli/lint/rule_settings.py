@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath
+from pathlib import Path
 from typing import Any
 
 from dancetutor_cli.library.settings_file import Condition
@@ -48,10 +48,11 @@ class Settings:
     sure_feet: float = 85
     coin_toss: int = 5
     _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
+    _holding: dict[tuple[str, str, int], tuple[int, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_layer(self, layer: Layer) -> Settings:
         """The same with one more layer on top."""
-        return replace(self, layers=(*self.layers, layer), _resolved={})
+        return replace(self, layers=(*self.layers, layer), _resolved={}, _holding={})
 
     def fingerprint(self) -> str:
         """The same text for the same settings, in every process."""
@@ -60,19 +61,21 @@ class Settings:
         ]
         return repr((self.stream_rows, self.sure_feet, self.coin_toss, layers))
 
-    def for_file(self, path: PurePath) -> dict[str, Options]:
+    def for_file(self, path: Path) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""
         return self._of(
             n for n, layer in enumerate(self.layers)
             if not layer.when.is_about_charts and layer.when.holds_for_path(path)
         )  # fmt: skip
 
-    def for_chart(self, path: PurePath, steps_type: str, difficulty: str, meter: int) -> dict[str, Options]:
+    def for_chart(self, path: Path, steps_type: str, difficulty: str, meter: int) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a chart."""
-        return self._of(
-            n for n, layer in enumerate(self.layers)
-            if layer.when.holds_for_path(path) and layer.when.holds_for_chart(steps_type, difficulty, meter)
-        )  # fmt: skip
+        kind = (steps_type, difficulty, meter)
+        holding = self._holding.get(kind)
+        if holding is None:
+            holds = (n for n, layer in enumerate(self.layers) if layer.when.holds_for_chart(*kind))
+            holding = self._holding[kind] = tuple(holds)
+        return self._of(n for n in holding if self.layers[n].when.holds_for_path(path))
 
     def _of(self, layers: Iterable[int]) -> dict[str, Options]:
         """The rules of some of the layers; most files and charts have the same."""

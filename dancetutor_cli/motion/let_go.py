@@ -118,7 +118,9 @@ def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, Why]]) -> Pla
     for row in {row for row, _, _ in found}:
         kept = moves[row] if (limb[row] >= 0).any() else ()
         moves[row] = tuple(sorted({MOVE, *(name for name in kept if not name.startswith(_NOT_WITHOUT))}))
-    out = replace(play, limb=limb, part=part, moves=tuple(moves), feet=play.feet.copy(), facing=play.facing.copy())
+    out = replace(
+        play, limb=limb, part=part, moves=tuple(moves), events=None, feet=play.feet.copy(), facing=play.facing.copy()
+    )
     for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
         stepped = (limb == side).any(axis=1)
         lost = ((play.limb == side).any(axis=1)) & ~stepped

@@ -68,6 +68,7 @@ class Play:
     moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
     preset : name of the cost preset
     confidence : float64 (n,) or None; how likely people step each row this way, 0 to 1, nan: not known (no step in it)
+    events : int32 (n,) or None; what `moves` names, as bits of `vocabulary.EVENTS`, where the solver made the play
     """
 
     rows: Rows
@@ -82,15 +83,18 @@ class Play:
     preset: str
     ambiguity: NDArray[np.uint8] | None = None
     confidence: NDArray[np.float64] | None = None
+    events: NDArray[np.int32] | None = None
 
     def kinds(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
         """What `moves` holds, in the order in which it comes first, and (n,) which of that each row is.
 
-        Rows of the same moves are the same object where the solver made them, and are told apart by that: to look at
-        the names of each takes five times as long. Others may be listed more than once.
+        Where nobody has made `events`, the names are told apart by the objects that they are: some may be listed more
+        than once.
         """
-        objects = np.fromiter(map(id, self.moves), np.int64, len(self.moves))
-        _, first, codes = np.unique(objects, return_index=True, return_inverse=True)
+        marks = self.events
+        if marks is None:
+            marks = np.fromiter(map(id, self.moves), np.int64, len(self.moves))
+        _, first, codes = np.unique(marks, return_index=True, return_inverse=True)
         order = first.argsort()
         rank = np.empty(len(order), dtype=np.intp)
         rank[order] = np.arange(len(order))

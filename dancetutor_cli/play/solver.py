@@ -15,7 +15,7 @@ from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import EVENT_BITS, EVENTS, NEXT, Found
-from dancetutor_cli.play.techniques import name_moves
+from dancetutor_cli.play.techniques import all_events, names_of
 
 _PLACE = (1 << PLACE_BITS) - 1
 
@@ -65,7 +65,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
     """The play that a way through the rows is."""
     t, g = engine.tables, engine.rules.geometry
-    moves = name_moves(rows, found.limb, engine.pad, t.wide[found.move, EVENTS] & EVENT_BITS)
+    events = all_events(rows, found.limb, engine.pad, t.wide[found.move, EVENTS] & EVENT_BITS)
     state = t.state_key[t.move[found.move, NEXT]].astype(np.int32)
     left, right = state & _PLACE, state >> PLACE_BITS & _PLACE
     facing = g.angle[left, right]
@@ -82,9 +82,10 @@ def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
         cost=engine.price(rows, found),  # the largest array comes last, when nothing else is needed any more
         margin=found.margin if len(found.margin) or not len(rows) else None,
         ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
-        moves=moves,
+        moves=names_of(events),
         preset=engine.preset.name,
         confidence=_confidence(rows, engine.preset, found.margin) if len(found.margin) else None,
+        events=events,
     )
 
 

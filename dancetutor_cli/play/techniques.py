@@ -44,9 +44,9 @@ class _Steps:
     both: NDArray[np.bool_]
 
 
-def name_moves(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.int32]) -> tuple[tuple[str, ...], ...]:
-    """Per row the names of what happens, sorted. `limb` : (n, c); `events` : (n,), bits of `EVENTS` from the solver."""
-    found = events.astype(np.int64)
+def all_events(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.int32]) -> NDArray[np.int32]:
+    """What happens in each row, (n,), as bits of `EVENTS`. `limb` : (n, c); `events` : (n,), those of the solver."""
+    found = events.astype(np.int32)
     steps = _single_steps(rows, limb)
     row = steps.row
     found[row[:1]] &= ~_SWITCHES  # the starting stance is no step that another foot could take over
@@ -57,11 +57,17 @@ def name_moves(rows: Rows, limb: NDArray[np.int8], pad: Pad, events: NDArray[np.
         found[row[1:][_gallops(steps, other)]] |= _GALLOP
         found[row[_streams(steps)]] |= _STREAM
         found[row[_drills(steps, other)]] |= _DRILL
-    return tuple([_names(bits) for bits in found.tolist()])
+    return found
+
+
+def names_of(events: NDArray[np.int32]) -> tuple[tuple[str, ...], ...]:
+    """Per row the names of what happens, sorted."""
+    return tuple([event_names(bits) for bits in events.tolist()])
 
 
 @cache
-def _names(bits: int) -> tuple[str, ...]:
+def event_names(bits: int) -> tuple[str, ...]:
+    """The names of events by their bits, sorted; always the same object for the same bits."""
     return tuple(sorted(name for bit, name in enumerate(EVENTS) if bits >> bit & 1))
 
 
