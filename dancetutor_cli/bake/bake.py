@@ -55,6 +55,7 @@ class How(TypedDict, total=False):
     rate : speed at which the music is played; the play's rows are already at it, and all times are those of
         the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
+    sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
     let_go : why notes that no limb has in the play are let go, where the caller has decided that
     each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
@@ -63,6 +64,7 @@ class How(TypedDict, total=False):
     rate: float
     bar: bool
     gait: str
+    sides: tuple[int, int] | None
     let_go: tuple[LetGo, ...]
     each: Each
 
@@ -117,6 +119,7 @@ def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Pla
     bar = how.get("bar", False)
     rail = bar_of(pad, settings.bar) if bar else None
     context = context_of(pad, holding(settings) if bar else settings, _beats(chart, play, rate), rail)
+    context = replace(context, sides=how.get("sides"))
 
     def second(tick: int) -> float:
         return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate

@@ -140,8 +140,11 @@ def wishes_of(
     )
 
 
-def bake_asked(asked: Asked, task: BakeTask) -> Motion:
-    """The motion without a style; times are seconds of the music as it is played, at the task's rate."""
+def bake_asked(asked: Asked, task: BakeTask, sides: tuple[int, int] | None = None) -> Motion:
+    """The motion without a style; times are seconds of the music as it is played, at the task's rate.
+
+    sides : as in `bake.How`
+    """
     from dancetutor_cli.bake import bake
     from dancetutor_cli.motion.settings import load_settings
 
@@ -155,6 +158,7 @@ def bake_asked(asked: Asked, task: BakeTask) -> Motion:
         bar=task.bar,
         gait=task.gait,
         settings=load_settings(task.motion, task.form),
+        sides=sides,
         each=partial(_shared, task.jobs),
     )
 
@@ -186,13 +190,13 @@ def _piece(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> 
     return function(piece)
 
 
-def plan_asked(asked: Asked, task: BakeTask) -> tuple[Plan, Bar | None]:
-    """Only the moves, and the bar that she holds."""
+def plan_asked(asked: Asked, task: BakeTask, sides: tuple[int, int] | None = None) -> tuple[Plan, Bar | None]:
+    """Only the moves, and the bar that she holds. Arguments as in `bake_asked`."""
     from dancetutor_cli.bake import planned
     from dancetutor_cli.motion.settings import load_settings
 
     how = {"settings": load_settings(task.motion, task.form), "rate": task.rate, "bar": task.bar, "gait": task.gait}
-    plan, context = planned(asked.chart, asked.play, asked.pad, **how)  # type: ignore[arg-type]
+    plan, context = planned(asked.chart, asked.play, asked.pad, sides=sides, **how)  # type: ignore[arg-type]
     return plan, context.bar
 
 
@@ -269,7 +273,7 @@ class BakedDance:
 
         befalls = wishes_of(self.task.push, self.task.trip, rate=self.task.rate)
         settings = load_settings(self.task.motion, self.task.form)
-        return styled(bake_asked(self.asked, self.task), self.task.style, settings, befalls)
+        return styled(bake_asked(self.asked, self.task, self.sides), self.task.style, settings, befalls)
 
     @property
     def place(self) -> tuple[float, float]:
@@ -280,6 +284,16 @@ class BakedDance:
             return 0.0, 0.0
         chart = self.asked.chart
         return place_on(pad_of_both(chart.written_type), chart, self.asked.pad)
+
+    @property
+    def sides(self) -> tuple[int, int] | None:
+        """From which side she comes and to which she goes beside another one; None of one dancer."""
+        from dancetutor_cli.jobs.two import sides_of
+
+        if self.other is None:
+            return None
+        both = sorted((self.asked.chart, self.other.asked.chart), key=lambda part: part.player)
+        return sides_of(both)[int(both[1] is self.asked.chart)]
 
     @property
     def own_motion(self) -> Motion:
@@ -308,4 +322,4 @@ class BakedDance:
     @cached_property
     def moves(self) -> tuple[Plan, Bar | None]:
         """Only the moves, and the bar that she holds."""
-        return plan_asked(self.asked, self.task)
+        return plan_asked(self.asked, self.task, self.sides)

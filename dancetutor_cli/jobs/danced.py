@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
-from dancetutor_cli.jobs.two import pad_of_both, place_on
+from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.motion.baked import shifted
 from dancetutor_cli.play.played import Limb, Play
@@ -51,7 +51,7 @@ def danced(request: FilmRequest, subject: Subject) -> Danced:
         from dancetutor_cli.formats.play_json import read_play
 
         play = read_play(request.play, chart, play.rows, pad)
-    shown, motions = _motions(request, replace(subject, chart=chart), play, pad)
+    shown, motions = _motions(request, replace(subject, chart=chart), (play, pad))
     return Danced((replace(solved, play=play),), shown, pad, motions)
 
 
@@ -64,9 +64,9 @@ def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     whole = pad_of_both(chart.steps_type)
     solved = tuple(solved_chart(subject.song, part, subject.preset) for part in chart.players)
     plays, motions = [], []
-    for one in solved:
+    for one, sides in zip(solved, sides_of(chart.players), strict=True):
         play, pad = _known(request, one)
-        shown, baked = _motions(request, replace(subject, chart=one.chart), play, pad)
+        shown, baked = _motions(request, replace(subject, chart=one.chart), (play, pad), sides)
         plays.append(shown)
         place = place_on(whole, one.chart, pad)
         motions.append({rate: shifted(motion, *place) for rate, motion in baked.items()})
@@ -106,13 +106,16 @@ def together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
     )
 
 
-def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> tuple[Play, dict[float, Motion]]:
+def _motions(
+    request: FilmRequest, subject: Subject, known: tuple[Play, Pad], sides: tuple[int, int] | None = None
+) -> tuple[Play, dict[float, Motion]]:
     """The play without what nobody plays at the fastest rate of the film, and the dancer's motion at each of them, on
-    the clock that is heard there: she falls as fast as all do."""
+    the clock that is heard there: she falls as fast as all do. known : her play and pad; sides : as in `bake.How`"""
     from dancetutor_cli.bake.rate import at_rate
     from dancetutor_cli.motion.let_go import without_unplayable
     from dancetutor_cli.motion.settings import load_settings
 
+    play, pad = known
     settings = load_settings(request.motion, request.form)
     passes = subject.clock.passes
     rates = sorted({one.rate for one in passes})
@@ -136,6 +139,7 @@ def _motions(request: FilmRequest, subject: Subject, play: Play, pad: Pad) -> tu
                 bar=request.bar,
                 gait=request.gait,
                 settings=settings,
+                sides=sides,
                 let_go=gone,
             ),
             request.style,

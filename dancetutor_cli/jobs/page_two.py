@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
-from dancetutor_cli.jobs.two import pad_of_both, place_on
+from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.bake import Asked
@@ -44,8 +44,8 @@ def pair_of(tasks: Sequence[BakeTask]) -> Pair:
     settings = load_settings(tasks[0].motion, tasks[0].form).unplayable
     play = together(chart, [without_unplayable(one.play, one.pad, settings)[0] for one in alone], pad)
     motions = [
-        shifted(bake_asked(one, task), *place_on(pad, one.chart, one.pad))
-        for one, task in zip(alone, tasks, strict=True)
+        shifted(bake_asked(one, task, sides), *place_on(pad, one.chart, one.pad))
+        for one, task, sides in zip(alone, tasks, sides_of([one.chart for one in alone]), strict=True)
     ]
     return Pair(replace(alone[0], chart=chart, play=play, pad=pad), alone, motions)
 

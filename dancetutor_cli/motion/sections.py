@@ -110,6 +110,8 @@ class ArmSettings:
     bend_full: float
     bend_out: float
     bend_ahead: float
+    own_pad: float
+    own_pad_ahead: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,13 +56,17 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
 
 
 def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """After the last note she goes on to the other side, or back if her feet would be in each other's way."""
+    """After the last note she goes on to the other side, or back if her feet would be in each other's way.
+
+    Beside another dancer she goes to her own side, or stays.
+    """
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.moves[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
-    for side in (1 - side_of(plan, context), side_of(plan, context)):
+    came = side_of(plan, context)
+    for side in (1 - came, came) if context.sides is None else context.sides[1:]:
         heading = (0.5 - side) * np.pi
         goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
@@ -80,8 +84,11 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
 def side_of(plan: Plan, context: Context) -> int:
     """The side from which she comes, 0 left or 1 right: by chance, but always the same one for the same notes.
 
-    For the mirror image of a play it is the other one. On two pads it is the side of the foot that leads.
+    For the mirror image of a play it is the other one. On two pads it is the side of the foot that leads; beside
+    another dancer her own (`Context.sides`).
     """
+    if context.sides is not None:
+        return context.sides[0]
     if len(context.squares) > 1:
         return plan.lead
     notes = np.round([touch.start for touch in plan.touches], 3)

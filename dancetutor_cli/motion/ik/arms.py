@@ -36,6 +36,7 @@ WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
+GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
@@ -55,9 +56,14 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
     wrists += held[..., None] * kept_clear(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
+    inward = _on_her_own_pad(wrists[..., 0], context)
+    ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
+    wrists += np.abs(inward)[..., None] * ahead[:, None]
+    wrists[..., 0] += _on_her_own_pad(wrists[..., 0], context)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
     out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
     elbows = quat.rotate(upright[:, None], out)
+    elbows[..., 0] += np.clip(inward / GIVEN_WAY, -1.0, 1.0)
     free = np.tile(quat.IDENTITY, (len(at), 2, 1))
     hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
     hold(plan.grips, at, hands, torso, context)
@@ -77,6 +83,16 @@ def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSetti
     far = np.sum((wrists - torso.shoulders) * aside, axis=2)
     missing = np.logaddexp(0.0, (arms.aside_out - far) / ASIDE_SOFT) * ASIDE_SOFT
     return np.asarray((share * missing)[..., None] * aside)
+
+
+def _on_her_own_pad(x: Array, context: Context) -> Array:
+    """How wrists at x (f, 2) give way, (f, 2), to another dancer, softly: they stay within her pad's edge."""
+    if context.sides is None:
+        return np.zeros_like(x)
+    outward, keep = 1.0 - 2.0 * context.sides[0], context.settings.arms.own_pad
+    edge = context.ground.low[0] if outward > 0.0 else context.ground.high[0]
+    inside = outward * (x - edge) - keep
+    return np.asarray(outward * ASIDE_SOFT * np.logaddexp(0.0, -inside / ASIDE_SOFT))
 
 
 def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:

@@ -1,0 +1,107 @@
+"""Two who dance side by side: each comes and goes on her own outer side, and nobody is in the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.bake.quality.resampled import body_of
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.jobs.bake import Asked, BakedDance, BakeTask, ask, bake_asked, plan_asked, tasks_of
+from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.motion.baked import Motion, shifted
+from dancetutor_cli.rig.capsules import Capsule, depth
+
+Array = np.ndarray
+HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"
+EMPTY = "00000000\n,\n" * 2
+# outer panels, and then both stand on their inner ones, beside each other, for some steps
+COUPLE = EMPTY + "10000001\n01000010\n00100100\n10000001\n,\n" + "00011000\n00100100\n00011000\n01000010\n,\n" * 2
+# the first one begins on the left half and ends on the right one; the second one the other way round
+LEFT, RIGHT = "10000000\n01000000\n00010000\n00100000\n,\n", "00000001\n00000010\n00001000\n00000100\n,\n"
+ROUTINE = LEFT * 2 + "00001000\n00000100\n00000001\n00000010\n,\n" + RIGHT
+BACK = RIGHT * 2 + "00010000\n00100000\n10000000\n01000000\n,\n" + LEFT
+RADII = {"hip": 0.068, "knee": 0.048, "talocrural": 0.035, "shoulder": 0.045, "elbow": 0.036, "radiocarpal": 0.026}
+CHAINS = [("l_hip", "l_knee", "l_talocrural"), ("l_shoulder", "l_elbow", "l_radiocarpal"), ("HumanoidRoot", "vt4")]
+TRUNK, HAND = 0.12, 0.10  # metres: radius of the trunk; of the hand beyond the wrist
+
+
+def both_of(folder: Path, kind: str, notes: str) -> tuple[list[Asked], tuple[BakeTask, ...]]:
+    path = folder / "two.sm"
+    path.write_text(HEAD + f"#NOTES:{kind}::Hard:9::\n{notes};\n")
+    tasks = tasks_of(BakeTask(path, Selection()))
+    return [ask(task) for task in tasks], tasks
+
+
+def capsules(motion: Motion, times: Array) -> list[list[Capsule]]:
+    """Legs, arms with hands, and the trunk at some of the motion's own even times."""
+    body = body_of(motion)
+    near = np.searchsorted(body.times, times - 1e-6)
+    out = []
+    for chain in (*CHAINS[:2], *(tuple(f"r{n[1:]}" for n in chain) for chain in CHAINS[:2]), CHAINS[2]):
+        places = [body.joints[near, motion.skeleton.index(name)] for name in chain]
+        if chain[-1].endswith("radiocarpal"):
+            along = places[-1] - places[-2]
+            places[-1] = places[-1] + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)
+        radii = [RADII.get(name[2:], TRUNK) for name in chain]
+        out.append([(places[k], places[k + 1], radii[k], radii[k + 1]) for k in range(len(chain) - 1)])
+    return out
+
+
+def nearest(motions: Sequence[Motion]) -> Array:
+    """How deep any limb of one is in any of the other at each time that both have; below 0 apart, metres."""
+    first, last = max(m.times[0] for m in motions), min(m.times[-1] for m in motions)
+    times = np.arange(np.ceil(first * 60), np.floor(last * 60) + 1) / 60
+    one, other = (capsules(motion, times) for motion in motions)
+    return np.asarray(np.maximum.reduce([depth(a, b) for a in one for b in other]))
+
+
+@pytest.fixture(scope="module")
+def couple(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Asked], tuple[BakeTask, ...]]:
+    return both_of(tmp_path_factory.mktemp("couple"), "dance-couple", COUPLE)
+
+
+def baked(couple: tuple[list[Asked], tuple[BakeTask, ...]], sides: Sequence[tuple[int, int]]) -> list[Motion]:
+    whole = pad_of_both("dance-couple")
+    return [
+        shifted(bake_asked(asked, task, side), *place_on(whole, asked.chart, asked.pad))
+        for asked, task, side in zip(*couple, sides, strict=True)
+    ]
+
+
+def test_no_limb_of_one_is_ever_in_the_other(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
+    """From the walk on to the walk off, and while both stand on their inner panels."""
+    sides = sides_of([one.chart for one in couple[0]])
+    assert sides == ((0, 0), (1, 1))
+    motions = baked(couple, sides)
+    assert nearest(motions).max() < 0.0
+    for motion, outward in zip(motions, (1.0, -1.0), strict=True):  # the first player's pad is on the left, +x
+        assert motion.ground is not None
+        for x in motion.root[[0, -1], 0]:
+            assert outward * x > 0.84 + 0.1, "beside the pad, on her own side"
+
+
+def test_who_goes_through_the_other_is_seen(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
+    motions = baked(couple, ((0, 1), (1, 0)))
+    assert nearest(motions).max() > 0.05
+
+
+def test_who_changes_places_goes_to_the_other_side(tmp_path: Path) -> None:
+    asked, tasks = both_of(tmp_path, "dance-routine", EMPTY + ROUTINE + "&\n" + EMPTY + BACK)
+    sides = sides_of([one.chart for one in asked])
+    assert sides == ((0, 1), (1, 0))
+    for one, task, (came, goes) in zip(asked, tasks, sides, strict=True):
+        plan, _ = plan_asked(one, task, (came, goes))
+        assert np.sign(plan.feet[0].start[0]) == 1.0 - 2.0 * came
+        assert np.sign(plan.feet[0].moves[-1].target[0]) == 1.0 - 2.0 * goes
+
+
+def test_both_files_of_animate_have_the_same_ways(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
+    first, second = (BakedDance(asked, task, load_dancer()) for asked, task in zip(*couple, strict=True))
+    assert first.sides is None, "alone she comes as her notes say"
+    first.other, second.other = second, first
+    assert (first.sides, second.sides) == ((0, 0), (1, 1))
