@@ -30,8 +30,8 @@ _OPTIONS = (
         "--beside",
         type=click.Path(path_type=Path, exists=True),
         metavar="CACHE|FILE.csv",
-        help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs. With "
-        "--full every chart that differs.",
+        help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs, or a "
+        "table's. With --full every chart that differs.",
     ),
     click.option(
         "--meter-scale",

@@ -1,23 +1,26 @@
-"""Our technique counts beside those that ITGmania wrote: its song cache, or a table in CSV with its names.
+"""Our technique counts beside those that ITGmania wrote: its song cache, or tables in CSV with its names.
 
 A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes, whose charts say
 how often the game counts what (`#TECHCOUNTS`: with six decimals, for each of two players, who get the same) and, last,
 where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania tells half and
 full crossovers apart, six before, and five before it counted doublesteps. The game finds feet for dance-single and
 dance-double only; what it writes for other steps types are zeros that say nothing.
+
+A cache has numbers, no rows: both mean the same at most as often as the lesser number. A CSV that says the beat of each
+time tells which rows are the same.
 """
 
 from __future__ import annotations
 
 import csv
 import io
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.msd import Tag, plain, scan
 from dancetutor_cli.chart.names import difficulty as named
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
@@ -31,6 +34,8 @@ TEN = (
 SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
 FIVE = SIX[:5]
 COUNTED = ("dance-single", "dance-double")  # steps types that the game has a pad for
+# Technique -> how often, or the tick of each time, ascending.
+Theirs = Mapping[str, int] | Mapping[str, Sequence[int]]
 _PLAYERS = 2  # of the game: it writes the numbers of both, whatever the chart
 _MOST = 1_000_000  # times that anything happens in a chart
 
@@ -47,12 +52,24 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """One chart that both know. ours : technique -> measure of each time; theirs : technique -> how often"""
+    """One chart that both know. ours : technique -> tick of each time, ascending; theirs : as `Theirs`"""
 
     file: str
     label: str
     ours: Mapping[str, Sequence[int]]
-    theirs: Mapping[str, int]
+    theirs: Theirs
+
+    def shared(self, name: str) -> int:
+        """How often both mean the same: times in the same row, or at most so where only numbers are known."""
+        ours, theirs = self.ours[name], self.theirs[name]
+        if isinstance(theirs, int):
+            return min(len(ours), theirs)
+        return (Counter(ours) & Counter(theirs)).total()
+
+    def differs(self, name: str) -> bool:
+        """Whether the numbers differ or, where rows are known, any row does."""
+        theirs = self.theirs[name]
+        return len(self.ours[name]) != theirs if isinstance(theirs, int) else [*self.ours[name]] != [*theirs]
 
 
 @dataclass
@@ -64,10 +81,12 @@ class Beside:
     only_theirs: int = 0
 
 
-def read_theirs(path: Path) -> dict[Key, dict[str, int]]:
+def read_theirs(path: Path) -> Mapping[Key, Theirs]:
     """What the game wrote: a CSV file, a file of its cache, or a folder of such. UsageError if nothing is in it."""
+    found: Mapping[Key, Theirs]
     if path.is_file() and path.suffix.lower() == ".csv":
-        found = dict(_table(path))
+        rows = list(_rows(path))
+        found = _times(path, rows) if rows and {"technique", "beat"} <= rows[0][1].keys() else dict(_table(path, rows))
     else:
         files = [path] if path.is_file() else sorted(one for one in path.rglob("*") if one.is_file())
         found = {key: counts for file in files for key, counts in _cached(file)}
@@ -111,17 +130,43 @@ def _counts(text: str) -> dict[str, int] | None:
     return None
 
 
-def _table(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
-    """Rows of a CSV with the columns file, steps_type, difficulty, description and names of techniques."""
+def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    """Line and cells of each row of a CSV file."""
     text = io.StringIO(read_bytes(path, CHART_LIMIT).decode("utf-8-sig", "replace"), newline="")
     for number, row in enumerate(csv.DictReader(text), 2):
+        yield number, {name: value or "" for name, value in row.items() if name}
+
+
+def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[tuple[Key, dict[str, int]]]:
+    """A chart a row: the columns file, steps_type, difficulty, description and names of techniques."""
+    for number, row in rows:
         try:
             counts = {name: round(float(row[name])) for name in TEN if row.get(name)}
         except (ValueError, OverflowError) as error:
             raise FileError(path, "a count is no number", number) from error
         if counts:
-            words = (row.get(name) or "" for name in ("file", "steps_type", "difficulty", "description"))
-            yield _key(*words), counts
+            yield _key_of(row), counts
+
+
+def _times(path: Path, rows: Sequence[tuple[int, dict[str, str]]]) -> dict[Key, dict[str, list[int]]]:
+    """A time a row: the columns that name a chart, technique and beat; rows without a technique only name a chart."""
+    names = [name for name in TEN if any(row["technique"] == name for _, row in rows)]
+    found: dict[Key, dict[str, list[int]]] = {}
+    for number, row in rows:
+        times = found.setdefault(_key_of(row), {name: [] for name in names})
+        if row["technique"] in times:
+            try:
+                times[row["technique"]].append(round(float(row["beat"]) * TICKS_PER_BEAT))
+            except (ValueError, OverflowError) as error:
+                raise FileError(path, "a beat is no number", number) from error
+    for times in found.values():
+        for ticks in times.values():
+            ticks.sort()
+    return found if names else {}
+
+
+def _key_of(row: Mapping[str, str]) -> Key:
+    return _key(*(row.get(name, "") for name in ("file", "steps_type", "difficulty", "description")))
 
 
 def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
@@ -129,7 +174,7 @@ def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
     return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
 
 
-def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Mapping[str, int]]) -> Beside:
+def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> Beside:
     """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
     found, seen = Beside(), set[Key]()
     by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)
@@ -154,8 +199,7 @@ def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Mapping[str, int]]
                 found.only_ours += 1
                 continue
             seen.add(same)
-            measures = play.rows.tick // TICKS_PER_MEASURE
-            ours = {name: sorted(measures[rows].tolist()) for name, rows in tech_rows(subject).items()}
+            ours = {name: sorted(play.rows.tick[rows].tolist()) for name, rows in tech_rows(subject).items()}
             found.charts.append(Compared(task.path.as_posix(), chart.label, ours, theirs[same]))
     found.only_theirs = len(theirs) - len(seen)
     return found

@@ -1,10 +1,10 @@
 """Technical steps of a chart, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
 
-The game looks at rows with steps, each with the row before it. A footswitch is a panel pressed by another foot than in
-the row before, within 0.3 s; a jack the same foot on the same panel (0.176 s) and a doublestep on another (0.235 s),
-both rows single. A crossover is one step after which the foot stands on the wrong side of the other, which stepped in
-the row before: full where that foot came from its own side, half where it came from the middle. So a crossed passage of
-five rows is one crossover or two, not five.
+The game looks at rows with steps, each with the row before it; the first is nothing. A footswitch is a panel pressed by
+another foot than in the row before, within 0.3 s; a jack the same foot on the same panel (0.176 s) and a doublestep on
+another (0.235 s), both rows single. A crossover is one step after which the foot stands on the wrong side of the other,
+which stepped in the row before: full where that foot came from its own side, half where it came from the middle. So a
+crossed passage of five rows is one crossover or two, not five.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
     steps = _steps_of(subject.play, subject.pad)
     if len(steps.row):
         found |= _switches(steps, subject.pad) | _repeats(steps, subject.play) | _crossovers(steps)
-        both = [steps.row[(steps.heel[foot] >= 0) & (steps.toe[foot] >= 0)] for foot in (0, 1)]
+        both = [steps.row[1:][(steps.heel[foot] >= 0)[1:] & (steps.toe[foot] >= 0)[1:]] for foot in (0, 1)]
         found["Brackets"] = np.concatenate(both)
     return found
 

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.jobs.beside import TEN, Beside, Compared
 from dancetutor_cli.reports.safe import safe, safe_path
 
-_PLACES = 12  # measures of a chart that are named
+_PLACES = 12  # measures or rows of a chart that are named
 
 
 def table_lines(found: Beside) -> Iterator[str]:
     """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
     rows = [["technique", "charts", "ours", "theirs", "both", "charts alike"]]
     for name in TEN:
-        pairs = [(len(one.ours[name]), one.theirs[name]) for one in found.charts if name in one.theirs]
-        if pairs:
-            ours, theirs = (sum(pair[side] for pair in pairs) for side in (0, 1))
-            both, alike = sum(map(min, pairs)), sum(a == b for a, b in pairs)
-            share = f"{alike} ({100 * alike / len(pairs):.0f} %)"
-            rows.append([name, *map(str, (len(pairs), ours, theirs, both)), share])
+        charts = [one for one in found.charts if name in one.theirs]
+        if charts:
+            ours, theirs = sum(len(one.ours[name]) for one in charts), sum(_count(one, name) for one in charts)
+            both, alike = sum(one.shared(name) for one in charts), sum(not one.differs(name) for one in charts)
+            share = f"{alike} ({100 * alike / len(charts):.0f} %)"
+            rows.append([name, *map(str, (len(charts), ours, theirs, both)), share])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for number, row in enumerate(rows):
         first, *others = zip(row, widths, strict=True)
@@ -32,15 +34,34 @@ def table_lines(found: Beside) -> Iterator[str]:
 
 
 def chart_lines(found: Beside) -> Iterator[str]:
-    """Every chart whose counts differ, a technique a line, with the measures of ours: each can be looked at."""
+    """Every chart that differs, a technique a line: the measures of ours, or the rows that only one has."""
     for one in found.charts:
         for name in TEN:
-            if name in one.theirs and len(one.ours[name]) != one.theirs[name]:
+            if name in one.theirs and one.differs(name):
                 yield f"{safe_path(one.file)} [{safe(one.label)}] {name}: {_told(one, name)}"
 
 
+def _count(one: Compared, name: str) -> int:
+    theirs = one.theirs[name]
+    return theirs if isinstance(theirs, int) else len(theirs)
+
+
 def _told(one: Compared, name: str) -> str:
-    measures = list(dict.fromkeys(one.ours[name]))
-    places = " ".join(map(str, measures[:_PLACES])) + (" ..." if len(measures) > _PLACES else "")
-    where = f" (measures {places})" if measures else ""
-    return f"ours {len(one.ours[name])}{where}, theirs {one.theirs[name]}"
+    ours, theirs = one.ours[name], one.theirs[name]
+    if isinstance(theirs, int):
+        where = _places("measures", [tick // TICKS_PER_MEASURE for tick in dict.fromkeys(ours)])
+        return f"ours {len(ours)}{where}, theirs {theirs}"
+    return f"{_side('ours', ours, theirs)}, {_side('theirs', theirs, ours)}"
+
+
+def _side(whose: str, times: Sequence[int], others: Sequence[int]) -> str:
+    only = sorted((Counter(times) - Counter(others)).elements())
+    return f"{whose} {len(times)}{_places(f'only {whose}: beats', [tick / TICKS_PER_BEAT for tick in only])}"
+
+
+def _places(what: str, places: Sequence[float]) -> str:
+    named = list(dict.fromkeys(places))
+    if not named:
+        return ""
+    words = " ".join(f"{place:.3f}".rstrip("0").rstrip(".") for place in named[:_PLACES])
+    return f" ({what} {words}{' ...' if len(named) > _PLACES else ''})"

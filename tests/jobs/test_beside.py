@@ -172,6 +172,38 @@ def test_a_table_of_another_program_does_as_well(places: tuple[Path, Path], tmp_
     assert [cell.strip() for cell in lines[2].split("|")[2:-1]] == ["1", "1", "1", "1", "1 (100 %)"]
 
 
+TIMES = """\
+file,steps_type,difficulty,description,technique,beat
+Two/two.sm,dance-single,hard,me,,
+Two/two.sm,dance-single,hard,me,Jacks,3.5
+Two/two.sm,dance-single,hard,me,Crossovers,1.000000
+Two/two.sm,dance-single,hard,me,Crossovers,2.5
+Two/two.sm,dance-single,easy,me,,
+"""
+
+
+def test_where_beats_are_known_both_are_the_same_rows(places: tuple[Path, Path], tmp_path: Path) -> None:
+    """The left foot crosses on the third row (beat 1) and, back again, on the seventh; theirs stood elsewhere."""
+    table = tmp_path / "times.csv"
+    table.write_text(TIMES, encoding="utf-8")
+    lines = printed(places[0], "--beside", table, "--full").splitlines()
+    cells = {line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]] for line in lines[2:4]}
+    assert cells["Jacks"] == ["2", "1", "1", "1", "2 (100 %)"]
+    assert cells["Crossovers"] == ["2", "2", "2", "1", "1 (50 %)"]  # as often, not in the same rows
+    assert lines[4:6] == ["", "2 charts of both; only ours: 0; only theirs: 0"]
+    told = [line for line in lines if "[dance-single Hard 9]" in line]
+    assert [line.split("] ")[1] for line in told] == [
+        "Crossovers: ours 2 (only ours: beats 3), theirs 2 (only theirs: beats 2.5)"
+    ]
+
+
+def test_a_beat_that_is_none_names_the_line(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text(TIMES.replace("3.5", "nan"))
+    with pytest.raises(FileError) as error:
+        read_theirs(tmp_path / "t.csv")
+    assert error.value.line == 3
+
+
 def test_our_own_csv_is_equal_to_ourselves(tmp_path: Path) -> None:
     table = tmp_path / "ours.csv"
     result = CliRunner().invoke(command, [str(DEMO), "--format", "csv", "--no-cache", "--jobs", "1", "--exit-zero"])

@@ -59,7 +59,7 @@ def counted(json_rows: Sequence[Mapping[str, Any]], steps_type: str) -> Counter[
     """The game's counts, written as a loop over rows."""
     pad = PADS[steps_type]
     rows = [Row(row, pad) for row in json_rows if any(s["kind"] != "roll_tap" for s in row["steps"])]
-    found: Counter[str] = Counter({"Brackets": sum(len(row.toe) for row in rows)})
+    found: Counter[str] = Counter({"Brackets": sum(len(row.toe) for row in rows[1:])})
     for i, row in enumerate(rows):
         if i == 0:
             continue
@@ -195,7 +195,11 @@ def test_the_offset_changes_no_count(offset: str) -> None:
 
 
 def test_a_bracket_counts_for_its_foot() -> None:
-    assert tech(["1100", R], "LlR") == {"Brackets": 1}
+    assert tech([R, "1100", R], "RLlR") == {"Brackets": 1}
+
+
+def test_the_first_row_is_no_bracket_as_in_the_game() -> None:
+    assert tech(["1100", R], "LlR") == {}
 
 
 def test_the_table_has_the_counts(tmp_path: Path) -> None:
