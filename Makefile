@@ -10,7 +10,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help install-check page-tools setup setup-dev demo test lint bench fit fit-meter motion-report character clean
+.PHONY: help wheel install-check page-tools setup setup-dev demo test lint bench fit fit-meter motion-report character clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -25,6 +25,7 @@ help:
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
+	@echo "make wheel   a wheel for this Python and platform with compiled kernels, in dist/"
 	@echo "make install-check  the wheel by pipx and uvx in an empty home, as a user would; needs a package registry"
 	@echo "make clean   remove $(VENV), build/ and caches"
 
@@ -92,6 +93,10 @@ fit-meter: setup-dev
 COUNT ?= 100
 motion-report: setup-dev
 	@$(BIN)/python tools/motion_report.py --count $(COUNT) $(REPORT_ARGS)
+
+wheel: setup-dev
+	HATCH_BUILD_HOOK_ENABLE_CUSTOM=true $(BIN)/python -m hatchling build -t wheel
+	@ls -l dist/*.whl
 
 install-check:
 	tools/install_check.sh

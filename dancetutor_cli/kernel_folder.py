@@ -15,9 +15,11 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from dancetutor_cli.kernel_target import fits_shipped, maker
 from dancetutor_cli.resources import PACKAGE
 
 CHECKSUM = 32  # bytes of SHA-256
+MADE_BY = "made_by.txt"  # beside the kernels that came with the package: by what, for people
 VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choice
 
 
@@ -60,10 +62,42 @@ def _kernel_folder(named: str | None) -> KernelFolder:
     return KernelFolder(temporary, temporary is not None, f"{' and '.join(refused)} cannot be written")
 
 
-def kept_stamp(index: Path) -> str:
-    """Of which code the kernels of an index file were made: what `kernels` wrote behind its checksum."""
+def shipped_folder(source: Path) -> Path | None:
+    """Where kernels of a module lie that came compiled with the package; None if none fits here.
+
+    It is never written, and no folder but the package's own is looked at: nobody else gives machine code.
+    """
+    folder = source.resolve().parent
+    if not folder.is_relative_to(PACKAGE) or not shipped_root().is_dir() or not fits_shipped():
+        return None
+    return shipped_root() / folder.relative_to(PACKAGE)
+
+
+def shipped_root() -> Path:
+    """The folder of all kernels that came compiled with the package, if they did."""
+    return PACKAGE / "_data" / "kernels"
+
+
+def came_compiled() -> bool:
+    """Whether the package brought kernels that are used here."""
+    return shipped_folder(PACKAGE / "kernels.py") is not None and any(map(_is_readable, shipped_root().rglob("*.nbi")))
+
+
+def head(stamp: str) -> bytes:
+    """What a kept file begins with, behind its checksum: of which code it was made, and by what."""
+    return bytes.fromhex(stamp) + maker()
+
+
+def is_current(index: Path, stamp: str) -> bool:
+    """Whether the kernels of an index file were made of this code, and by what is installed now."""
     with index.open("rb") as file:
-        return file.read(2 * CHECKSUM)[CHECKSUM:].hex()
+        return file.read(3 * CHECKSUM)[CHECKSUM:] == head(stamp)
+
+
+def _is_readable(index: Path) -> bool:
+    """Whether what is installed now made the kernels of an index file, of whichever code."""
+    with index.open("rb") as file:
+        return file.read(3 * CHECKSUM)[2 * CHECKSUM :] == maker()
 
 
 def users_folder(name: str) -> Path | None:

@@ -1,7 +1,8 @@
 """How kernels are compiled, and their machine code kept: `njit` of this module in place of numba's.
 
 numba gives up where it finds no folder that it can write, and where a file that it has written is cut short. Here both
-only mean that a kernel is compiled again: what is kept has a checksum, and a folder that can only be read is read.
+only mean that a kernel is compiled again: what is kept has a checksum, and a folder that can only be read is read. So
+is what came compiled with the package (`tools/wheel_kernels.py` puts it there).
 """
 
 from __future__ import annotations
@@ -21,13 +22,16 @@ from numba.core import cgutils as _cgutils
 from numba.core import event as _event
 from numba.extending import intrinsic
 
+from dancetutor_cli import kernel_target
 from dancetutor_cli import quick_numba as quick_numba  # before the first kernel
-from dancetutor_cli.kernel_folder import CHECKSUM, kernel_folder
+from dancetutor_cli.kernel_folder import CHECKSUM, head, kernel_folder, shipped_folder
+from dancetutor_cli.resources import PACKAGE
 
 caching: Any = _caching  # have types in some versions only, or in none
 cgutils: Any = _cgutils
 event: Any = _event
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
+kernel_target.pin()
 
 
 def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
@@ -36,7 +40,7 @@ def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
         return lambda later: _njit(later, **options)
     kept = options.pop("cache", False)
     compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
-    if kept and kernel_folder().kept:
+    if kept and (kernel_folder().kept or shipped_folder(Path(function.__code__.co_filename))):
         compiled._cache = _KernelCache(function)
     return compiled
 
@@ -102,18 +106,17 @@ event.register("numba:compile", _NoCollecting())
 
 
 class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
-    """The index and the data of one kernel, each behind a checksum and the stamp of its code.
+    """The index and the data of one kernel, each behind a checksum, the stamp of its code and who compiled it.
 
-    What does not fit the checksum is not there, nor an index of other code.
+    What does not fit the three is not there; it is not even unpickled.
     """
 
     def _load_index(self) -> dict[Any, str]:
-        found = self._checked(Path(self._index_path))
-        overloads: dict[Any, str] = found[1] if found is not None and found[0] == self._version else {}
+        overloads: dict[Any, str] = self._checked(Path(self._index_path)) or {}
         return overloads
 
     def _save_index(self, overloads: dict[Any, str]) -> None:
-        self._write(self._index_path, (self._version, overloads))
+        self._write(self._index_path, overloads)
 
     def _load_data(self, name: str) -> Any:
         return self._checked(Path(self._data_path(name)))
@@ -122,7 +125,7 @@ class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
         self._write(self._data_path(name), data)
 
     def _write(self, path: str, content: Any) -> None:
-        data = bytes.fromhex(self._source_stamp) + self._dump(content)
+        data = head(self._source_stamp) + self._dump(content)
         with self._open_for_write(path) as file:
             file.write(hashlib.sha256(data).digest() + data)
 
@@ -132,10 +135,10 @@ class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
             whole = path.read_bytes()
         except OSError:
             return None
-        digest, data = whole[:CHECKSUM], whole[CHECKSUM:]
-        if hashlib.sha256(data).digest() != digest or data[:CHECKSUM].hex() != self._source_stamp:
+        digest, data, ours = whole[:CHECKSUM], whole[CHECKSUM:], head(self._source_stamp)
+        if not data.startswith(ours) or hashlib.sha256(data).digest() != digest:
             return None
-        return pickle.loads(data[CHECKSUM:])
+        return pickle.loads(data[len(ours) :])
 
 
 class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
@@ -151,23 +154,46 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
         return stamp_of(self._source)
 
 
-_KERNEL = re.compile(rb"njit|@kernel\b|@inner_kernel\b")  # the second is `video.scene.cpu.uncounted`
+_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b")  # the second is `video.scene.cpu.uncounted`
+_IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
+_WORD = re.compile(r"\w+")
+_CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
 
 
 @cache
 def stamp_of(source: Path) -> str:
-    """A digest of a module with kernels and of what else in its folder they may be made of."""
+    """A digest of a module with kernels and of what else of the package they may be made of."""
     if source.parent.name == "play":
         from dancetutor_cli.play.compiled import source_stamp
 
         return source_stamp()
-    beside = (path for path in sorted(source.parent.glob("*.py")) if _KERNEL.search(path.read_bytes()))
-    files = [source, *beside]
-    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
+    return hashlib.sha256(b"".join(path.read_bytes() for path in made_of(source))).hexdigest()
+
+
+def made_of(source: Path, package: Path = PACKAGE) -> list[Path]:
+    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has."""
+    found, new = {source.resolve()}, [source.resolve()]
+    while new:
+        for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
+            room = package / name.replace(".", "/")
+            modules = [room.with_suffix(".py"), *(room / f"{word}.py" for word in _WORD.findall(names))]
+            for path in modules:
+                if path in found or name == "kernels" or not path.is_file():
+                    continue
+                if _KERNEL.search(path.read_text("utf-8")):
+                    new.append(path)
+                elif not _CONSTANT.search(names):
+                    continue
+                found.add(path)
+    return sorted(found)
 
 
 class _Implementation(caching.CompileResultCacheImpl):  # type: ignore[misc]
     _locator_classes = (_Locator,)
+
+    def reduce(self, cres: Any) -> Any:
+        """Without the list of types in words: half of a file, which nobody reads."""
+        return super().reduce(cres._replace(type_annotation=""))
 
 
 class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
@@ -178,19 +204,24 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
     def __init__(self, function: Any) -> None:
         super().__init__(function)
         stamp, base = self._impl.locator.get_source_stamp(), self._impl.filename_base
-        beside = str(Path(function.__code__.co_filename).parent / "__pycache__")
+        source = Path(function.__code__.co_filename)
         self._cache_file = _File(self._cache_path, base, stamp)
-        self._installed = None if beside == self._cache_path else _File(beside, base, stamp)
+        places = (source.parent / "__pycache__", shipped_folder(source))
+        others = [str(place) for place in places if place is not None and str(place) != self._cache_path]
+        self._installed = [_File(place, base, stamp) for place in others]
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
-        try:
-            found = super()._load_overload(sig, target_context)
-            if found is None and self._installed is not None:
-                data = self._installed.load(self._index_key(sig, target_context.codegen()))
-                found = None if data is None else self._impl.rebuild(target_context, data)
-        except Exception:  # whatever a file of another version of numba or of the processor raises
+        if not self._enabled:
             return None
-        return found
+        key = self._index_key(sig, target_context.codegen())
+        for file in (self._cache_file, *self._installed):
+            try:
+                data = file.load(key)
+                if data is not None:
+                    return self._impl.rebuild(target_context, data)
+            except Exception:  # whatever a damaged installation raises
+                continue
+        return None
 
     def _save_overload(self, sig: Any, data: Any) -> None:
         try:
@@ -200,7 +231,7 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
 
 
 def is_kept(kernel: Any) -> bool:
-    """Whether machine code of a kernel, as it is now, is there from an earlier run."""
+    """Whether machine code of a kernel, as it is now, is there from an earlier run or came with the package."""
     cache = getattr(kernel, "_cache", None)
-    files = (getattr(cache, "_cache_file", None), getattr(cache, "_installed", None))
+    files = (getattr(cache, "_cache_file", None), *getattr(cache, "_installed", ()))
     return any(file is not None and bool(file._load_index()) for file in files)

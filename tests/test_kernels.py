@@ -19,7 +19,6 @@ from dancetutor_cli import kernel_folder, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.doctor import _cache
 from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.video.scene import cpu
 
 MODULE = """
 from dancetutor_cli.kernels import njit
@@ -166,13 +165,24 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, "8 False\n", "")
 
 
-def test_a_kernel_is_compiled_again_when_one_beside_it_changes(tmp_path: Path) -> None:
-    """Those of the software renderer have a decorator of their own, and go into each other."""
-    shutil.copytree(Path(cpu.__file__).parent, tmp_path / "cpu", ignore=shutil.ignore_patterns("__pycache__"))
-    ground, standing = tmp_path / "cpu" / "floor.py", tmp_path / "cpu" / "standing.py"
-    before = kernels.stamp_of.__wrapped__(ground)
-    standing.write_text(standing.read_text("utf-8").replace("return", "return 1 *", 1), "utf-8")
-    assert kernels.stamp_of.__wrapped__(ground) != before
+def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Path) -> None:
+    """Kernels go into each other, also from room to room, and constants of other modules into kernels."""
+    shutil.copytree(kernel_folder.PACKAGE, tmp_path / "p", ignore=shutil.ignore_patterns("__pycache__", "_data"))
+    for source, others in (
+        ("video/scene/cpu/floor.py", ["video/scene/cpu/standing.py", "video/scene/cpu/uncounted.py"]),
+        ("physics/hair.py", ["rig/limb.py", "rig/kinematics.py"]),
+        ("motion/ik/ik_kernels.py", ["rig/limb.py", "rig/dimensions.py"]),
+        ("numerics/qp.py", ["numerics/banded.py"]),
+    ):
+        found = {
+            path.relative_to(tmp_path / "p").as_posix()
+            for path in kernels.made_of(tmp_path / "p" / source, tmp_path / "p")
+        }
+        assert found >= {source, *others}
+    source = tmp_path / "p" / "physics" / "hair.py"
+    before = kernels.stamp_of.__wrapped__(source)
+    source.write_text(source.read_text("utf-8") + "# more\n", "utf-8")
+    assert kernels.stamp_of.__wrapped__(source) != before
 
 
 def _kernels(tree: ast.AST) -> Iterator[tuple[ast.FunctionDef, bool]]:

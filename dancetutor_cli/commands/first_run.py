@@ -20,14 +20,14 @@ def tell_of_compiling(choice: PresetChoice, size: int | None = None, *, quiet: b
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
-    from dancetutor_cli.kernel_folder import kernel_folder
+    from dancetutor_cli.kernel_folder import came_compiled, kernel_folder
     from dancetutor_cli.play.compiled import interpret, is_compiled
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):
         return
     folder = kernel_folder()
-    if folder.fault and not quiet:
+    if folder.fault and not quiet and not came_compiled():
         where = f"compiled kernels are kept in {folder.root or 'the installation'}" if folder.kept else _NOT_KEPT
         click.echo(f"note: {folder.fault}: {where}", err=True)
     if quiet or not sys.stderr.isatty():

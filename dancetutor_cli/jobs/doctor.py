@@ -111,18 +111,33 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
-    from dancetutor_cli.kernel_folder import VARIABLE, kernel_folder
+    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder, shipped_root
     from dancetutor_cli.resources import PACKAGE
 
-    folder = kernel_folder()
-    roots = {PACKAGE, folder.root or PACKAGE}
-    count = sum(1 for root in roots for _ in root.rglob("*.nbi"))
-    where = f"in {folder.root or PACKAGE}" if folder.kept else "and none can be kept"
-    message = (f"{count} kernels compiled" if count else _NOTHING) + f", {where}"
+    folder, came = kernel_folder(), shipped_root()
+    shipped = set(came.rglob("*.nbi"))
+    count = len({path for root in (PACKAGE, folder.root or PACKAGE) for path in root.rglob("*.nbi")} - shipped)
+    used = len(shipped) if came_compiled() else 0
+    found = [f"{used} kernels came compiled"] if used else []
+    found += [f"{count} kernels compiled here"] if count else [] if used else [_NOTHING]
+    message = f"{', '.join(found)}, {f'in {folder.root or PACKAGE}' if folder.kept else 'and none can be kept'}"
+    if shipped and not used:
+        message = f"those of the package are for {_made_by(came)}: not used; {message}"
     if folder.fault:
         mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
         return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
-    return Check("numba cache", "ok" if count else "without", message, "" if count else "dancetutor warmup")
+    there = bool(count or used)
+    return Check("numba cache", "ok" if there else "without", message, "" if there else "dancetutor warmup")
+
+
+def _made_by(shipped: Path) -> str:
+    """What compiled the kernels of the package, in words."""
+    from dancetutor_cli.kernel_folder import MADE_BY
+
+    try:
+        return " ".join((shipped / MADE_BY).read_text("utf-8").split())
+    except (OSError, UnicodeDecodeError):
+        return "another machine"
 
 
 def _font() -> Check:

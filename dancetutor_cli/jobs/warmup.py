@@ -33,12 +33,22 @@ def steps() -> Iterator[tuple[str, Callable[[], None]]]:
 
 
 def _solve() -> None:
-    """Presets by name or file are of one of two models, which have kernels of their own; the default one is done."""
-    from dancetutor_cli import chart as charts
-    from dancetutor_cli.play import load_preset, solve_chart
+    """Presets by name or file are of one of two models, which have kernels of their own; the default one is done.
 
-    song = charts.load(charts_path() / _SONG)
-    solve_chart(song.charts[0], load_preset("thesis"))
+    Tables that are full, as those of many charts become, are filled into larger ones.
+    """
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.play import load_preset, solve_chart, store
+    from dancetutor_cli.play.engine import Engine
+    from dancetutor_cli.play.table_room import grown
+
+    song, preset, pad = charts.load(charts_path() / _SONG), load_preset("thesis"), load_pad(_TYPES[0])
+    solve_chart(song.charts[0], preset)
+    assert pad is not None
+    tables = Engine(pad, preset).tables
+    for full in (store.MORE_STATES, store.MORE_PATTERNS, store.MORE_PAIRS, store.MORE_TERMS, store.MORE_FACTS):
+        grown(tables, full, 1)
 
 
 def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
@@ -49,8 +59,9 @@ def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
     selection = Selection(steps_type=steps_type, difficulty="hard")
     practice = Practice(metronome=True)
     request = FilmRequest(
-        charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice
-    )
+        charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice,
+        bar=steps_type == _TYPES[1],
+    )  # fmt: skip
     prepared[steps_type] = prepare(request, look_up(request))
 
 

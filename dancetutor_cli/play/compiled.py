@@ -13,7 +13,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.kernel_folder import kept_stamp, kernel_folder
+from dancetutor_cli.kernel_folder import is_current, kernel_folder, shipped_folder
 from dancetutor_cli.play.preset import Preset
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
@@ -32,11 +32,12 @@ def source_stamp() -> str:
 
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    written = kernel_folder()
-    folders = {written.of_module(_HERE / "kernel.py"), _HERE / "__pycache__"}
+    written, shipped = kernel_folder(), shipped_folder(_HERE / "kernel.py")
+    folders = [written.of_module(_HERE / "kernel.py"), _HERE / "__pycache__"] if written.kept else []
+    folders += [shipped] if shipped else []
     try:
-        return written.kept and all(
-            any(kept_stamp(index) == source_stamp() for folder in folders for index in folder.glob(pattern))
+        return all(
+            any(is_current(index, source_stamp()) for folder in folders for index in folder.glob(pattern))
             for pattern in ("kernel.*.nbi", f"explore.explore_{preset.model}-*.nbi")
         )
     except OSError:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.kernel_folder import kernel_folder
+from dancetutor_cli.kernel_folder import head, kernel_folder
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.play import compiled, load_preset
 
@@ -33,7 +33,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
     for name in names:
-        (cache / name).write_bytes(bytes(32) + bytes.fromhex(stamp or compiled.source_stamp()) + b"...")
+        (cache / name).write_bytes(bytes(32) + head(stamp or compiled.source_stamp()) + b"...")
 
 
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:

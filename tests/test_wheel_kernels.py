@@ -1,0 +1,234 @@
+"""Kernels that come compiled with the package are used where they fit, and are as if not there where they do not."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hatchling.builders.wheel import WheelBuilder
+
+from dancetutor_cli import kernel_folder, kernel_target, kernels
+from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.jobs.doctor import _cache
+from dancetutor_cli.lint.presets import PresetChoice
+
+ROOT = Path(__file__).resolve().parent.parent
+MODULE = """
+from dancetutor_cli.kernels import njit
+
+@njit(cache=True)
+def double(x):
+    return 2 * x
+"""
+able = pytest.mark.skipif(
+    not kernel_target.fits_shipped(), reason="this processor, or a setting of numba's, has kernels of its own"
+)
+
+
+def loaded(path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location("some_kernels", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def hits(path: Path) -> bool:
+    """Whether a module's kernel was fetched; that it counts right in any case."""
+    for cached in (kernels.stamp_of, kernel_target.maker):
+        cached.cache_clear()
+    module = loaded(path)
+    assert module.double(4) == 8
+    return bool(module.double.stats.cache_hits)
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A package with one module and its kernel, which came compiled; the user's own cache is empty."""
+    package = tmp_path / "package"
+    (package / "room").mkdir(parents=True)
+    source = package / "room" / "some_kernels.py"
+    source.write_text(MODULE, "utf-8")
+    monkeypatch.setattr(kernel_folder, "PACKAGE", package)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "build"))
+    assert not hits(source)
+    came = package / "_data" / "kernels" / "room"
+    shutil.copytree(kernel_folder.kernel_folder().of_module(source), came)
+    (came.parent / kernel_folder.MADE_BY).write_text("numba 0.1,\nPython 3", "utf-8")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
+    yield package
+    for cached in (kernels.stamp_of, kernel_target.maker):
+        cached.cache_clear()
+
+
+def source_of(package: Path) -> Path:
+    return package / "room" / "some_kernels.py"
+
+
+def mine(package: Path) -> list[Path]:
+    return list((package.parent / "mine").rglob("*.nb?"))
+
+
+@able
+def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
+    assert hits(source_of(package)) and mine(package) == []
+    assert kernels.is_kept(loaded(source_of(package)).double)
+    assert kernel_folder.came_compiled()
+    assert _cache().state == "ok" and _cache().message.startswith("1 kernels came compiled, ")
+
+
+@able
+def test_what_came_serves_where_nothing_can_be_kept(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(kernel_folder, "_usable", lambda folder: False)
+    kernel_folder._kernel_folder.cache_clear()
+    try:
+        assert not kernel_folder.kernel_folder().kept and hits(source_of(package))
+        tell_of_compiling(PresetChoice())
+        assert capsys.readouterr().err == ""
+    finally:
+        kernel_folder._kernel_folder.cache_clear()
+
+
+def other_maker(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_target, "_version", lambda name: "0.1")
+
+
+def other_python(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.implementation, "cache_tag", "cpython-399")
+
+
+def other_code(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source_of(package).write_text(MODULE + "\n# more\n", "utf-8")
+
+
+def other_settings(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_OPT", "1")
+
+
+def other_processor(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NUMBA_CPU_NAME")
+    monkeypatch.delenv("NUMBA_CPU_FEATURES")
+    monkeypatch.setattr(kernel_target, "_is_able", lambda: False)
+
+
+def flipped(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for path in (package / "_data" / "kernels").rglob("*.nb?"):
+        data = bytearray(path.read_bytes())
+        data[len(data) // 2] ^= 1
+        path.write_bytes(data)
+
+
+def cut(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for path in (package / "_data" / "kernels").rglob("*.nbc"):
+        path.write_bytes(path.read_bytes()[:-1])
+
+
+def a_strangers_folder(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not below the package is never looked at for kernels that came with it."""
+    monkeypatch.setattr(kernel_folder, "PACKAGE", package / "other")
+    shutil.copytree(package / "_data", package / "other" / "_data")
+
+
+@able
+@pytest.mark.parametrize(
+    "spoil",
+    [other_maker, other_python, other_code, other_settings, other_processor, flipped, cut, a_strangers_folder],
+)
+def test_what_does_not_fit_is_compiled_here_without_a_word(
+    spoil: Callable[[Path, pytest.MonkeyPatch], None],
+    package: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    spoil(package, monkeypatch)
+    assert not hits(source_of(package))
+    assert mine(package) and hits(source_of(package))
+    assert capfd.readouterr() == ("", "")
+
+
+@able
+def test_doctor_says_what_those_kernels_were_made_by(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_target, "_version", lambda name: "0.1")
+    kernel_target.maker.cache_clear()
+    assert _cache().message.startswith("those of the package are for numba 0.1, Python 3: not used; ")
+
+
+@able
+@pytest.mark.parametrize("said", [{}, {"NUMBA_CPU_NAME": "nehalem"}, {"NUMBA_CPU_FEATURES": "-avx2"}])
+def test_kernels_are_for_a_portable_processor_unless_one_is_named(said: dict[str, str]) -> None:
+    plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
+    code = (
+        "from dancetutor_cli import kernels, kernel_target\n"
+        "from numba.core.registry import cpu_target\n"
+        "print(kernel_target.fits_shipped(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code], env=plain | said, cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout.split()
+    if not said:
+        assert told[:2] == ["True", "x86-64-v3"] and "+avx2" in told[2] and "avx512" not in told[2]
+    else:
+        assert told[0] == "False" and set(said.values()) & set(told)
+
+
+USE = """
+import numpy as np
+import dancetutor_cli
+from dancetutor_cli.kernels import is_kept
+from dancetutor_cli.rig.kinematics import _forward, world_transforms
+from dancetutor_cli.rig.skeleton import dancer_skeleton
+
+skeleton, came = dancer_skeleton(), is_kept(_forward)
+turns = np.zeros((1, len(skeleton.parents), 4))
+turns[..., 0] = 1
+world_transforms(skeleton, turns, np.zeros((1, 3)))
+print(came, sum(_forward.stats.cache_hits.values()), dancetutor_cli.__file__)
+"""
+really_run = subprocess.run
+
+
+def compile_one(command: list[str], env: dict[str, str], check: bool) -> None:
+    """In place of `warmup`, which compiles all kernels: one."""
+    assert command[1:] == ["-m", "dancetutor_cli", "warmup", "--quiet"] and check
+    said = really_run([sys.executable, "-c", USE], env=env, cwd=ROOT, check=True, capture_output=True, text=True)
+    assert said.stdout.startswith("False 0")
+
+
+@able
+def test_a_platform_wheel_brings_its_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HATCH_BUILD_HOOK_ENABLE_CUSTOM", "true")
+    monkeypatch.setattr(subprocess, "run", compile_one)
+    (wheel,) = WheelBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"])
+    version = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    tags = Path(wheel).stem.split("-", 2)[2]
+    assert tags.startswith(f"{version}-{version}-") and not tags.endswith("any")
+    site = tmp_path / "site"
+    with zipfile.ZipFile(wheel) as file:
+        file.extractall(site)
+    came = [path.relative_to(site).as_posix() for path in site.rglob("*.nb?")]
+    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/rig"} and len(came) == 2
+    said = next(site.glob("*.dist-info/WHEEL")).read_text("utf-8")
+    assert "Root-Is-Purelib: false" in said
+    plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
+    env = plain | {"PYTHONPATH": str(site), "NUMBA_CACHE_DIR": str(tmp_path / "mine")}
+    ran = really_run([sys.executable, "-c", USE], env=env, cwd=tmp_path, check=True, capture_output=True, text=True)
+    assert ran.stdout.startswith("True 1") and str(site) in ran.stdout
+    assert list((tmp_path / "mine").rglob("*.nb?")) == []
+
+
+def test_the_extra_names_what_the_locked_environment_compiles_with() -> None:
+    said = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]["compiled"]
+    lock = (ROOT / "requirements.lock").read_text("utf-8")
+    assert {one.partition("==")[0] for one in said} == set(kernel_target.COMPILERS)
+    assert all(f"\n{one} " in lock or lock.startswith(f"{one} ") for one in said)
