@@ -29,6 +29,9 @@ class LimbColours:
         return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
 
 
+LIMBS = frozenset(field.name for field in fields(LimbColours))  # names that say: this wears a limb's colour
+
+
 @dataclass(frozen=True, slots=True)
 class PartnerColours:
     """Which colours the second of two dancers wears in place of the first one's.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 from dancetutor_cli.character.gltf_reader import read_character
 from dancetutor_cli.character.mesh import Character, Material, Mesh
-from dancetutor_cli.colours import LimbColours, limb_colours
+from dancetutor_cli.colours import LIMBS, limb_colours
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.resources import PACKAGE
 
@@ -74,7 +74,7 @@ def _built_in(name: str) -> Character:
 def _coloured(mesh: Mesh) -> Mesh:
     """A mesh whose material is named after a limb wears that limb's colour of configs/colours.yaml."""
     name = mesh.material.name
-    if name not in {field.name for field in fields(LimbColours)}:
+    if name not in LIMBS:
         return mesh
     r, g, b = (c / 255 for c in getattr(limb_colours(), name))
     return replace(mesh, material=Material(name, (r, g, b, 1.0)))

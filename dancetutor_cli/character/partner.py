@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character, Mesh
-from dancetutor_cli.colours import LimbColours, PartnerColours, partner_colours
+from dancetutor_cli.colours import LIMBS, PartnerColours, partner_colours
 
-_LIMBS = {field.name for field in fields(LimbColours)}
 _SEEN = 0.01  # part of the textures that has to change for two to be told apart
 PREFIX = "partner_"  # of the names of the second one's joints: who asks for a joint by name gets the first one's
 
@@ -68,7 +67,7 @@ class _Paint:
 def _other(mesh: Mesh, count: int, paint: _Paint) -> Mesh:
     material = mesh.material
     texture = None if material.texture is None else paint.textures[id(material.texture)]
-    if material.name not in _LIMBS:  # shoes and wristbands say whose limb it is
+    if material.name not in LIMBS:  # shoes and wristbands say whose limb it is
         r, g, b, alpha = material.base_color
         material = replace(material, base_color=(r * paint.tint[0], g * paint.tint[1], b * paint.tint[2], alpha))
     return replace(

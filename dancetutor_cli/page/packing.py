@@ -68,6 +68,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
                 "count": count,
                 "feet": first < mesh.feet,
                 "side": int(side[first]),
+                "limb": bool(mesh.skins.limb[material[first]]),
                 # of the dancer, and of a second one
                 "skin": [int(one.of_mesh[material[first]]) + k * len(skins[0].pyramids) for k, one in enumerate(skins)],
                 "tint": [one.tint[material[first]].tolist() for one in skins],

@@ -220,6 +220,7 @@ export class Viewer {
         if (ghost && !ghost[part.side]) continue;
         bind(gl, 3, this.skins[part.skin[who]], at.skin);
         gl.uniform3fv(at.tint, part.tint[who]);
+        gl.uniform1f(at.least, part.limb ? toon.limbs : 0);
         drawPart(gl, part);
       }
     }

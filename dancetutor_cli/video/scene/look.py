@@ -55,12 +55,16 @@ class LightLook:
 
 @dataclass(frozen=True, slots=True)
 class ToonLook:
-    """How the dancer is shaded."""
+    """How the dancer is shaded.
+
+    limbs : share of half light, 0..1, that what wears a limb's colour has in deepest shade: colours there are words
+    """
 
     bands: tuple[float, float]
     soft: float
     levels: tuple[float, float, float]
     shade: RGB
+    limbs: float
     rim: float
     rim_from: float
     outline: RGB
@@ -126,6 +130,8 @@ def read_look(path: Path) -> Look:
         if not value > 0:
             raise FileError(path, f"{name}: {value:g} must be more than 0")
     _check_region(path, "follow.region", look.follow.region)
+    if not 0 <= look.toon.limbs <= 1:
+        raise FileError(path, f"toon.limbs: {look.toon.limbs:g} must be 0 to 1")
     if not 20 <= look.light.elevation <= 89:
         raise FileError(path, f"light.elevation: {look.light.elevation:g} must be 20..89 degrees")
     return look

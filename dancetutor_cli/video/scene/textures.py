@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Mesh
+from dancetutor_cli.colours import LIMBS
 
 Image = NDArray[np.uint8]
 LEVELS = 4  # the texture itself, and three halvings
@@ -19,24 +20,26 @@ class Skins:
 
     pyramids : s tuples of `LEVELS` images uint8 (h, w, 4), each half the size of the one before (1 texel at least)
     of_mesh : int32 (m,), which of them a mesh has; tint : float32 (m, 3), 0..1, multiplies its colours
+    limb : bool (m,), whether it wears a limb's colour, which shade leaves readable (`look.ToonLook.limbs`)
     """
 
     pyramids: tuple[tuple[Image, ...], ...]
     of_mesh: NDArray[np.int32]
     tint: NDArray[np.float32]
+    limb: NDArray[np.bool_]
 
     def flat(self) -> tuple[Image, NDArray[np.int32], NDArray[np.float32]]:
         """All texels in one array, for kernels.
 
         texels uint8 (n, 4); table int32 (s * LEVELS, 3), first texel, width and height of each image; and float32
-        (m, 4), each mesh's tint divided by 255 and the row of its texture in the table
+        (m, 5), each mesh's tint divided by 255, the row of its texture in the table, and 1 for a limb's colour
         """
         images = [image for pyramid in self.pyramids for image in pyramid]
         first = np.cumsum([0, *(i.shape[0] * i.shape[1] for i in images)])
         table = np.array([(f, i.shape[1], i.shape[0]) for f, i in zip(first, images, strict=False)], dtype=np.int32)
         texels = np.concatenate([image.reshape(-1, 4) for image in images])
-        meshes = np.column_stack([self.tint / np.float32(255.0), self.of_mesh * LEVELS]).astype(np.float32)
-        return texels, table, meshes
+        meshes = np.column_stack([self.tint / np.float32(255.0), self.of_mesh * LEVELS, self.limb])
+        return texels, table, meshes.astype(np.float32)
 
 
 def skins_of(meshes: list[Mesh]) -> Skins:
@@ -54,6 +57,7 @@ def skins_of(meshes: list[Mesh]) -> Skins:
         tuple(_pyramid(np.ascontiguousarray(texture)) for texture in different),
         np.array(number, dtype=np.int32),
         np.array([mesh.material.base_color[:3] for mesh in meshes], dtype=np.float32),
+        np.array([mesh.material.name in LIMBS for mesh in meshes], dtype=np.bool_),
     )
 
 

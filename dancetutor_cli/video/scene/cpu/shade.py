@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 # Places in the rows that `light_vertices` writes, one row of 64 bytes for each vertex.
 _X, _Y, _W, _TO_LIGHT, _FACING, _UP, _SU, _SV, _HEIGHT, _U, _V, _MATERIAL = range(12)
 # Places in the row of numbers `toon` that `resolve` takes; see `toon_numbers`.
-_BANDS, _STEEP, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15
+_BANDS, _STEEP, _LEVELS, _RIM, _SHADE, _OUTLINE, _CAST, _LIMBS, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15, 16
 _RIM_WIDTH = 0.2
 _CLOSE = 0.006  # of its depth: samples farther from each other are coloured apart
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
@@ -32,7 +32,8 @@ def toon_numbers(toon: ToonLook, cast: bool) -> Array:
     """
     shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
     starts = [edge - toon.soft for edge in toon.bands]  # each edge is a step from here, 1 / steepness wide
-    numbers = [*starts, 0.5 / toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast), 0.0]
+    numbers = [*starts, 0.5 / toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast)]
+    numbers += [toon.limbs, 0.0]
     return np.array(numbers, dtype=np.float64)
 
 
@@ -176,11 +177,12 @@ def _colour(corners: Any, px: float, py: float, dense: float, surface: Any, ligh
         sun = _sunlit(shadow, su, sv, height + 100.0)
     half = _step((to_light - toon[_BANDS]) * toon[_STEEP]) * (0.5 + 0.5 * sun)  # a cast shadow is lighter than shade
     full = _step((to_light - toon[_BANDS + 1]) * toon[_STEEP]) * sun
+    m = int(vertex[a, _MATERIAL])
+    half = max(half, meshes[m, 4] * toon[_LIMBS])
     level = toon[_LEVELS] + (toon[_LEVELS + 1] - toon[_LEVELS]) * half
     level = (level + (toon[_LEVELS + 2] - toon[_LEVELS + 1]) * full) * (0.95 + 0.05 * up)
     rim = 1.0 - facing - toon[_RIM + 1]
     rim = toon[_RIM] * _step(rim * (1.0 / _RIM_WIDTH)) * (0.6 + 0.4 * up) if rim > 0.0 else 0.0
-    m = int(vertex[a, _MATERIAL])
     u = vertex[a, _U] * w0 + vertex[b, _U] * w1 + vertex[c, _U] * w2
     v = vertex[a, _V] * w0 + vertex[b, _V] * w1 + vertex[c, _V] * w2
     # The image of the texture in which a texel is about a pixel.

@@ -73,11 +73,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         scene, quality = self._scene, self._quality
         mesh = pack(scene.character)
         self._skins = [pyramid(images) for images in mesh.skins.pyramids]
-        self._primitives: list[tuple[SkinnedPrimitive, int, Array]] = []
-        for number, (skin, tint) in enumerate(zip(mesh.skins.of_mesh, mesh.skins.tint, strict=True)):
+        self._primitives: list[tuple[SkinnedPrimitive, int, Array, float]] = []
+        skins, limbs = mesh.skins, self._scene.look.toon.limbs
+        for number, (skin, tint, limb) in enumerate(zip(skins.of_mesh, skins.tint, skins.limb, strict=True)):
             primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
-            self._primitives.append((primitive, self._skins[skin], tint))
+            self._primitives.append((primitive, self._skins[skin], tint, limbs if limb else 0.0))
         self._reach = reach(scene, mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
         fine = (self._fine * self._size[0], self._fine * self._size[1])
@@ -119,7 +120,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         """Free the context and all that is in it."""
         if self._platform is not None:
             self._platform.make_current()
-            for primitive, _, _ in self._primitives:
+            for primitive, *_ in self._primitives:
                 primitive.delete()
             self.delete()
             self._platform.delete_context()
@@ -140,7 +141,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         if cast.scale:
             self._use_skinned("depth.frag", light, cast, to_map=1.0)
             GL.glCullFace(GL.GL_BACK)
-            for primitive, _, _ in self._primitives:
+            for primitive, *_ in self._primitives:
                 primitive.draw(part)
 
     def _use_skinned(self, fragment: str, light: Array, cast: Cast, **more: Any) -> Program:
@@ -215,9 +216,10 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         for outline, culled in ((0.0, GL.GL_BACK), (wide, GL.GL_FRONT)):
             program.set_uniform("outline", float(outline))
             GL.glCullFace(culled)
-            for primitive, skin, tint in self._primitives:
+            for primitive, skin, tint, least in self._primitives:
                 _bind_texture(_SKIN_UNIT, skin)
                 program.set_uniform("tint", tint)
+                program.set_uniform("least", least)
                 primitive.draw(part)
         self._resolve(box)
         self._picture.bind()

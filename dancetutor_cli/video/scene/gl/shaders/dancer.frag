@@ -14,6 +14,7 @@ uniform vec3 bands;          // edge of half light, edge of full light, half the
 uniform vec3 levels;
 uniform vec2 rim;            // strength, where it begins
 uniform vec3 shade;
+uniform float least;         // half light that this surface has at least
 
 out vec4 colour;
 
@@ -31,6 +32,7 @@ void main() {
     }
     float sun = terms.x > bands.x - bands.z ? sunlit() : 1.0;
     float half_light = smoothstep(bands.x - bands.z, bands.x + bands.z, terms.x) * (0.5 + 0.5 * sun);
+    half_light = max(half_light, least);
     float full_light = smoothstep(bands.y - bands.z, bands.y + bands.z, terms.x) * sun;
     float level = levels.x + (levels.y - levels.x) * half_light + (levels.z - levels.y) * full_light;
     level *= 0.95 + 0.05 * terms.z;
