@@ -20,16 +20,18 @@ import numba
 from numba.core import caching as _caching
 from numba.core import cgutils as _cgutils
 from numba.core import event as _event
+from numba.core.runtime.nrt import rtsys as _runtime
 from numba.extending import intrinsic
 
 from dancetutor_cli import kernel_target
-from dancetutor_cli import quick_numba as quick_numba  # before the first kernel
 from dancetutor_cli.kernel_folder import CHECKSUM, head, kernel_folder, shipped_folder
+from dancetutor_cli.quick_numba import look_for_blas, without_scipy
 from dancetutor_cli.resources import PACKAGE
 
 caching: Any = _caching  # have types in some versions only, or in none
 cgutils: Any = _cgutils
 event: Any = _event
+runtime: Any = _runtime
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
 kernel_target.pin()
 
@@ -91,6 +93,7 @@ class _NoCollecting(event.Listener):  # type: ignore[misc]
     def on_start(self, event: Any) -> None:
         """A kernel is compiled, maybe for another one."""
         if self._depth == 0:
+            look_for_blas()
             self._was_on = gc.isenabled()
             gc.disable()
         self._depth += 1
@@ -138,7 +141,8 @@ class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
         digest, data, ours = whole[:CHECKSUM], whole[CHECKSUM:], head(self._source_stamp)
         if not data.startswith(ours) or hashlib.sha256(data).digest() != digest:
             return None
-        return pickle.loads(data[len(ours) :])
+        with without_scipy():
+            return pickle.loads(data[len(ours) :])
 
 
 class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
@@ -209,6 +213,15 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
         places = (source.parent / "__pycache__", shipped_folder(source))
         others = [str(place) for place in places if place is not None and str(place) != self._cache_path]
         self._installed = [_File(place, base, stamp) for place in others]
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Kept machine code needs what arrays are made with, and nothing that numba knows of Python's functions.
+
+        To gather that takes a process a sixth of a second, and where something must be compiled numba does it then.
+        """
+        runtime.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
         if not self._enabled:

@@ -1,18 +1,34 @@
-"""Start numba without scipy: an import of this module before the first kernel saves a command a third of a second.
+"""Let numba do without scipy: that saves a command a third of a second.
 
-On its first kernel numba imports `scipy.linalg` only to see whether there is BLAS for `np.cov` and `np.corrcoef`,
+Before its first kernel numba imports `scipy.linalg` only to see whether there is BLAS for `np.cov` and `np.corrcoef`,
 which no kernel here uses. With the import refused for that moment, everything else stays as it is: matrix products
-ask again.
+ask again. Kernels that are only fetched may need none of it.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 
-if "scipy.linalg" not in sys.modules and "numba.np.arraymath" not in sys.modules:
+_ASKS = "numba.np.arraymath"  # the module that looks for BLAS, once
+
+
+@contextmanager
+def without_scipy() -> Iterator[None]:
+    """In here numba finds no `scipy.linalg`, if it has not looked for it yet."""
+    if "scipy.linalg" in sys.modules or _ASKS in sys.modules:
+        yield
+        return
     sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
     try:
-        import_module("numba.np.arraymath")
+        yield
     finally:
         del sys.modules["scipy.linalg"]
+
+
+def look_for_blas() -> None:
+    """Let numba look for it now, in vain, as before anything is compiled."""
+    with without_scipy():
+        import_module(_ASKS)

@@ -242,3 +242,21 @@ def test_it_is_known_whether_a_kernel_is_kept(tmp_path: Path, monkeypatch: pytes
     module.write_text(MODULE.replace("2 *", "3 *"), "utf-8")
     kernels.stamp_of.cache_clear()
     assert not kernels.is_kept(loaded(module).double)
+
+
+def test_a_kept_kernel_needs_little_of_numba(tmp_path: Path) -> None:
+    (tmp_path / "fetched.py").write_text(
+        "import numpy as np\nfrom dancetutor_cli.kernels import njit\n\n\n"
+        "@njit(cache=True)\ndef mean(values):\n    return (values + values).sum() / len(values) / 2\n\n\n"
+        "print(mean(np.arange(5.0)))\n"
+    )
+    code = "import sys; sys.path.insert(0, '.'); import fetched; print(*sorted(sys.modules))"
+    env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    first, second = (
+        subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, capture_output=True, text=True, check=True)
+        for _ in range(2)
+    )
+    for run, fetched in ((first, False), (second, True)):
+        said, modules = run.stdout.splitlines()
+        assert said == "2.0" and "scipy.linalg" not in modules.split()
+        assert ("numba.typed.typeddict" not in modules.split()) == fetched  # gathered only where something is compiled
