@@ -5,6 +5,7 @@ usage: tools/bench_film.py [ROW ...]      rows: good draft gl pack stages
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import subprocess
@@ -69,17 +70,40 @@ def child(output: str, kind: str) -> None:
     look, watch = request.look, Watch()
     encoding = Encoding("mp4", look.size, request.fps, look.quality)
     make_film(lambda: prepare(request, look_up(request)), encoding, Path(output), default_jobs(), watch)
-    print(json.dumps({"seen": watch.seen, "end": time.time(), "fps": request.fps, "memory": _memory()}))
+    print(json.dumps({"seen": watch.seen, "end": time.time(), "fps": request.fps}))
 
 
 def _memory() -> float:
-    """Largest resident memory of a worker, MiB; NaN where the system does not tell."""
+    """Largest resident memory of a process that this one has waited for, or that those have, MiB; NaN if unknown."""
     try:
         import resource
     except ImportError:
         return float("nan")
     scale = 1024 if sys.platform != "darwin" else 1024 * 1024
     return float(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss) / scale
+
+
+def _adopt() -> None:
+    """Become the parent of processes whose own has ended, as of the server that workers are forked off, on Linux."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER
+
+
+def _environment() -> dict[str, str]:
+    """This process's, but modules come as bytecode, as they are installed."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def _run(*arguments: str) -> str:
+    """What this file prints as a program of its own; waits for everything that it has started."""
+    command = [sys.executable, __file__, *arguments]
+    said = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=_environment()).stdout
+    with contextlib.suppress(ChildProcessError):
+        while sys.platform == "linux":
+            os.wait()
+    return said.splitlines()[-1]
 
 
 def _used() -> float:
@@ -90,10 +114,9 @@ def _used() -> float:
 
 def _render(kind: str) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, __file__, "child", str(Path(folder) / "film.mp4"), kind]
         began, before = time.time(), _used()
-        said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
-        return {"began": began, "used": _used() - before, **json.loads(said.splitlines()[-1])}
+        said = json.loads(_run("child", str(Path(folder) / "film.mp4"), kind))
+        return {"began": began, "used": _used() - before, **said}
 
 
 def film(kind: str) -> list[Row]:
@@ -112,7 +135,7 @@ def film(kind: str) -> list[Row]:
     ]
     if kind == "good":
         rows.append(("first frames after", first - run["began"], "s", "2", ""))
-        rows.append(("memory of a worker", run["memory"], "MiB", "300", ""))
+        rows.append(("memory of the largest process", _memory(), "MiB", "300", ""))
     return rows
 
 
@@ -140,11 +163,8 @@ def pack() -> list[Row]:
             for file in DEMO.parent.iterdir():
                 (song / file.name).write_bytes(file.read_bytes())
         before, began = _used(), time.monotonic()
-        said = subprocess.run(
-            [sys.executable, __file__, "pack-child", folder], check=True, capture_output=True, text=True
-        )
+        run = json.loads(_run("pack-child", folder))
         wall = time.monotonic() - began
-    run = json.loads(said.stdout.splitlines()[-1])
     busy = (_used() - before) / wall / (os.cpu_count() or 1)
     name = f"{run['films']} films of 5 s"
     return [
@@ -158,6 +178,7 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
     from dancetutor_cli.jobs.film_request import FilmRequest
+    from dancetutor_cli.jobs.film_work import common_to_workers
     from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
     from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
@@ -181,7 +202,7 @@ def pack_child(folder: str) -> None:
     videos = Path(folder) / "videos"
     videos.mkdir()
     jobs = film_list(BatchRequest((Path(folder) / "pack",), request, encoding, videos))[0]
-    began, workers = time.monotonic(), Watched(default_jobs(), lambda _key, _frames: None)
+    began, workers = time.monotonic(), Watched(default_jobs(), lambda _key, _frames: None, common_to_workers("cpu"))
     done = sum(outcome.status == "done" for outcome in Batch(jobs, workers).run())
     share = workers.worked / (time.monotonic() - began) / workers.jobs
     workers.close()
@@ -219,9 +240,8 @@ def stages() -> list[Row]:
     rows: list[Row] = []
     for kind in ("good", "draft"):
         with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, __file__, "stages-child", str(Path(folder) / "film.mp4"), kind]
-            runs = [subprocess.run(command, check=True, capture_output=True, cwd=ROOT).stdout for _ in range(3)]
-        least = np.min([json.loads(run.splitlines()[-1]) for run in runs], axis=0)
+            runs = [_run("stages-child", str(Path(folder) / "film.mp4"), kind) for _ in range(3)]
+        least = np.min([json.loads(run) for run in runs], axis=0)
         names = ("imports", "plan and bake", "first frame", "drawing", "RGB to YUV", "x264")
         for name, seconds in zip(names, least, strict=True):
             steady = name in names[3:]
@@ -241,6 +261,7 @@ ROWS: dict[str, Callable[[], list[Row]]] = {
 
 def measure(names: tuple[str, ...] = tuple(ROWS)) -> list[Row]:
     """Rows of the table; other programs that run at the same time make all but the processor time worse."""
+    _adopt()
     _render("warm")  # fills numba's cache and the disk's
     return [row for name in names for row in ROWS[name]()]
 

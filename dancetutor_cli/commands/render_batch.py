@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_list import BatchRequest, UnreadableFile
     from dancetutor_cli.jobs.pool import Workers
     from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.video.choices import RendererKind
 
 
 def render_batch(
@@ -51,7 +52,7 @@ def render_batch(
             _write(results, {"path": str(bad.path), "chart": None, "status": "failed", "error": bad.error})
         progress = stack.enter_context(FilmProgress(f"{len(films)} films", quiet))
         progress.begin(0, batch.request.fps)
-        workers = _workers(options["scheduler"], jobs, progress)
+        workers = _workers(options["scheduler"], jobs, progress, batch.request.look.renderer)
         stack.callback(workers.close)
         for outcome in Batch(films, workers, progress.add).run():
             outcomes.append(outcome)
@@ -84,13 +85,14 @@ def _batch(
     )
 
 
-def _workers(scheduler: str | None, jobs: int, progress: FilmProgress) -> Workers:
+def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
+    from dancetutor_cli.jobs.film_work import common_to_workers, frames_of
     from dancetutor_cli.jobs.pool import open_workers
 
     if scheduler is None:
-        return open_workers(jobs, lambda _key, count: progress.advance(count))
+        common = common_to_workers(kind) if jobs > 1 else ""
+        return open_workers(jobs, lambda _key, count: progress.advance(count), common)
     from dancetutor_cli.jobs.cluster import ClusterWorkers
-    from dancetutor_cli.jobs.film_work import frames_of
 
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 

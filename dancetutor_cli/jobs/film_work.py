@@ -25,7 +25,7 @@ from dancetutor_cli.video.media.film_formats import PICTURES
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
-    from dancetutor_cli.video.choices import Quality, RendererKind
+    from dancetutor_cli.video.choices import RendererKind
     from dancetutor_cli.video.film import Film, FilmPlan
     from dancetutor_cli.video.picture import Frame
 
@@ -198,23 +198,24 @@ def forget() -> None:
     _film.cache_clear()
 
 
-def ready_at_once(jobs: int, kind: RendererKind) -> int:
-    """How many of `jobs` fresh workers shall `warm_up` at once: one alone where kernels must be compiled first.
+def common_to_workers(kind: RendererKind) -> str:
+    """The module of what workers that draw have in common; "" where kernels must be compiled first.
 
-    The others fetch what that one has compiled, instead of compiling the same beside it.
+    One worker does that alone, by `warm_up`, and the others fetch what it has compiled.
     """
     from dancetutor_cli.kernels import is_kept
     from dancetutor_cli.video.scene import renderer
     from dancetutor_cli.video.scene.cpu.shade import resolve
 
-    return jobs if is_kept(resolve) or renderer.chosen(kind) != "cpu" else 1
+    if renderer.chosen(kind) != "cpu":
+        return "dancetutor_cli.video.film"
+    return "dancetutor_cli.jobs.film_common" if is_kept(resolve) else ""
 
 
-def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
-    """Do in a fresh worker what comes before any first frame, while the film is still being prepared.
+def warm_up(report: Report) -> None:
+    """Do what comes before any first frame of the "cpu" renderer, while the film is still being prepared.
 
-    That is to import what drawing needs and, for the "cpu" renderer, to fetch its kernels from numba's cache by drawing
-    a tiny room. A GL renderer is made when it is needed: it holds a context.
+    That is to import what drawing needs and to fetch its kernels, or compile them, by drawing a tiny room.
     """
     from dancetutor_cli.character import load_dancer
     from dancetutor_cli.pads import load_pad
@@ -224,12 +225,12 @@ def warm_up(report: Report, quality: Quality, kind: RendererKind) -> None:
     from dancetutor_cli.video.scene.scene import FrameState, Scene
 
     pad = load_pad("dance-single")
-    if pad is None or renderer.chosen(kind) != "cpu":
+    if pad is None:
         return
     scene, size = Scene(load_dancer(), pad), (64, 36)
     nobody = np.zeros(scene.panels)
     state = FrameState(None, scene.camera("back", size), nobody, nobody.astype(np.int64))
-    renderer.create(scene, size, quality, "cpu").frame(state)
+    renderer.create(scene, size, "good", "cpu").frame(state)
 
 
 def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encoding) -> int:

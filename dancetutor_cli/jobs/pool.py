@@ -1,7 +1,7 @@
 """Worker processes: pieces of work in, results out, in any order; Ctrl-C ends all of them at once.
 
-Processes are spawned, never forked (OpenGL, numba and Windows want it so), and a piece of work is a picklable function
-of a module with picklable arguments.
+Processes are spawned (OpenGL, numba and Windows want it so); on Linux they may be forked off a server that has done
+nothing but import. A piece of work is a picklable function of a module with picklable arguments.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
@@ -22,6 +23,7 @@ from dancetutor_cli.errors import DancetutorError, UnavailableError
 from dancetutor_cli.startup import collect_seldom, leave_garbage
 
 Report = Callable[[int], None]
+_SAFE_PATH = "PYTHONSAFEPATH"
 
 
 class WorkFailedError(DancetutorError):
@@ -70,9 +72,12 @@ def default_jobs() -> int:
         return max(1, os.cpu_count() or 1)
 
 
-def open_workers(jobs: int, report: Callable[[Any, int], None]) -> Workers:
-    """`jobs` worker processes, or this process alone for 1. report(key, n) is called for what pieces report."""
-    return SerialWorkers(report) if jobs <= 1 else ProcessWorkers(jobs, report)
+def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = "") -> Workers:
+    """`jobs` worker processes, or this process alone for 1. report(key, n) is called for what pieces report.
+
+    common : a module whose import makes what the workers have in common; where the system can, it is imported once
+    """
+    return SerialWorkers(report) if jobs <= 1 else ProcessWorkers(jobs, report, common)
 
 
 def attempt(task: Task, report: Report) -> Finished:
@@ -133,10 +138,46 @@ def _uninterrupted() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _worker(connection: Connection) -> None:
+@contextlib.contextmanager
+def _nothing_from_here() -> Iterator[None]:
+    """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SAFE_PATH]
+        else:
+            os.environ[_SAFE_PATH] = before
+
+
+def _server(common: str) -> Any:
+    """What makes processes that have imported `common` already; None where the system has no such thing.
+
+    It begins to import while the caller goes on. With macOS its own libraries do not survive a fork.
+    """
+    if sys.platform != "linux":
+        return None
+    from multiprocessing import forkserver
+
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([common])
+    try:
+        with _uninterrupted(), _nothing_from_here():
+            forkserver.ensure_running()
+    except OSError:  # it needs a place for a socket
+        return None
+    return context
+
+
+def _worker(connection: Connection, common: str) -> None:
     """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
     collect_seldom()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if common:
+        with contextlib.suppress(Exception):  # the work that needs it will say what is wrong
+            import_module(common)
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pickle.loads(connection.recv_bytes())
@@ -163,23 +204,41 @@ class _Worker:
 
 @dataclass
 class ProcessWorkers:
-    """Spawned processes, started at once so that they import while the caller prepares the work."""
+    """Processes, started at once so that they import while the caller prepares the work.
+
+    With something in common the server that makes them is started at once, and they are with the first work.
+    """
 
     jobs: int
     report: Callable[[Any, int], None]
+    common: str = ""
     _queue: deque[Task] = field(default_factory=deque)
     _workers: list[_Worker] = field(default_factory=list)
     _retried: set[Any] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        for _ in range(self.jobs):
+        self._server = _server(self.common) if self.common else None
+        if self._server is None:
+            self._start_all()
+
+    def _start_all(self) -> None:
+        while len(self._workers) < self.jobs:
             self._start()
 
     def _start(self) -> None:
-        context = multiprocessing.get_context("spawn")
+        if self._server is not None:
+            try:
+                # it may still import: who waits for that can be interrupted; its children hear of nothing, as it does
+                self._started(self._server, contextlib.nullcontext())
+                return
+            except (EOFError, OSError):  # it has been killed
+                self._server = None
+        self._started(multiprocessing.get_context("spawn"), _uninterrupted())
+
+    def _started(self, context: Any, guard: contextlib.AbstractContextManager[None]) -> None:
         ours, theirs = context.Pipe()
-        process = context.Process(target=_worker, args=(theirs,), daemon=True)
-        with _uninterrupted():
+        process = context.Process(target=_worker, args=(theirs, self.common), daemon=True)
+        with guard, _nothing_from_here():
             process.start()
         theirs.close()
         self._workers.append(_Worker(process, ours))
@@ -189,6 +248,7 @@ class ProcessWorkers:
 
     def submit(self, task: Task) -> None:
         self._queue.append(task)
+        self._start_all()
         self._feed()
 
     def _feed(self) -> None:

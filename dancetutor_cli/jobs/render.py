@@ -61,8 +61,11 @@ def _remove(folder: Path) -> None:
 
 
 @contextmanager
-def _workers(jobs: int, progress: ProgressListener) -> Iterator[Workers]:
-    workers = open_workers(jobs, lambda _key, frames: progress.advance(frames))
+def _workers(jobs: int, progress: ProgressListener, kind: RendererKind) -> Iterator[Workers]:
+    common = work.common_to_workers(kind) if jobs > 1 else ""
+    workers = open_workers(jobs, lambda _key, frames: progress.advance(frames), common)
+    if jobs > 1 and not common:
+        workers.submit(Task(("warm-up", 0), work.warm_up))
     try:
         yield workers
     finally:
@@ -88,10 +91,7 @@ def make_film(
     ------
     DancetutorError whatever went wrong, in one line; nothing of the film is left then.
     """
-    with _workers(jobs, progress) as workers, work_folder(output) as folder:
-        if jobs > 1:
-            for number in range(work.ready_at_once(jobs, renderer)):
-                workers.submit(Task(("warm-up", number), work.warm_up, (encoding.quality, renderer)))
+    with _workers(jobs, progress, renderer) as workers, work_folder(output) as folder:
         prepared = prepare()
         plan = prepared.plan
         plan_file = folder / "plan.pickle"

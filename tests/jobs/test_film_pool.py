@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,8 @@ import pytest
 
 from dancetutor_cli.errors import FileError, UnavailableError, UsageError
 from dancetutor_cli.jobs.pool import Finished, Report, Task, WorkFailedError, open_workers
+
+COMMON = "dancetutor_cli.video.choices"
 
 
 def double(report: Report, number: int) -> int:
@@ -35,14 +40,18 @@ def die(report: Report, marker: Path | None) -> str:
     return "survived"
 
 
+def has_imported(report: Report, name: str) -> bool:
+    return name in sys.modules
+
+
 def sleep(report: Report, seconds: float) -> None:
     time.sleep(seconds)
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_results_and_reports_come_back(jobs: int) -> None:
+@pytest.mark.parametrize(("jobs", "common"), [(1, ""), (2, ""), (2, COMMON), (2, "dancetutor_cli.no_such_module")])
+def test_results_and_reports_come_back(jobs: int, common: str) -> None:
     reported: dict[Any, int] = {}
-    workers = open_workers(jobs, lambda key, n: reported.__setitem__(key, n))
+    workers = open_workers(jobs, lambda key, n: reported.__setitem__(key, n), common)
     try:
         for number in range(5):
             workers.submit(Task(f"t{number}", double, (number,)))
@@ -82,8 +91,9 @@ def test_more_work_may_come_while_results_do() -> None:
     assert seen == [2, 4, 8, 16, 32]
 
 
-def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path) -> None:
-    workers = open_workers(2, lambda key, n: None)
+@pytest.mark.parametrize("common", ["", COMMON])
+def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path, common: str) -> None:
+    workers = open_workers(2, lambda key, n: None, common)
     try:
         workers.submit(Task("once", die, (tmp_path / "died",)))
         workers.submit(Task("always", die, (None,)))
@@ -95,12 +105,60 @@ def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path) -> None:
     assert isinstance(results["always"].error, UnavailableError) and "killed" in str(results["always"].error)
 
 
-def test_closing_does_not_wait_for_work() -> None:
-    workers = open_workers(2, lambda key, n: None)
+@pytest.mark.parametrize("common", ["", COMMON])
+def test_closing_does_not_wait_for_work(common: str) -> None:
+    workers = open_workers(2, lambda key, n: None, common)
     workers.submit(Task("long", sleep, (60.0,)))
     begin = time.monotonic()
     workers.close()
     assert time.monotonic() - begin < 20  # far from the minute the work would take
+
+
+def test_what_is_common_is_there_before_the_first_work() -> None:
+    workers = open_workers(2, lambda key, n: None, COMMON)
+    try:
+        workers.submit(Task(1, has_imported, (COMMON,)))
+        assert [done.result for done in workers.done()] == [True]
+    finally:
+        workers.close()
+
+
+def test_a_server_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Killed:
+        Pipe = staticmethod(multiprocessing.get_context("spawn").Pipe)
+
+        @staticmethod
+        def Process(**_: Any) -> Any:  # noqa: N802
+            raise EOFError("no answer")
+
+    monkeypatch.setattr("dancetutor_cli.jobs.pool._server", lambda common: Killed)
+    workers = open_workers(2, lambda key, n: None, COMMON)
+    try:
+        workers.submit(Task(1, double, (1,)))
+        assert [done.result for done in workers.done()] == [2]
+    finally:
+        workers.close()
+
+
+@pytest.mark.parametrize("common", ["", COMMON])
+def test_no_module_of_the_folder_one_stands_in_is_run(tmp_path: Path, common: str) -> None:
+    for name in ("multiprocessing", "signal", "numpy", "dancetutor_cli"):
+        (tmp_path / f"{name}.py").write_text("open('run', 'w').close()\n")
+    program = (
+        "from tests.jobs.test_film_pool import double, open_workers, Task\n"
+        f"workers = open_workers(2, print, {common!r})\n"
+        "workers.submit(Task(1, double, (1,)))\n"
+        "assert [done.result for done in workers.done()] == [2]\n"
+        "workers.close()\n"
+    )
+    root = str(Path(__file__).parents[2])
+    begin = f"import sys, os; sys.path[:] = [{root!r}, *filter(None, sys.path)]; os.chdir({str(tmp_path)!r})\n"
+    subprocess.run([sys.executable, "-c", begin + program], check=True, env=_without_safe_path(), timeout=120)
+    assert not (tmp_path / "run").exists()
+
+
+def _without_safe_path() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
 
 
 def test_errors_survive_pickling() -> None:
