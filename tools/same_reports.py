@@ -25,11 +25,12 @@ _SHOWN = 5  # lines of a format that differ
 _CUT = 160  # characters of such a line
 
 
-def lines_of(files: list[Path], kind: str, jobs: int) -> list[bytes]:
-    """What `analyze` says of some files in a format."""
+def lines_of(folder: Path, files: list[Path], kind: str, jobs: int) -> list[bytes]:
+    """What `analyze` says in a format of some files of a folder, wherever that lies."""
     command = [str(DANCETUTOR), "analyze", *map(str, files), "--no-cache", "--exit-zero", "--jobs", str(jobs)]
     with tempfile.TemporaryFile() as out:
-        subprocess.run([*command, "--format", kind], stdout=out, stderr=subprocess.DEVNULL, check=False)
+        command += ["--format", kind]
+        subprocess.run(command, cwd=folder, stdout=out, stderr=subprocess.DEVNULL, check=False)
         out.seek(0)
         return out.readlines()
 
@@ -40,25 +41,28 @@ def digest(line: bytes) -> str:
 
 
 def chart_files(folder: Path, every: int) -> list[Path]:
-    """Every so many-th chart file of a folder."""
-    return sorted(path for path in folder.rglob("*") if path.suffix.lower() in (".sm", ".ssc"))[::every]
+    """Every so many-th chart file of a folder, by its path there."""
+    return sorted(path.relative_to(folder) for path in folder.rglob("*") if path.suffix.lower() in (".sm", ".ssc"))[
+        ::every
+    ]
 
 
 def keep(kept: Path, folder: Path, every: int, jobs: int) -> None:
     """Write down what every format says now."""
     files = chart_files(folder, every)
-    said = {kind: [digest(line) for line in lines_of(files, kind, jobs)] for kind in FORMATS}
-    kept.write_text(json.dumps({"folder": str(folder), "every": every, "said": said}), encoding="utf-8")
+    said = {kind: [digest(line) for line in lines_of(folder, files, kind, jobs)] for kind in FORMATS}
+    kept.write_text(json.dumps({"folder": str(folder.absolute()), "every": every, "said": said}), encoding="utf-8")
     print(f"{len(files)} files, {', '.join(f'{kind} {len(lines)} lines' for kind, lines in said.items())}")
 
 
 def check(kept: Path, jobs: int) -> int:
     """Compare with what is said now; how many formats differ."""
     known = json.loads(kept.read_text(encoding="utf-8"))
-    files = chart_files(Path(known["folder"]), known["every"])
+    folder = Path(known["folder"])
+    files = chart_files(folder, known["every"])
     differ = 0
     for kind, before in known["said"].items():
-        now = lines_of(files, kind, jobs)
+        now = lines_of(folder, files, kind, jobs)
         wrong = [n for n, (line, old) in enumerate(zip(now, before, strict=False)) if digest(line) != old]
         more = "" if len(now) == len(before) else f"; {len(now)} lines, {len(before)} before"
         print(f"{kind}: {len(wrong)} of {len(before)} lines differ{more}")

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError, NoChartsError
+from dancetutor_cli.jobs.chart_result import chart_result
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.chart_figures import AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.presets import PresetChoice, mismatch, preset_for
+from dancetutor_cli.lint.presets import PresetChoice, preset_for
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.meter.bill import AUTO
 
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.lint.meters import Meters
     from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.play.preset import Preset
 
+_ROWS = 16_000  # of charts that are looked at together; some more, so that no chart stands alone
+_CHART = 50  # rows that a chart counts for, however short
 _OTHERS = 20  # charts of a file that are solved only because they tell the scale of its meters
 
 
@@ -55,48 +56,131 @@ class AnalyzeTask:
 
 
 def analyze_file(task: AnalyzeTask) -> FileResult:
-    """Read, solve and lint one file. Never raises for what is wrong with the file: that is `error` in the result."""
-    try:
-        song = load_song(task)
-    except NoChartsError as error:
-        return FileResult(str(task.path), "", "", None, (f"{error.message}: nothing to dance",), (), ())
-    except FileError as error:
-        return _unreadable(task, error)
-    from dancetutor_cli.lint.check import check_file
-    from dancetutor_cli.lint.subject import FileSubject
-
-    selected = task.selection.charts(song)
-    charts = _chart_results(song, selected, task)
-    return FileResult(
-        str(task.path),
-        song.title,
-        song.artist,
-        None,
-        tuple(_warnings(song, charts)),
-        check_file(FileSubject(song), task.settings),
-        charts,
-        _unselected(song, selected),
-    )
+    """Read, solve and lint one file, see `analyze_files`."""
+    return next(analyze_files([task]))
 
 
-def _chart_results(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask) -> tuple[ChartResult, ...]:
-    """The charts one by one, then what only all of them together tell: the scale of the meters."""
-    from dancetutor_cli.lint.meters import Meters
+def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
+    """Read, solve and lint files, in order; charts of several are looked at together.
 
-    meters = Meters(song, task.settings)
-    charts: list[ChartResult] = []
-    for subject in solved(song, selected, task):  # one play at a time: a file may hold thousands of charts
-        charts.append(_chart_result(subject, task))
-        meters.add(subject, task.rate)
-    for subject in _others(song, selected, task, meters):
-        meters.add(subject, task.rate)
-    told = meters.told(task.meter_scale)
-    return tuple(
-        replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
-        if chart.index in told
-        else chart
-        for chart in charts
-    )
+    Never raises for what is wrong with a chart file: that is `error` in its result. FileError if dancetutor.yaml cannot
+    be read, after the results of the files before.
+    """
+    window = _Window()
+    for task in tasks:
+        try:
+            window.add(_File(task))
+        except Exception:
+            yield from window.results()
+            raise
+        if window.is_full:
+            yield from window.results()
+    yield from window.results()
+
+
+class _Window:
+    """Files whose charts wait to be looked at together: most charts have few rows, and each question has its price."""
+
+    def __init__(self) -> None:
+        self._files: list[_File] = []
+        self._waiting: list[tuple[_File, ChartSubject]] = []
+        self._rows = 0
+
+    @property
+    def is_full(self) -> bool:
+        return self._rows >= _ROWS
+
+    def add(self, file: _File) -> None:
+        """Solve the charts of a file. One that fails leaves the window as it was."""
+        before = len(self._waiting), self._rows
+        try:
+            for subject in file.solved():
+                self._waiting.append((file, subject))
+                self._rows += subject.row_count + _CHART
+                if self.is_full:  # a file may hold thousands of charts
+                    self._look()
+                    before = 0, 0
+        except Exception:
+            del self._waiting[before[0] :]
+            self._rows = before[1]
+            raise
+        self._files.append(file)
+
+    def results(self) -> Iterator[FileResult]:
+        """The results of all files that have been added since the last time."""
+        self._look()
+        files, self._files = self._files, []
+        for file in files:
+            yield file.result()
+
+    def _look(self) -> None:
+        from dancetutor_cli.lint.together import look_at_together
+
+        look_at_together(subject for _, subject in self._waiting)
+        for file, subject in self._waiting:
+            file.add(subject)
+        self._waiting, self._rows = [], 0
+
+
+class _File:
+    """A file on its way from its task to its result."""
+
+    def __init__(self, task: AnalyzeTask) -> None:
+        self._task = task
+        self._charts: list[ChartResult] = []
+        self._failed: FileResult | None = None
+        try:
+            self._song = load_song(task)
+        except NoChartsError as error:
+            self._failed = FileResult(str(task.path), "", "", None, (f"{error.message}: nothing to dance",), (), ())
+        except FileError as error:
+            self._failed = _unreadable(task, error)
+        else:
+            from dancetutor_cli.lint.meters import Meters
+
+            self._selected = task.selection.charts(self._song)
+            self._meters = Meters(self._song, task.settings)
+
+    def solved(self) -> Iterator[ChartSubject]:
+        """The charts that are asked for, one by one."""
+        return iter(()) if self._failed else solved(self._song, self._selected, self._task)
+
+    def add(self, subject: ChartSubject) -> None:
+        """Take down what is told of one of them."""
+        self._charts.append(chart_result(subject, self._task))
+        self._meters.add(subject, self._task.rate)
+
+    def result(self) -> FileResult:
+        """What is told of the file."""
+        if self._failed:
+            return self._failed
+        from dancetutor_cli.lint.check import check_file
+        from dancetutor_cli.lint.subject import FileSubject
+
+        task, song, charts = self._task, self._song, self._with_meters()
+        return FileResult(
+            str(task.path),
+            song.title,
+            song.artist,
+            None,
+            tuple(_warnings(song, charts)),
+            check_file(FileSubject(song), task.settings),
+            charts,
+            _unselected(song, self._selected),
+        )
+
+    def _with_meters(self) -> tuple[ChartResult, ...]:
+        """The charts with what only all of them together tell: the scale of the meters."""
+        task = self._task
+        for subject in _others(self._song, self._selected, task, self._meters):
+            self._meters.add(subject, task.rate)
+        told = self._meters.told(task.meter_scale)
+        return tuple(
+            replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
+            if chart.index in told
+            else chart
+            for chart in self._charts
+        )
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
@@ -145,88 +229,6 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
         elif result.mismatch:
             yield f"{result.label}: {result.mismatch}"
-
-
-def _chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
-    from dancetutor_cli.lint.excerpt import arrows, with_excerpts
-
-    chart, play = subject.chart, subject.play
-    preset = preset_for(chart, task.path, task.presets)
-    findings, causes = _findings(subject, task, preset)
-    return ChartResult(
-        index=chart.index,
-        steps_type=chart.written_type,
-        player=chart.player,
-        difficulty=chart.difficulty,
-        meter=chart.meter,
-        description=chart.description,
-        playable=play is not None,
-        row_count=len(subject.step_rows),
-        cost=0 if play is None else play.total,
-        counts=subject.counts,
-        findings=with_excerpts(findings, play) if play is not None and task.want_excerpts else findings,
-        rows=_rows(subject) if task.want_rows else None,
-        arrows="" if subject.pad is None else arrows(subject.pad),
-        figures=_figures(subject, task) if task.want_figures else None,
-        alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,
-        causes=causes,
-        ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
-        preset=None if play is None else play.preset,
-        mismatch=None if play is None else mismatch(preset, chart.steps_type),
-    )
-
-
-def _rows(subject: ChartSubject) -> str:
-    from dancetutor_cli.formats.play_rows import json_rows
-
-    return "[]" if subject.play is None else json_rows(subject.play, subject.file_lines)
-
-
-def _findings(
-    subject: ChartSubject, task: AnalyzeTask, preset: Preset
-) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
-    """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
-    from dancetutor_cli.lint.check import check_chart
-
-    findings, causes = check_chart(subject, task.settings), None
-    if task.want_rows or task.suggest:
-        from dancetutor_cli.lint.causes import causes_of, with_causes
-
-        causes = causes_of(subject, preset)
-        findings = with_causes(findings, causes, subject.pad.names if subject.pad else ())
-    if task.suggest:
-        from dancetutor_cli.lint.suggest import with_suggestions
-
-        findings = with_suggestions(findings, subject, task.settings, preset)
-    return findings, causes
-
-
-def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
-    from dancetutor_cli.lint.alternatives import alternatives_of
-
-    return alternatives_of(subject, preset, count)
-
-
-def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
-    from dancetutor_cli.chart.density import density
-    from dancetutor_cli.lint.tech_counts import facing_counts, tech_counts
-
-    dense = density(subject.chart, task.settings.stream_rows)
-    return Figures(
-        dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject),
-        subject.seconds_played(), facing_counts(subject),
-    )  # fmt: skip
-
-
-def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
-    from dancetutor_cli.chart.model import TICKS_PER_BEAT
-    from dancetutor_cli.play import Ambiguity
-
-    play = subject.play
-    if play is not None and play.ambiguity is not None:
-        for row in play.ambiguity.nonzero()[0].tolist():
-            kind = Ambiguity(int(play.ambiguity[row])).name.lower()
-            yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
 
 
 def failed(task: AnalyzeTask, message: str) -> FileResult:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file, failed
+from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_files, failed
 from dancetutor_cli.jobs.result import FileResult
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ _Fresh = Iterator[tuple[int, FileResult, bool]]
 
 
 def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
-    for place, task in enumerate(tasks):
-        yield place, analyze_file(task), True
+    for place, result in enumerate(analyze_files(tasks)):
+        yield place, result, True
 
 
 def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
@@ -90,4 +90,4 @@ def _batches(tasks: int, jobs: int) -> Iterator[range]:
 
 
 def _analyze(_: Callable[[int], None], tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
-    return [analyze_file(task) for task in tasks]
+    return list(analyze_files(tasks))

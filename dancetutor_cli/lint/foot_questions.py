@@ -6,92 +6,64 @@ Rows are numbers of rows of the play. Limbs: 0 left foot, 1 right foot, 2 left h
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.play.played import Limb, Play, StepKind
+from dancetutor_cli.lint.candidates import Candidates
+from dancetutor_cli.lint.plays import CROSSED, EPSILON, PlayedSteps
+from dancetutor_cli.play.played import Limb, StepKind
 
-_EPSILON = 1e-6
 _BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
 WALL = 3  # mines in a row
 HARDLY = 0.15  # seconds since a step in which no foot leaves
-_RIGHT, _NONE, _HOLD, _ROLL_TAP = int(Limb.RIGHT_FOOT), int(StepKind.NONE), int(StepKind.HOLD), int(StepKind.ROLL_TAP)
+_HOLD, _ROLL_TAP = int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class PlayedSteps:
-    """Steps that are played, in order of rows and columns; arrays of one length. No virtual taps of rolls."""
-
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
-    limb: NDArray[np.int8]
-
-    def of(self, limb: int) -> PlayedSteps:
-        """Those of one limb; of a bracket only its first panel."""
-        mine = np.flatnonzero(self.limb == limb)
-        row = self.row[mine]
-        if (row[1:] == row[:-1]).any():
-            mine = mine[np.diff(row, prepend=-1) > 0]
-            row = self.row[mine]
-        return PlayedSteps(row, self.column[mine], self.limb[mine])
-
-
 class Feet:
-    """A play, its timing, and where its pad's panels are.
+    """One of several plays that are looked at together, and its timing.
 
-    panels : (c, 2), x to the right and y to the screen, panel widths
+    Most answers are "nowhere", and `candidates` knows them for all plays at once.
     """
 
-    def __init__(self, play: Play, panels: NDArray[np.float64], timing: Timing) -> None:
-        self._play = play
-        self._panels = panels
+    def __init__(self, candidates: Candidates, number: int, timing: Timing) -> None:
+        self._candidates, self._number = candidates, number
+        plays = self._plays = candidates.plays
+        self._first, self._after = plays.first[number], plays.first[number + 1]
+        self._play = plays.play(number)
         self._timing = timing
 
     @cached_property
     def _pressed(self) -> PlayedSteps:
         """All presses, a roll's virtual taps too."""
-        limbs = self._play.limb.ravel()
-        cell = np.flatnonzero(limbs >= 0)
-        row, column = np.divmod(cell, self._play.limb.shape[1])
-        return PlayedSteps(row, column, limbs[cell])
+        return self._plays.pressed.between(self._first, self._after)
 
     @cached_property
     def presses(self) -> PlayedSteps:
-        """All presses of the play."""
-        p, steps = self._pressed, self._play.rows.steps.ravel()
-        kind = steps[p.row * self._play.limb.shape[1] + p.column]
-        real = (kind != _NONE) & (kind != _ROLL_TAP)
-        return p if real.all() else PlayedSteps(p.row[real], p.column[real], p.limb[real])
+        """All presses of the play but virtual taps."""
+        return self._plays.presses.between(self._first, self._after)
 
     @cached_property
     def _of_feet(self) -> tuple[PlayedSteps, PlayedSteps]:
         return self.presses.of(0), self.presses.of(1)
 
-    @cached_property
+    @property
     def _has_mines(self) -> bool:
-        return bool(self._play.rows.mines.any())
+        return self._plays.with_mines[self._number]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
         """Rows with a step, also if nobody presses it."""
-        return np.flatnonzero(self._play.rows.steps.any(axis=1))
+        return self._plays.own(self._plays.stepped, self._number)
 
     @cached_property
-    def _crossed_runs(self) -> list[tuple[int, int]]:
-        crossed = np.abs(self._play.facing) > 90 + _EPSILON
-        if not crossed.any():
-            return []
-        flags = np.zeros(len(self.stepped) + 2, dtype=bool)
-        flags[1:-1] = crossed[self.stepped]
-        edges = np.flatnonzero(flags[1:] != flags[:-1]).reshape(-1, 2)
-        first, after = edges[:, 0], edges[:, 1]
-        return list(zip(self.stepped[first].tolist(), (after - first).tolist(), strict=True))
+    def pauses(self) -> NDArray[np.float64]:
+        """(n,) seconds since the row with a step before one of `stepped`; endless for the first, and for others."""
+        return self._plays.pauses[self._first : self._after]
 
     def limb_name(self, row: int, column: int) -> str:
         """ "left foot", "right hand" ... of what presses a cell."""
@@ -100,95 +72,60 @@ class Feet:
     @cached_property
     def down(self) -> NDArray[np.int64]:
         """(n,) how many panels are down in each row: stepped on, or held from before; taps of rolls do not count."""
-        rows = self._play.rows
-        down = ((rows.steps != _NONE) & (rows.steps != _ROLL_TAP)).sum(axis=1)
-        for column in np.flatnonzero((rows.hold_end >= 0).any(axis=0)).tolist():
-            heads = np.flatnonzero(rows.hold_end[:, column] >= 0)
-            first, after = heads + 1, rows.tick.searchsorted(rows.hold_end[heads, column])
-            change = np.zeros(len(rows) + 1, dtype=np.int64)
-            np.add.at(change, first, 1)
-            np.add.at(change, np.maximum(after, first), -1)
-            held = change.cumsum()[:-1] > 0
-            down += held & (rows.steps[:, column] == _NONE)
-        return np.asarray(down)
+        return self._plays.down[self._first : self._after]
 
     def triples(self) -> list[int]:
         """Rows with a step in which three panels or more are down."""
-        real = (self._play.rows.steps != _NONE) & (self._play.rows.steps != _ROLL_TAP)
-        return np.flatnonzero((self.down >= 3) & real.any(axis=1)).tolist()
+        return self._own(self._candidates.triples)
 
-    @cached_property
-    def _columns(self) -> NDArray[np.int8]:
-        """(c, n) limbs by column: numpy goes along few long rows ten times as fast as along many short ones."""
-        return np.ascontiguousarray(self._play.limb.T)
-
-    @cached_property
-    def _foot(self) -> NDArray[np.int8]:
-        """(n,) the greatest limb of each row, -1 where none presses; of a row that one limb presses it is that."""
-        return np.asarray(self._columns.max(axis=0, initial=-1))
-
-    @cached_property
-    def _lone(self) -> NDArray[np.bool_]:
-        """(n,) whether one limb presses one panel in a row, and it is no tap of a roll."""
-        lone = (self._columns >= 0).sum(axis=0) == 1
-        taps = self._play.rows.steps == _ROLL_TAP
-        return np.asarray(lone & ~taps.any(axis=1) if taps.any() else lone)
+    def doublesteps(self) -> list[int]:
+        """Rows of doublesteps that follow freely (see there) and do not cross the feet."""
+        return self._own(self._candidates.free_doublesteps)
 
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
-        return bool(abs(self._play.facing[row]) > 90 + _EPSILON)
+        return bool(abs(self._play.facing[row]) > CROSSED)
 
     def follows_freely(self, row: int) -> bool:
         """Whether one panel is stepped on in a row and one in that before it, and neither a mine nor a hold has a say.
 
         A foot whose hold ended after the row before these two has just been let go.
         """
-        return bool(self._free[row])
-
-    @cached_property
-    def _free(self) -> NDArray[np.bool_]:
-        """(n,) the same of every row."""
-        rows, limb = self._play.rows, self._play.limb
-        foot = self._foot
-        free = self._lone & (foot <= _RIGHT)
-        if self._has_mines:
-            free &= ~rows.mines.any(axis=1)
-        free[1:] &= self._lone[:-1]
-        free[:1] = False
-        if (rows.hold_end >= 0).any():
-            before = np.maximum(np.arange(len(rows)) - 2, 0)
-            for one in (0, 1):  # until when the foot is busy with the holds that it has pressed so far
-                busy = np.maximum.accumulate(np.where(limb == one, rows.hold_end, -1).max(axis=1))
-                free[1:] &= (foot[1:] == one) | (busy[:-1] <= rows.tick[before[1:]])
-        return np.asarray(free)
+        return bool(self._plays.free[self._first + row])
 
     def crossed_rows(self, least: float) -> Iterator[list[int]]:
         """The rows of every run of at least so many stepped rows with crossed feet."""
-        for first, count in self._crossed_runs:
+        for first, count in self.crossed_runs():
             if count >= least:
                 at = int(self.stepped.searchsorted(first))
                 yield self.stepped[at : at + count].tolist()
 
-    def same_panel_runs(self, least: float, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
+    def switching_runs(self, least: float, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
         """Rows and limbs of every run of at least so many single steps on one panel while no other panel is held.
 
-        Each comes at most `max_seconds` after the one before.
+        Each comes at most `max_seconds` after the one before. Only of plays in which the feet change so quickly.
         """
-        rows = self._play.rows
-        lone = np.flatnonzero(self._lone)
-        column, limb = self._columns.argmax(axis=0)[lone], self._foot[lone]
+        if self._candidates.soonest_switches[self._number] > max_seconds + EPSILON:
+            return
+        rows, here = self._play.rows, slice(self._first, self._after)
+        lone = np.flatnonzero(self._plays.lone[here])
+        column, limb = self._plays.limb_by_column[:, here].argmax(axis=0)[lone], self._plays.foot[here][lone]
         on = np.zeros(len(lone) + 1, dtype=bool)
         on[1:-1] = (np.diff(lone) == 1) & (column[1:] == column[:-1])
-        on[1:-1] &= np.diff(rows.second[lone]) <= max_seconds + _EPSILON
+        on[1:-1] &= np.diff(rows.second[lone]) <= max_seconds + EPSILON
         edges = np.flatnonzero(on[1:] != on[:-1]).reshape(-1, 2)
         for first, last in edges[edges[:, 1] - edges[:, 0] >= least - 1].tolist():
             run = lone[first : last + 1]
             if (self.down[run] == 1).all():
                 yield run.tolist(), limb[first : last + 1].tolist()
 
-    def crossed_runs(self) -> Iterator[tuple[int, int]]:
+    def crossed_runs(self) -> list[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
-        yield from self._crossed_runs
+        return self._candidates.crossed_runs[self._number]
+
+    def ties(self) -> list[int]:
+        """First row of every run of rows with steps that cost the same with other limbs."""
+        return self._own(self._candidates.ties)
 
     def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
         """Runs of (row, confidence) less than `below`, with a few surer rows between them left out; none if unknown."""
@@ -206,59 +143,53 @@ class Feet:
             before = place
         return passages
 
-    def half_turns(self) -> Iterator[int]:
+    def half_turns(self) -> list[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
-        facing = self._play.facing
-        turn = facing[1:] - facing[:-1]
-        if len(turn) and max(turn.max(), -turn.min()) >= 180 - 2 * _EPSILON:
-            yield from (np.flatnonzero(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= _EPSILON) + 1).tolist()
+        return self._own(self._candidates.half_turns)
 
-    def same_foot_runs(self, length: int, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
-        """Rows in which one foot steps, alone, for the `length`-th time in a row and always on a new panel.
+    def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
+        """Rows in which one foot steps, alone, for the third time in a row and always on a new panel.
 
         With the time (s) since the step before. A step while the other foot is held down does not count: there is no
         choice; nor do taps of rolls, steps around a mine, and steps less than `min_seconds` or more than `max_seconds`
         apart.
         """
-        p, seconds = self._pressed, self._play.rows.second  # a roll's taps are steps that come between, too
-        new = np.ones(len(p.row) + 1, dtype=bool)
-        np.not_equal(p.row[1:], p.row[:-1], out=new[1:-1])
-        alone = np.flatnonzero(new[1:] & new[:-1])  # presses that are the only one of their row
-        row, column, limb = p.row[alone], p.column[alone], p.limb[alone]
-        next_row = np.cumsum(new[:-1])[alone]
-        follows = (limb[1:] == limb[:-1]) & (limb[1:] <= _RIGHT) & (column[1:] != column[:-1])
-        follows &= next_row[1:] - next_row[:-1] == 1
-        if not follows.any():
+        if self._candidates.soonest_triples[self._number] > max_seconds + EPSILON:
             return
-        apart = np.diff(seconds[row])
-        follows &= (apart <= max_seconds + _EPSILON) & (apart >= min_seconds - _EPSILON)
-        if follows.any():
-            follows &= self._free[row[1:]]
+        repeats, (low, high) = self._candidates.repeats, self._bounds(self._candidates.repeats.row)
         count, last = 1, -1
-        for place in (np.flatnonzero(follows) + 1).tolist():
-            forced = "forced-doublestep" in self._play.moves[row[place]]
+        for place, row, seconds in zip(*(one[low:high].tolist() for one in repeats), strict=True):
+            if not min_seconds - EPSILON <= seconds <= max_seconds + EPSILON:
+                continue
+            forced = "forced-doublestep" in self._play.moves[row - self._first]
             count = 1 if forced else count + 1 if place == last + 1 else 2
             last = place
-            if count == length:
-                yield int(row[place]), float(apart[place - 1])
+            if count == 3:
+                yield row - self._first, seconds
                 count = 1
 
-    @cached_property
-    def _distances(self) -> NDArray[np.float64]:
-        """(c, c) panel widths between panels."""
-        between = self._panels[:, None] - self._panels[None]
-        return np.hypot(between[..., 0], between[..., 1])
+    def _own(self, rows: NDArray[np.int64]) -> list[int]:
+        own: list[int] = self._plays.own(rows, self._number).tolist()
+        return own
 
-    def travels(
-        self,
-    ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
-        """For each foot its steps on a new panel: rows, columns, ways (panel widths), times (s) since its last step."""
-        distances = self._distances
-        for steps in self._of_feet:
-            way, second = distances[steps.column[1:], steps.column[:-1]], self._play.rows.second[steps.row]
-            moved = np.flatnonzero(way > _EPSILON)
-            times = second[1:] - second[:-1]
-            yield steps.row[1:][moved], steps.column[1:][moved], way[moved], times[moved]
+    def _bounds(self, rows: NDArray[np.int64]) -> tuple[int, int]:
+        """From where to where some ascending rows of all plays are of this one."""
+        low, high = rows.searchsorted((self._first, self._after)).tolist()
+        return low, high
+
+    def too_fast(self, max_speed: float, min_seconds: float) -> Iterator[tuple[int, int, float, float]]:
+        """Row, column, way (panel widths) and time (s) of steps on a new panel that is farther than the speed allows.
+
+        max_speed : panel widths per second; min_seconds : steps that come sooner after the foot's last do not count
+        """
+        if self._candidates.quickest_travels[self._number] * max_speed >= 1.0 + EPSILON:
+            return
+        for one in self._plays.travels:
+            low, high = self._bounds(one.row)
+            ways, seconds = one.way[low:high], one.seconds[low:high]
+            fast = np.flatnonzero((ways > max_speed * seconds + EPSILON) & (seconds >= min_seconds)) + low
+            found = one.row[fast] - self._first, one.column[fast], one.way[fast], one.seconds[fast]
+            yield from zip(*(values.tolist() for values in found), strict=True)
 
     def releases(self, min_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a hold which the same limb left too soon for another panel."""
@@ -272,7 +203,7 @@ class Feet:
             moved = held[steps.column[held + 1] != steps.column[held]]
             ended = self._timing.seconds(rows.hold_end[steps.row[moved], steps.column[moved]])
             late = rows.second[steps.row[moved + 1]] - ended
-            soon = late < min_seconds - _EPSILON
+            soon = late < min_seconds - EPSILON
             moved, late = moved[soon], late[soon]
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
@@ -283,7 +214,7 @@ class Feet:
         row has left, and before a wall of mines everybody waits between the panels: those are told only of a foot that
         has hardly stepped.
         """
-        if not self._has_mines:
+        if not (self._has_mines and self._plays.with_holds[self._number]):
             return
         rows, play = self._play.rows, self._play
         row, column = np.nonzero(rows.mines)
@@ -321,7 +252,7 @@ class Feet:
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a foot's hold on its panel, of each mine that comes so soon."""
-        if not self._has_mines:
+        if not (self._has_mines and self._plays.with_holds[self._number]):
             return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
@@ -333,7 +264,7 @@ class Feet:
             before = ends.searchsorted(rows.tick[mines], side="right") - 1
             mines, before = mines[before >= 0], before[before >= 0]
             late = rows.second[mines] - self._timing.seconds(ends)[before]
-            soon = late <= max_seconds + _EPSILON
+            soon = late <= max_seconds + EPSILON
             for row, seconds in zip(mines[soon].tolist(), late[soon].tolist(), strict=True):
                 yield row, column, seconds
 
@@ -348,7 +279,7 @@ class Feet:
             at = steps.searchsorted(mines)
             mines, row = mines[at < len(steps)], steps[at[at < len(steps)]]
             late = rows.second[row] - rows.second[mines]
-            soon = late <= max_seconds + _EPSILON
+            soon = late <= max_seconds + EPSILON
             for step, seconds in zip(row[soon].tolist(), late[soon].tolist(), strict=True):
                 limb = int(play.limb[step, column])
                 if not (step > 0 and limb in (0, 1) and play.feet[step - 1, limb] == column):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
 from dancetutor_cli.lint.beginnings import Beginnings
+from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.foot_questions import Feet
 from dancetutor_cli.lint.note_questions import Notes
+from dancetutor_cli.lint.together import Shared
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Ambiguity, Limb, Play, StepKind
 
@@ -62,7 +64,16 @@ class ChartSubject:
     @cached_property
     def feet(self) -> Feet | None:
         """Questions about the play, where there is one."""
-        return None if self.play is None or self.pad is None else Feet(self.play, self.pad.panels, self.chart.timing)
+        return None if self.play is None or self.pad is None else Feet(*self.shared, self.chart.timing)
+
+    @cached_property
+    def shared(self) -> Shared:
+        """Plays that are looked at together, and which of them is this one; for charts with a play.
+
+        Only this one, unless `look_at_together` has been told of others.
+        """
+        assert self.play is not None and self.pad is not None
+        return Shared(Candidates((self.play,), self.pad), 0)
 
     @cached_property
     def notes(self) -> Notes:
@@ -72,22 +83,10 @@ class ChartSubject:
     @cached_property
     def counts(self) -> Mapping[str, int]:
         """Name of the move -> rows of the play in which it happens."""
-        kinds, codes = self._kinds_of_row
-        counts: dict[str, int] = {}
-        for names, rows in zip(kinds, np.bincount(codes, minlength=len(kinds)).tolist(), strict=True):
-            for name in names:
-                counts[name] = counts.get(name, 0) + rows
-        return counts
+        return {} if self.play is None else self.shared.candidates.plays.counts[self.shared.number]
 
-    @cached_property
-    def _kinds_of_row(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
-        """`Play.kinds`, also of a chart without a play."""
-        return self.play.kinds() if self.play else ([], np.zeros(0, dtype=np.intp))
-
-    def _rows_with(self, moves: Collection[str]) -> list[int]:
-        kinds, codes = self._kinds_of_row
-        wanted = np.array([any(name in moves for name in names) for names in kinds], dtype=bool)
-        return np.flatnonzero(wanted[codes]).tolist() if wanted.any() else []
+    def _rows_with(self, moves: Sequence[str]) -> list[int]:
+        return [] if self.play is None else self.shared.candidates.plays.with_any(moves, self.shared.number).tolist()
 
     @property
     def row_count(self) -> int:
@@ -112,17 +111,7 @@ class ChartSubject:
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:
         """Rows of the play with at least one step."""
-        if self.feet is not None:
-            return self.feet.stepped
-        return np.flatnonzero(self.play.rows.steps.any(axis=1)) if self.play else np.zeros(0, dtype=np.int64)
-
-    @cached_property
-    def _pauses(self) -> NDArray[np.float64]:
-        rows = self.step_rows
-        found = np.full(self.row_count, np.inf)
-        if self.play is not None:
-            found[rows[1:]] = np.diff(self.play.rows.second[rows])
-        return found
+        return np.zeros(0, dtype=np.int64) if self.feet is None else self.feet.stepped
 
     @cached_property
     def angles(self) -> list[list[float]]:
@@ -136,11 +125,13 @@ class ChartSubject:
     def beginnings(self) -> Beginnings:
         """Where the dancer may begin anew; for charts with a play."""
         assert self.play is not None
-        return Beginnings(self.play, self.step_rows, self._pauses[self.step_rows])
+        assert self.feet is not None
+        return Beginnings(self.play, self.step_rows, self.feet.pauses[self.step_rows])
 
     def pause(self, row: int) -> float:
         """Seconds since the row with a step before this one; endless for the first."""
-        return float(self._pauses[row])
+        assert self.feet is not None
+        return float(self.feet.pauses[row])
 
     def is_jump(self, row: int) -> bool:
         """Whether both feet press in this row."""
@@ -191,14 +182,10 @@ class ChartSubject:
 
     def ties(self) -> Iterator[tuple[int, bool]]:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
-        if self.play is None or self.play.margin is None:
+        if self.play is None or self.feet is None:
             return
-        rows = self.step_rows
-        tied = self.play.margin[rows] == 0
-        first_of_run = tied.copy()
-        first_of_run[1:] &= ~tied[:-1]
-        for first in rows[first_of_run].tolist():
-            known = self.play.ambiguity
+        known = self.play.ambiguity
+        for first in self.feet.ties():
             yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:

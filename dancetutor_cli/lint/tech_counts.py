@@ -1,171 +1,31 @@
-"""Technical steps of a chart, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
-
-The game looks at rows with steps, each with the row before it; the first is nothing. A footswitch is a panel pressed by
-another foot than in the row before, within 0.3 s; a jack the same foot on the same panel (0.176 s) and a doublestep on
-another (0.235 s), both rows single. A crossover is one step after which the foot stands on the wrong side of the other,
-which stepped in the row before: full where that foot came from its own side, half where it came from the middle. So a
-crossed passage of five rows is one crossover or two, not five.
-"""
+"""Technical steps of a chart by the names and rules of ITGmania (see `techniques`), and how far she faces away."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.played import Part, Play, StepKind
-
-_JACK, _DOUBLESTEP, _FOOTSWITCH = 176_000, 235_000, 300_000  # microseconds between two rows, the game's own limits
-_TOE = int(Part.TOE)
-_WRITTEN = np.ones(len(StepKind), dtype=bool)
-_WRITTEN[[StepKind.NONE, StepKind.ROLL_TAP]] = False
-
-
-@dataclass(frozen=True)
-class _Steps:
-    """Rows with steps that a foot presses, n; columns c. -1: none.
-
-    row : of the play; gap : (n - 1,) microseconds from one to the next, free of float noise; count : steps in the row
-    heel, toe : for each foot (n,) the column that it presses
-    x : for each foot (n,) its place, NaN without; of a bracket between its panels; heel_x : that of the heel
-    cell : steps of feet, in order: row * c + column; foot : who presses it
-    """
-
-    row: NDArray[np.int64]
-    gap: NDArray[np.int64]
-    count: NDArray[np.int64]
-    heel: list[NDArray[np.int64]]
-    toe: list[NDArray[np.int64]]
-    x: list[NDArray[np.float64]]
-    heel_x: list[NDArray[np.float64]]
-    cell: NDArray[np.int64]
-    foot: NDArray[np.int8]
 
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
     """How often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
-    return {name: len(rows) for name, rows in tech_rows(subject).items()}
+    if subject.play is None or subject.pad is None:
+        return dict.fromkeys(TECH_COUNTS, 0)
+    return subject.shared.candidates.tech_counts[subject.shared.number]
 
 
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
-    """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
-    found = {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
+    """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, in order."""
     if subject.play is None or subject.pad is None:
-        return found
-    steps = _steps_of(subject.play, subject.pad)
-    if len(steps.row):
-        found |= _switches(steps, subject.pad) | _repeats(steps, subject.play) | _crossovers(steps)
-        both = [steps.row[1:][(steps.heel[foot] >= 0)[1:] & (steps.toe[foot] >= 0)[1:]] for foot in (0, 1)]
-        found["Brackets"] = np.concatenate(both)
-    return found
+        return {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
+    candidates, number = subject.shared
+    return {name: candidates.plays.own(np.sort(candidates.techniques[name]), number) for name in TECH_COUNTS}
 
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
     """Rows with a step by how far she faces away from the screen, see `Figures.facing`; () without a play."""
-    if subject.play is None:
+    if subject.play is None or subject.pad is None:
         return ()
-    away = np.abs(subject.play.facing[subject.step_rows]) % 360.0
-    bins = np.digitize(np.minimum(away, 360.0 - away), (22.5, 67.5, 112.5, 157.5))
-    return tuple(np.bincount(bins, minlength=5).tolist())
-
-
-def _steps_of(play: Play, pad: Pad) -> _Steps:
-    steps, c = play.rows.steps.ravel(), len(pad)
-    cell = np.flatnonzero(_WRITTEN[steps])
-    at, column = np.divmod(cell, c)
-    first = np.ones(len(at), dtype=bool)
-    first[1:] = at[1:] != at[:-1]
-    row, number = at[first], np.cumsum(first) - 1
-    limb, toe = play.limb.ravel()[cell], play.part.ravel()[cell] == _TOE
-    brackets = bool(toe.any())
-    places = np.append(pad.panels[:, 0], np.nan)  # column -1: no place
-    heels, toes, x, heel_x = [], [], [], []
-    for foot in (0, 1):
-        mine = limb == foot
-        heels.append(_first(number, column, mine & ~toe if brackets else mine, len(row)))
-        heel_x.append(places[heels[foot]])
-        if brackets:
-            toes.append(_first(number, column, mine & toe, len(row)))
-            x.append(np.where(toes[foot] >= 0, (heel_x[foot] + places[toes[foot]]) / 2, heel_x[foot]))
-        else:
-            toes.append(np.full(len(row), -1, dtype=np.int64))
-            x.append(heel_x[foot])
-    gap = np.rint(np.diff(play.rows.second[row]) * 1e6).astype(np.int64)
-    feet = (limb == 0) | (limb == 1)
-    return _Steps(
-        row, gap, np.bincount(number, minlength=len(row)), heels, toes, x, heel_x,
-        (number * c + column)[feet], limb[feet],
-    )  # fmt: skip
-
-
-def _first(
-    number: NDArray[np.int64], column: NDArray[np.int64], which: NDArray[np.bool_], rows: int
-) -> NDArray[np.int64]:
-    """The column of the first of some steps in each row, or -1."""
-    found = np.full(rows, -1, dtype=np.int64)
-    steps = np.flatnonzero(which)[::-1]
-    found[number[steps]] = column[steps]  # of several the one that comes last counts: the first column
-    return found
-
-
-def _switches(steps: _Steps, pad: Pad) -> dict[str, NDArray[np.int64]]:
-    """Panels taken over, by where their arrows point."""
-    c = len(pad)
-    before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)
-    before[steps.cell + c] = steps.foot
-    before = before[steps.cell]
-    other = np.flatnonzero((before >= 0) & (before != steps.foot))
-    number, column = np.divmod(steps.cell[other], c)
-    near = steps.gap[number - 1] < _FOOTSWITCH
-    row, column = steps.row[number[near]], column[near]
-    across, along = pad.arrows.T
-    up, down = row[along[column] > 0], row[along[column] < 0]
-    left, right = (row[(along[column] == 0) & side[column]] for side in (across < 0, across > 0))
-    middle = row[(along[column] == 0) & (across[column] == 0)]
-    return {
-        "Footswitches": np.concatenate([up, down, middle]), "UpFootswitches": up, "DownFootswitches": down,
-        "Sideswitches": np.concatenate([left, right]), "LeftSideswitches": left, "RightSideswitches": right,
-    }  # fmt: skip
-
-
-def _repeats(steps: _Steps, play: Play) -> dict[str, NDArray[np.int64]]:
-    """The same foot in two single rows one after the other: on its panel, or on another."""
-    single = steps.count == 1
-    near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
-    jacks, doublesteps = [], []
-    for heel in steps.heel:
-        now, before = heel[1:], heel[:-1]
-        again = near & (now >= 0) & (before >= 0)
-        same = now == before
-        jacks.append(steps.row[1:][again & same & (steps.gap < _JACK)])
-        doublesteps.append(steps.row[1:][again & ~same])
-    stepped = np.concatenate(doublesteps)
-    forced = np.array(["forced-doublestep" in play.moves[row] for row in stepped.tolist()], dtype=bool)
-    return {
-        "Jacks": np.concatenate(jacks),
-        "Doublesteps": stepped,
-        "ForcedDoublesteps": stepped[forced],
-        "UnforcedDoublesteps": stepped[~forced],
-    }
-
-
-def _crossovers(steps: _Steps) -> dict[str, NDArray[np.int64]]:
-    """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
-    half, full = [], []
-    for foot, outward in ((0, -1.0), (1, 1.0)):
-        x, other = steps.x[foot], steps.x[1 - foot]
-        stepped, others = steps.heel[foot], steps.heel[1 - foot]
-        beyond = x[1:] > other[:-1] if foot == 0 else x[1:] < other[:-1]
-        at = np.flatnonzero((stepped[1:] >= 0) & (stepped[:-1] < 0) & (others[:-1] >= 0) & beyond) + 1
-        earlier = np.where(at > 1, stepped[at - 2], -1)
-        moved = (at == 1) | ((earlier >= 0) & (earlier != stepped[at]))
-        came_from = steps.heel_x[foot][at - 2] * outward
-        outside = (at > 1) & (earlier >= 0) & (came_from > other[at - 1] * outward)
-        full.append(steps.row[at[moved & outside]])
-        half.append(steps.row[at[moved & ~outside]])
-    halves, fulls = np.concatenate(half), np.concatenate(full)
-    return {"Crossovers": np.concatenate([halves, fulls]), "HalfCrossovers": halves, "FullCrossovers": fulls}
+    return subject.shared.candidates.facing_counts[subject.shared.number]

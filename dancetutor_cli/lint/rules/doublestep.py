@@ -68,9 +68,8 @@ class Doublestep(MoveRule):
 
         longest = self.longest(subject)
         return [
-            row for row in self.quick(subject, subject.rows_with(self.move))
-            if subject.feet and subject.feet.follows_freely(row) and subject.pause(row) >= self.options["min_seconds"]
-            and not subject.feet.crossed(row) and not any_foot_near(subject, row)
+            row for row in self.quick(subject, subject.feet.doublesteps() if subject.feet else ())
+            if subject.pause(row) >= self.options["min_seconds"] and not any_foot_near(subject, row)
             and not _danced_otherwise(subject, row, longest) and not _at_a_pause(subject, row)
             and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(longest)) == 0)
         ]  # fmt: skip

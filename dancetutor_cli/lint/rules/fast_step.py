@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.finding import Finding
@@ -59,7 +59,8 @@ class FastStep(ChartRule):
         """One finding for each step that is too fast; one for a passage in which the rows are."""
         feet, bursts = subject.feet, []
         told: set[tuple[int, str]] = set()
-        for row, column, way, seconds in self._fast(subject):
+        limits = self.options["max_speed"], self.options["min_seconds"]
+        for row, column, way, seconds in feet.too_fast(*limits) if feet else ():
             if rows := burst(subject, row):
                 bursts.append(rows)
             elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
@@ -82,15 +83,6 @@ class FastStep(ChartRule):
                 message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
                 yield self.finding(message, subject.at_row(rows[1]))
             end = subject.beat(rows[-1])
-
-    def _fast(self, subject: ChartSubject) -> Iterator[tuple[int, int, float, float]]:
-        """Row, column, way (panel widths) and time (s) of each step that is farther than the options allow."""
-        for rows, columns, ways, seconds in subject.feet.travels() if subject.feet else ():
-            fast = (ways > self.options["max_speed"] * seconds + EPSILON) & (seconds >= self.options["min_seconds"])
-            if not fast.any():
-                continue
-            found = (rows[fast], columns[fast], ways[fast], seconds[fast])
-            yield from zip(*(one.tolist() for one in found), strict=True)
 
 
 def burst(subject: ChartSubject, row: int) -> list[int]:

@@ -46,9 +46,10 @@ class Hand(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
-        if subject.feet is None or len(subject.step_rows) < _STUB or self._expected(subject):
+        if subject.feet is None or len(subject.step_rows) < _STUB:
             return []
-        return sorted({*subject.rows_with_any(self.move), *subject.feet.triples()})
+        found = sorted({*subject.rows_with_any(self.move), *subject.feet.triples()})
+        return found if found and not self._expected(subject) else []
 
     def _expected(self, subject: ChartSubject) -> bool:
         """Whether the players of this chart know hands; a label of 1 may stand for nothing."""

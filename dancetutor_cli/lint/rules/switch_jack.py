@@ -39,7 +39,7 @@ class SwitchJack(TimedRule):
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
         least = max(self.options["min_rows"], 2)
-        for rows, limbs in subject.feet.same_panel_runs(least, self.longest(subject)) if subject.feet else ():
+        for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"

@@ -48,7 +48,7 @@ class TripleStep(TimedRule):
         from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
 
         spans = self.options["min_seconds"], self.longest(subject)
-        for row, seconds in subject.feet.same_foot_runs(3, *spans) if subject.feet else ():
+        for row, seconds in subject.feet.triple_steps(*spans) if subject.feet else ():
             free = Freedom(self.longest(subject))
             in_turn = led_by_a_jack(subject, row) and fewest_crossed(subject, row, free) == 0
             if in_turn or any_foot_near(subject, row):

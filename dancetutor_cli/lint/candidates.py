@@ -1,0 +1,140 @@
+"""What rules would have to look at in each of several plays: most of them have nothing to look at in most plays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.lint.chart_figures import TECH_COUNTS
+from dancetutor_cli.lint.plays import EPSILON, Plays
+from dancetutor_cli.lint.techniques import techniques
+from dancetutor_cli.pads import Pad
+from dancetutor_cli.play.played import Limb, Play
+
+_RIGHT = int(Limb.RIGHT_FOOT)
+_HAND = 3  # panels that are down at once
+_FACING = (22.5, 67.5, 112.5, 157.5)  # degrees from the screen
+
+
+class Repeats(NamedTuple):
+    """Steps, alone in their rows, by the foot that stepped in the row before on another panel, with nothing in the way.
+
+    place : among all steps that are alone in their rows; row; seconds : since the step before
+    """
+
+    place: NDArray[np.int64]
+    row: NDArray[np.int64]
+    seconds: NDArray[np.float64]
+
+
+class Candidates:
+    """Of k plays on a pad. Rows count from the first row of the first play, see `Plays`."""
+
+    def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
+        self.plays = Plays(plays, pad)
+
+    @cached_property
+    def crossed_runs(self) -> list[list[tuple[int, int]]]:
+        """For each play the first row, of the play, and the number of rows of every run of steps with crossed feet."""
+        plays = self.plays
+        rows = plays.stepped
+        crossed, number = plays.crossed[rows], plays.number[rows]
+        again = np.zeros(len(rows) + 1, dtype=bool)  # whether a step is crossed, and that before it in the same play
+        again[1:-1] = crossed[1:] & crossed[:-1] & (number[1:] == number[:-1])
+        first, last = np.flatnonzero(crossed & ~again[:-1]), np.flatnonzero(crossed & ~again[1:])
+        found: list[list[tuple[int, int]]] = [[] for _ in plays.first[1:]]
+        begun = (rows[first] - plays.start[rows[first]]).tolist()
+        for of, row, count in zip(number[first].tolist(), begun, (last - first + 1).tolist(), strict=True):
+            found[of].append((row, count))
+        return found
+
+    @cached_property
+    def half_turns(self) -> NDArray[np.int64]:
+        """Rows to which the body turns by 180 degrees."""
+        plays = self.plays
+        turn = plays.facing[1:] - plays.facing[:-1]
+        half = np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= EPSILON
+        return np.flatnonzero(half & (plays.number[1:] == plays.number[:-1])) + 1
+
+    @cached_property
+    def triples(self) -> NDArray[np.int64]:
+        """Rows with a step in which three panels or more are down."""
+        return np.flatnonzero((self.plays.down >= _HAND) & self.plays.real.any(axis=0))
+
+    @cached_property
+    def free_doublesteps(self) -> NDArray[np.int64]:
+        """Rows of doublesteps with nothing in the way, which do not cross the feet."""
+        rows = self.plays.with_any(("doublestep",))
+        return rows[self.plays.free[rows] & ~self.plays.crossed[rows]]
+
+    @cached_property
+    def ties(self) -> NDArray[np.int64]:
+        """First rows of every run of steps that cost the same with other limbs."""
+        plays = self.plays
+        rows = plays.stepped
+        tied, number = plays.margin[rows] == 0, plays.number[rows]
+        tied[1:] &= ~(tied[:-1] & (number[1:] == number[:-1]))
+        return np.asarray(rows[tied])
+
+    @cached_property
+    def repeats(self) -> Repeats:
+        """Steps that may be the second or third of one foot in a row."""
+        plays, p = self.plays, self.plays.pressed  # a roll's taps are steps that come between, too
+        new = np.ones(len(p.row) + 1, dtype=bool)
+        np.not_equal(p.row[1:], p.row[:-1], out=new[1:-1])
+        alone = np.flatnonzero(new[1:] & new[:-1])  # presses that are the only one of their row
+        row, column, limb = p.row[alone], p.column[alone], p.limb[alone]
+        next_row = np.cumsum(new[:-1])[alone]
+        follows = (limb[1:] == limb[:-1]) & (limb[1:] <= _RIGHT) & (column[1:] != column[:-1])
+        follows &= (next_row[1:] - next_row[:-1] == 1) & (plays.number[row[1:]] == plays.number[row[:-1]])
+        place = np.flatnonzero(follows & plays.free[row[1:]]) + 1
+        return Repeats(place, row[place], plays.second[row[place]] - plays.second[row[place - 1]])
+
+    @cached_property
+    def soonest_triples(self) -> list[float]:
+        """For each play the least time (s) between three steps of one foot in a row, endless where there are none."""
+        place, row, seconds = self.repeats
+        twice = place[1:] - place[:-1] == 1
+        return self.plays.least(row[1:][twice], np.maximum(seconds[1:], seconds[:-1])[twice])
+
+    @cached_property
+    def soonest_switches(self) -> list[float]:
+        """For each play the least time (s) between single steps on one panel by different limbs."""
+        plays = self.plays
+        lone = np.flatnonzero(plays.lone)
+        column, limb = plays.limb_by_column[:, lone].argmax(axis=0), plays.foot[lone]
+        follows = (lone[1:] - lone[:-1] == 1) & (plays.number[lone[1:]] == plays.number[lone[:-1]])
+        at = np.flatnonzero(follows & (column[1:] == column[:-1]) & (limb[1:] != limb[:-1])) + 1
+        return plays.least(lone[at], plays.second[lone[at]] - plays.second[lone[at - 1]])
+
+    @cached_property
+    def quickest_travels(self) -> list[float]:
+        """For each play the least time (s) that a foot takes for a panel width of its way."""
+        left, right = self.plays.travels
+        pairs = [self.plays.least(one.row, one.seconds / one.way) for one in (left, right)]
+        return [min(both) for both in zip(*pairs, strict=True)]
+
+    @cached_property
+    def techniques(self) -> dict[str, NDArray[np.int64]]:
+        """Rows that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
+        return techniques(self.plays)
+
+    @cached_property
+    def tech_counts(self) -> list[dict[str, int]]:
+        """For each play how often each of `TECH_COUNTS` happens."""
+        counts = [self.plays.how_often(self.techniques[name]) for name in TECH_COUNTS]
+        return [dict(zip(TECH_COUNTS, of_play, strict=True)) for of_play in zip(*counts, strict=True)]
+
+    @cached_property
+    def facing_counts(self) -> list[tuple[int, ...]]:
+        """For each play its rows with a step by how far she faces away from the screen, see `Figures.facing`."""
+        rows = self.plays.stepped
+        away = np.abs(self.plays.facing[rows]) % 360.0
+        bins = np.digitize(np.minimum(away, 360.0 - away), _FACING)
+        k, of = len(self.plays.first) - 1, len(_FACING) + 1
+        counts = np.bincount(self.plays.number[rows] * of + bins, minlength=k * of).reshape(k, of)
+        return [tuple(of_play) for of_play in counts.tolist()]
