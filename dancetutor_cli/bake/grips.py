@@ -13,7 +13,9 @@ from dancetutor_cli.motion.bar import grip_phrases, on_rail
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import arm_rotations, solve
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
+from dancetutor_cli.motion.ik.hands import Torso
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
+from dancetutor_cli.motion.ik.rail import inward
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import BarSettings, MotionSettings
@@ -35,6 +37,7 @@ LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
 TRUNK_ASIDE, TRUNK_DEEP = 0.195, 0.155  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # of the forearm and the hand, where they are looked at
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
+MOST_INWARD = np.radians(145.0)  # a hand on its way that is farther from straight outward would go through the trunk
 HAND = 0.10  # metres that a hand reaches beyond its wrist
 
 
@@ -134,6 +137,18 @@ class _Arm:
         joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
 
+    def reached(self, x: float, start: int, stop: int) -> tuple[int, int]:
+        """From which look on until which one the hand may rest at x of those from `start` to `stop`, so that it gets
+        there and away beside the trunk: while she turns quickly it comes later, or leaves earlier."""
+        reach = round(self.settings.bar.reach_time * RATE)
+        first, last = max(start - reach, 0), min(stop + reach, len(self.place))
+        wrist, _ = rest_on_bar(self.bar, self.side, x, self.skeleton, self.settings.bar)
+        torso = Torso(self.trunk.shoulders[first:last], self.trunk.chest[first:last])
+        around = inward(np.broadcast_to(wrist, (last - first, 3)), self.side, torso) > MOST_INWARD
+        across = first + np.flatnonzero(around)
+        before, after = across[across < (start + stop) // 2], across[across >= (start + stop) // 2]
+        return max([start, *(before[-1:] + 1 + reach)]), min([stop, *(after[:1] - reach)])
+
     def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
         """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk, an upright cylinder."""
         trunk = self.trunk
@@ -159,6 +174,7 @@ def _pieces(times: Array, arm: _Arm, bar: BarSettings) -> Iterator[Grip]:
         start = max(first, last)
         while end - start >= least:
             x, stop = _longest(arm, start, end)
+            start, stop = arm.reached(x, start, stop)
             if stop - start >= least:
                 yield Grip(float(times[start]), float(times[stop - 1]), arm.side, x)
                 start = last = stop + pause

@@ -69,7 +69,7 @@ def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) ->
         if one < (settings.one_quick if quick else settings.one_slow):
             turned = float(yaw[near].mean())
             if abs(turned) > np.radians(settings.turned):
-                side = int(turned > 0.0)  # turned to the left she has the rail at her right
+                side = int(turned < 0.0)  # turned to the left she has the rail at her left
             holds[near, 1 - side] = False
         start = end
     return holds, apart

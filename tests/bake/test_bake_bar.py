@@ -76,11 +76,23 @@ def test_a_hand_lets_go_in_time_when_she_turns() -> None:
     motion = bake(chart(), play([*turns, *spin]), pad(), bar=True, settings=BOTH)
     for measured in (report(motion), report(bake(chart(), play([*turns, *spin]), pad(), bar=True))):
         assert measured["limb in torso"].met and measured["palm off the bar"].met
+        assert measured["wrist speed"].met, "hands have the time for their ways"
     measured = report(motion)
     arms = [n for n in measured.notes if "past its limit" in n and n[2:].startswith(("shoulder", "elbow", "radio"))]
     assert arms == [] and measured["limb in torso"].met and measured["palm off the bar"].met
     alone = [t for t in np.arange(2.0, 8.0, 0.05) if len({g.side for g in motion.grips if g.start <= t <= g.end}) == 1]
     assert len(alone) > 10  # the other hand stays on the bar
+
+
+def test_a_hand_on_its_way_is_never_across_the_body() -> None:
+    """Twice around within 3 s: neither hand takes the rail where it would have to go through her to get there."""
+    around = [(2.0 + 0.35 * k, {(0, 2, 3, 1)[k % 4]: (L, R)[k % 2]}) for k in range(9)]
+    motion = bake(chart(), play([*around, *stream(6.0, 12, 0.3)]), pad(), bar=True)
+    places, _ = world_transforms(motion.skeleton, *sample(motion, np.arange(1.0, 9.0, 1 / 120)))
+    for name in "lr":
+        wrist = places[:, motion.skeleton.index(f"{name}_radiocarpal")]
+        assert np.linalg.norm(np.diff(wrist, axis=0), axis=1).max() * 120 < 4.5
+    assert motion.grips
 
 
 def test_a_hand_goes_to_its_panel_and_comes_back(held: Motion) -> None:

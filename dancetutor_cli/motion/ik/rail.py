@@ -17,7 +17,8 @@ from dancetutor_cli.rig.quaternion import UP
 Array = NDArray[np.float64]
 CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
 TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
-SOFT, FIRST, LAST = 8.0, 0.2, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
+INWARD = 0.3  # radians from straight inward within which a hand ahead counts as behind
+SOFT, FIRST, LAST = 8.0, 0.4, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
 PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
 
 
@@ -34,17 +35,59 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
         weight[near, grip.side] += share
         goal[near, grip.side] += share[:, None] * (wrist + [0.0, settings.lift, 0.0] * (1.0 - share[:, None]))
         hands.rotation[near, grip.side] = hand
+    goal /= np.maximum(weight, 1e-9)[..., None]
     weight = np.minimum(weight, 1.0)
-    hands.wrists[:] += goal - weight[..., None] * hands.wrists
-    hands.wrists[:] += _around(hands.wrists, weight, torso)
+    hands.wrists[:] += _around(hands.wrists, goal, weight, torso)
     hands.pinned[:] = np.maximum(hands.pinned, weight**PIN)
     hands.elbows[:] += weight[..., None] * (elbows_on_bar(torso.chest, settings) - hands.elbows)
 
 
-def _around(wrists: Array, weight: Array, torso: Torso) -> Array:
-    """By how much wrists (f, 2, 3) on their way to the rail or from it keep clear of the trunk, (f, 2, 3)."""
-    share = smooth(weight / FIRST) * (1.0 - weight**LAST)
-    return share[..., None] * kept_clear(wrists, torso, CLEAR)
+def _around(wrists: Array, goal: Array, weight: Array, torso: Torso) -> Array:
+    """How far (f, 2, 3) wrists are on their way to the rail, a share `weight` (f, 2) of it: around the trunk, each on its
+    own side of it.
+
+    In the ellipse's measure they go evenly about its middle and outward or inward; both ends are where they are.
+    """
+    going = (weight > 0.0) & (weight < 1.0)
+    upright, middle = _trunk_of(torso)
+    scale = np.array([CLEAR[0], 1.0, CLEAR[1]])
+    begin, end = (quat.rotate(quat.conjugate(upright), place - middle) / scale for place in (wrists, goal))
+    far, along = (np.stack([f(begin), f(end)]) for f in (_distance, _bearing))
+    share = weight[..., None]
+    there = begin + share * (end - begin)
+    distance = far[0] + weight * (far[1] - far[0])
+    free = smooth(weight / FIRST) * (1.0 - weight**LAST)
+    distance += free * np.logaddexp(0.0, SOFT * (1.0 - distance)) / SOFT
+    bearing = along[0] + weight * (along[1] - along[0])
+    there[..., 0] = distance * np.cos(bearing) * [1.0, -1.0]
+    there[..., 2] = distance * np.sin(bearing)
+    placed = middle + quat.rotate(upright, there * scale)
+    return np.where(going[..., None], placed - wrists, share * (goal - wrists))
+
+
+def inward(place: Array, side: int, torso: Torso) -> Array:
+    """How far (f,) a place (f, 3) for a hand is from straight outward of the trunk, radians: pi is straight inward."""
+    upright, middle = _trunk_of(torso)
+    off = quat.rotate(quat.conjugate(upright), place[:, None] - middle)[:, 0]
+    return np.abs(np.arctan2(off[:, 2] / CLEAR[1], off[:, 0] * (1.0, -1.0)[side] / CLEAR[0]))
+
+
+def _distance(off: Array) -> Array:
+    """Of places (f, 2, 3) from an axis, (f, 2)."""
+    return np.hypot(off[..., 0], off[..., 2])
+
+
+def _bearing(off: Array) -> Array:
+    """How far (f, 2) places (f, 2, 3) of the left and right hand are ahead of where is straight outward, radians; what
+    is straight inward counts as behind the back."""
+    turned = np.arctan2(off[..., 2], off[..., 0] * [1.0, -1.0])
+    return np.where(turned > np.pi - INWARD, turned - 2 * np.pi, turned)
+
+
+def _trunk_of(torso: Torso) -> tuple[Array, Array]:
+    """Which way the trunk faces (f, 1, 4), upright, and its middle (f, 1, 3)."""
+    upright = quat.swing_twist(torso.chest, UP)[1][:, None]
+    return upright, torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
 
 
 def kept_clear(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
@@ -52,8 +95,7 @@ def kept_clear(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
 
     axes : its half axes aside and ahead, metres
     """
-    upright = quat.swing_twist(torso.chest, UP)[1][:, None]
-    middle = torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
+    upright, middle = _trunk_of(torso)
     off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / axes[0], 0.0, 1.0 / axes[1]]
     far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
     beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft most of 0 and 1 - far
