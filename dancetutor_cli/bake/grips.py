@@ -12,8 +12,8 @@ from dancetutor_cli.motion.baked import Grip
 from dancetutor_cli.motion.bar import grip_phrases, on_rail
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import arm_rotations, solve
-from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
 from dancetutor_cli.motion.ik.hands import Torso
+from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
 from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
 from dancetutor_cli.motion.ik.rail import inward
 from dancetutor_cli.motion.ik.targets import ik_targets

@@ -43,7 +43,7 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
 
 
 def _around(wrists: Array, goal: Array, weight: Array, torso: Torso) -> Array:
-    """How far (f, 2, 3) wrists are on their way to the rail, a share `weight` (f, 2) of it: around the trunk, each on its
+    """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way: around the trunk, each on its
     own side of it.
 
     In the ellipse's measure they go evenly about its middle and outward or inward; both ends are where they are.
