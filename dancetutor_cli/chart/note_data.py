@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart import stepf2
+from dancetutor_cli.chart import marked, stepf2
 from dancetutor_cli.chart.holds import OTHERS_HEAD, TAIL, Cells, joined, report
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
@@ -31,10 +31,10 @@ _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
-# As what the letters of several players are read: in most charts as nobody's notes, in one for two as theirs.
+# As what the letters of several players are read: in most charts as nobody's notes, in one for them as theirs.
 _NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
 _NOBODYS[stepf2.FAKE_HEAD] = OTHERS_HEAD
-_OF_TWO = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
+_OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
 _COUNTS = np.ones(256, dtype=bool)
 _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
@@ -43,7 +43,7 @@ _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 class NoteData:
     """What a note data value holds. Rows and measures are those of the first player.
 
-    players : of a chart on one pad for two what each player has, else empty
+    players : of a chart for several on one pad what each player has, else empty; marked : by letters in one row
     """
 
     notes: NoteTable
@@ -51,6 +51,7 @@ class NoteData:
     measures: MeasureTable
     warnings: tuple[ReadWarning, ...]
     players: tuple[NoteData, ...] = ()
+    marked: bool = False
 
 
 class LineIndex:
@@ -93,18 +94,16 @@ def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timin
     view = np.frombuffer(value, dtype=np.uint8)
     begin = len(value) - len(value.lstrip(b"\r\n\t ")) if trimmed else 0
     parts = [(0, len(value))]
+    warnings: list[ReadWarning] = []
     if routine:
         cuts = [-1, *np.flatnonzero(view == _AMPERSAND).tolist(), len(value)]
-        parts = [(a + 1, b) for a, b in itertools.pairwise(cuts)][:_PLAYERS]
-    warnings: list[ReadWarning] = []
+        parts = [(a + 1, b) for a, b in itertools.pairwise(cuts)]
+        _tell_players([value[a:b] for a, b in parts], lines(start), warnings)
+        parts = parts[:_PLAYERS]
     grids = [_Grid(view, part, start, lines, begin) for part in parts]
-    marked = not routine and stepf2.is_for_two(value, columns)
-    if marked:
-        grids[0].letters = _OF_TWO
-        warnings.append(ReadWarning("stepf2-note", stepf2.FOR_TWO, lines(start)))
-    if len(parts) > 1:
-        text = "the chart is for two players ('&' parts their notes); each has feet of their own"
-        warnings.append(ReadWarning("several-players", text, lines(start)))
+    letters = stepf2.letters_of(value, columns) if len(parts) == 1 else b""
+    if letters:
+        grids[0].letters = _OF_PLAYERS
     players = [joined(grid.cells(value, escapes, columns, warnings), warnings) for grid in grids]
     own = tuple(
         NoteData(_table([cells], timing), grid.row_table(), grid.measure_table(), ())
@@ -112,18 +111,21 @@ def read_notes(data: bytes, span: tuple[int, int], form: NoteForm, timing: Timin
         if routine
     )
     rows, measures = grids[0].row_table(), grids[0].measure_table()
-    if marked:
-        shared = _by_marks(players[0], grids[0].marks, columns)
+    if letters:
+        shared = marked.parts_of(players[0], grids[0].marks, columns, letters)
         own = tuple(NoteData(_table([cells], timing), rows, measures, ()) for cells in shared)
-    return NoteData(_table(players, timing), rows, measures, tuple(warnings), own)
+        warnings.insert(0, ReadWarning("stepf2-note", stepf2.for_several(len(own), letters), lines(start)))
+    return NoteData(_table(players, timing), rows, measures, tuple(warnings), own, bool(letters))
 
 
-def _by_marks(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int) -> list[Cells]:
-    """What each of two players has: the notes with their mark, those of neither on their half, and every mine."""
-    places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
-    said = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
-    whose = np.where((said == 1) | (said == 2), said, 1 + (cells.column >= columns // 2))
-    return [cells[(whose == player) | (cells.kind == Kind.MINE)] for player in (1, 2)]
+def _tell_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
+    """Of a routine: that it is for two, and whose notes are read if it has more parts."""
+    written = 1 + max((n for n, part in enumerate(parts) if part.strip(_BLANKS + b",0")), default=0)
+    text = "the chart is for two players ('&' parts their notes); each has feet of their own"
+    if written > _PLAYERS:
+        text = f"'&' parts the notes of {written} players; those of the first two are read, as in the games"
+    if len(parts) > 1:
+        warnings.append(ReadWarning("several-players", text, line))
 
 
 def _table(players: list[Cells], timing: Timing) -> NoteTable:
@@ -223,7 +225,7 @@ class _Grid:
                 foreign.setdefault(what, []).append(int(self.line[row]))
             for finding in found:
                 findings.setdefault(finding, []).append(int(self.line[row]))
-        if self.letters is _OF_TWO:
+        if self.letters is _OF_PLAYERS:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
             message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"

@@ -1,8 +1,8 @@
-"""Charts for two: what each player steps, as a chart of the pad that this player stands on.
+"""Charts for several: what each player steps, as a chart of the pad that this player stands on.
 
 In a couple chart each has a pad of one's own, and half of the columns. In a routine both dance on one double pad, and
 `&` parts the notes of the first from those of the second. So they do where letters mark whose a note is (StepF2's
-co-op, in pump-double): there the notes of both stand in the same rows.
+co-op, in pump-double, and in a pump-routine without `&`): there the notes of all, two or more, stand in the same rows.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double"}
 
 
 def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
-    """What feet are found for: the chart itself, or of one for two each player's part, or that of one player."""
+    """What feet are found for: the chart itself, or of one for several each player's part, or that of one player."""
     if not chart.players:
         return (chart,)
     return tuple(one for one in chart.players if player in (None, one.player))
@@ -29,16 +29,16 @@ def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
 
 def written_parts(chart: Chart) -> tuple[Chart, ...]:
     """What has rows of its own in the file: of a routine each player's part, else the chart."""
-    return chart.players if chart.steps_type in ONE_PAD else (chart,)
+    return chart.players if chart.steps_type in ONE_PAD and not chart.marked else (chart,)
 
 
 def shares_rows(part: Chart) -> bool:
     """Whether another player's notes stand in the rows of a part: of a couple, or where letters mark whose they are."""
-    return part.written is not None and part.written.steps_type not in ONE_PAD
+    return part.written is not None and (part.marked or part.written.steps_type not in ONE_PAD)
 
 
 def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
-    """The chart with the parts of its players, if it is for two. read : its note data; data : bytes of its file"""
+    """The chart with the parts of its players, if it is for several. read : its note data; data : bytes of its file"""
     if chart.steps_type in OWN_PADS:
         half = chart.columns // 2
         tables = [_columns(chart, data, first, half) for first in (0, half)]
@@ -48,7 +48,7 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
         tables = [(own.notes, own.rows) for own in read.players]
         columns = chart.columns
         pad = ONE_PAD.get(chart.steps_type, chart.steps_type)
-        chart = replace(chart, marked=pad == chart.steps_type)
+        chart = replace(chart, marked=read.marked)
     else:
         return chart
     on_one_pad = chart.steps_type not in OWN_PADS

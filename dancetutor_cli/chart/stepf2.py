@@ -3,7 +3,8 @@
 `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z are
 steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows each
 player's in a colour of their own. A chart with steps of the first and the second player and none of a third one is read
-as one for two. What else stands in it (the third one's holds, plain notes) is for whoever has that half of the pad.
+as one for two. What else stands in it (the third one's holds, plain notes) is for whoever has that half of the pad. One
+with steps of all three is for them and more, see `chart.marked`.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ import re
 PLAYERS = b"XYZxyz"
 SAID = {
     "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
-    "X": "X, Y and Z are steps of more than two players in StepF2: no notes here, nor in the other games",
+    "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",
 }
-FOR_TWO = "the chart is for two players (X and Y mark their notes, as in StepF2); each has feet of their own"
+_SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
 FAKE_HEAD = ord("f")  # of a hold that is none, so that its end goes with it
 _FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}
@@ -23,9 +24,16 @@ _COLUMNS = (5, 6, 10)  # of Pump's pads
 _BOTH_PADS = 10
 
 
-def is_for_two(text: bytes, columns: int) -> bool:
-    """Whether letters mark the notes of two players, and of no third one, in note data without its comments."""
-    return columns == _BOTH_PADS and b"X" in text and b"Y" in text and b"Z" not in text
+def letters_of(text: bytes, columns: int) -> bytes:
+    """The letters that mark players' notes, XY or XYZ, in note data without its comments; none if it is for one."""
+    if columns != _BOTH_PADS or b"X" not in text or b"Y" not in text:
+        return b""
+    return b"XYZ" if b"Z" in text else b"XY"
+
+
+def for_several(players: int, letters: bytes) -> str:
+    """That a chart is for several, in a sentence."""
+    return _SEVERAL.format("two" if players == 2 else players, "X and Y" if len(letters) == 2 else "X, Y and Z")
 
 
 def player_of(letter: int) -> int:

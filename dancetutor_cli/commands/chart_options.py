@@ -45,7 +45,9 @@ _OPTIONS = (
         help="Only charts of this difficulty, for example hard.",
     ),
     click.option("--index", type=click.IntRange(min=0), metavar="N", help="Only the chart at this place, from 0."),
-    click.option("--player", type=click.IntRange(1, 2), metavar="1|2", help="Of charts for two: only this player."),
+    click.option(
+        "--player", type=click.IntRange(min=1), metavar="N", help="Of charts for several: only this player, from 1."
+    ),
 )
 
 

@@ -222,6 +222,7 @@ def _play(task: BakeTask, song: Song, chart: Chart, preset: Preset) -> tuple[Pla
 def tasks_of(task: BakeTask) -> tuple[BakeTask, ...]:
     """The request; of a chart for two where nobody has chosen a player, one for each who has notes."""
     from dancetutor_cli import chart as charts
+    from dancetutor_cli.jobs.two import check_for_two
     from dancetutor_cli.lint.part import check_part
 
     if task.selection.player is not None:
@@ -230,6 +231,7 @@ def tasks_of(task: BakeTask) -> tuple[BakeTask, ...]:
         check_part(task.section)
     song = charts.load(task.path)
     whole = song.charts[task.selection.one(song).index]
+    check_for_two(whole)
     players = [part.player for part in whole.players if len(part.notes)]
     if len(players) < 2:
         return (task,)

@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
-from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
+from dancetutor_cli.jobs.two import check_for_two, pad_of_both, place_on, sides_of
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.motion.baked import shifted
 from dancetutor_cli.play.played import Limb, Play
@@ -57,6 +57,7 @@ def danced(request: FilmRequest, subject: Subject) -> Danced:
 
 def _by_two(request: FilmRequest, subject: Subject) -> Danced:
     chart = subject.chart
+    check_for_two(chart)
     alone = {"--bar": request.bar, "--play": request.play, "--push": request.push, "--trip": request.trip}
     option = next((name for name, given in alone.items() if given), None)
     if option is not None:

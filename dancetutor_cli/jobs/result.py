@@ -21,7 +21,7 @@ class ChartResult:
     playable : False if the steps type has no pad; then there are no rows and no cost
     arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
     ambiguous : beat of each row with ties, and "resolved" or "open", see `play.played.Ambiguity`; None likewise
-    player : of a chart for two whose part this is, 1 or 2, else 0
+    player : of a chart for several whose part this is, from 1, else 0
     estimate : how hard it plays; None for a pad without a model of meters
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
     """
@@ -49,12 +49,12 @@ class ChartResult:
 
     @property
     def label(self) -> str:
-        """For people: "dance-single Hard 8"; of one of two players "dance-couple Hard 8 P2"."""
+        """For people: "dance-single Hard 8"; of one of several players "dance-couple Hard 8 P2"."""
         return f"{self.steps_type} {self.difficulty} {self.meter}{self.whose}"
 
     @property
     def whose(self) -> str:
-        """ " P1" or " P2" of a chart for two, else ""."""
+        """ " P1", " P2" and so on of a chart for several, else ""."""
         return f" P{self.player}" if self.player else ""
 
 

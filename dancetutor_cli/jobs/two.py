@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.pads import load_pad
 
 if TYPE_CHECKING:
@@ -17,6 +18,14 @@ if TYPE_CHECKING:
 SEEN = 8  # notes at either end that say where somebody stands
 # Steps type as it is written -> the pad on which both stand: of a couple each has half of it. Else it is its own.
 _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
+
+
+def check_for_two(chart: Chart) -> None:
+    """UsageError of a chart for more than two: no picture has a third dancer, though each of them can dance alone."""
+    count = len(chart.players)
+    if count > 2:
+        choice = f"at most two dance in one picture: choose with --player 1 to {count}"
+        raise UsageError(f"{chart.label} is for {count} players, and {choice}")
 
 
 def pad_of_both(steps_type: str) -> Pad:

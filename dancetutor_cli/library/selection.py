@@ -19,7 +19,7 @@ _LARGE = 200_000  # bytes
 class Selection:
     """Which charts are meant: values as the user typed them, several with commas; None stands for all.
 
-    player : of charts for two, whose part is meant
+    player : of charts for several, whose part is meant
     """
 
     steps_type: str | None = None
@@ -39,7 +39,7 @@ class Selection:
     def one(self, song: Song) -> Chart:
         """The one chart of `song` that matches; UsageError lists the charts there are if none or several do.
 
-        Of a chart for two the part of the player that is meant, else of the first.
+        Of a chart for several the part of the player that is meant, else of the first.
         """
         chart = select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
         found = self.parts(chart)
@@ -48,7 +48,7 @@ class Selection:
         return found[0]
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
-        """What feet are found for in a chart: itself, or of one for two each player's part that is meant."""
+        """What feet are found for in a chart: itself, or of one for several each player's part that is meant."""
         from dancetutor_cli.chart.players import parts
 
         return parts(chart, self.player)

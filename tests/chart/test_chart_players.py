@@ -13,6 +13,7 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.players import parts, written_parts
 from dancetutor_cli.commands import cli
+from dancetutor_cli.errors import UsageError
 from dancetutor_cli.feet import overrides_for
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.measures import step_rows
@@ -201,6 +202,40 @@ def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(mark
     assert feet == [{0: left, 5: right, 2: right, 4: left}, {9: left, 3: left, 7: right}]
     assert run("annotate", marked, "--strip", "--force")[0] == 0
     assert marked.read_bytes() == before
+
+
+THREE = "X000Y0000Z\n0X00Y000Z0\n00X00YZ000\n0000000000\n"
+
+
+def test_three_in_the_same_rows_have_feet_and_markers_each(tmp_path: Path) -> None:
+    path = tmp_path / "three.sm"
+    path.write_text(HEAD + block("pump-double", THREE))
+    before = path.read_bytes()
+    result = analyze_file(LintRun(LintRequest(want_rows=True)).task(path))
+    assert [(chart.label, chart.row_count) for chart in result.charts] == [
+        (f"pump-double Hard 9 P{player}", 3) for player in (1, 2, 3)
+    ]
+    assert run("annotate", path, "--style", "measure,rows")[0] == 0
+    (marker,) = re.findall(r"\{dt1 ([^}]*)\}", path.read_text())
+    assert re.fullmatch(r"(\([LR]{3}\)){3}", marker)
+    assert run("annotate", path, "--style", "measure,rows", "--check")[0] == 0
+    assert run("annotate", path, "--strip")[0] == 0 and path.read_bytes() == before
+
+
+@pytest.mark.parametrize(("command", "suffix"), [("animate", "json"), ("page", "html"), ("render", "mp4")])
+def test_no_picture_has_three_but_each_dances_alone(tmp_path: Path, command: str, suffix: str) -> None:
+    path, out = tmp_path / "three.sm", tmp_path / f"out.{suffix}"
+    path.write_text(HEAD + block("pump-double", THREE))
+    with pytest.raises(UsageError, match=r"is for 3 players, and at most two dance in one picture: .* --player 1 to 3"):
+        run(command, path, "-o", out)
+    assert not out.exists()
+
+
+def test_the_third_of_three_is_baked(tmp_path: Path) -> None:
+    path, out = tmp_path / "three.sm", tmp_path / "p3.json"
+    path.write_text(HEAD + block("pump-double", THREE))
+    assert run("animate", path, "--player", "3", "-o", out)[0] == 0
+    assert json.loads(out.read_text())
 
 
 def test_a_head_without_an_end_beside_marked_notes_is_nobodys_step(tmp_path: Path) -> None:

@@ -49,11 +49,12 @@ def test_a_fake_hold_takes_its_end_with_it() -> None:
     assert not [one for one in said if "unmatched" in one]
 
 
-def test_letters_of_more_than_two_players_are_no_notes() -> None:
-    found, said = notes("000X000000", "00y00000Y0", "0030000000", "1000000Z00", steps_type="pump-double")
+@pytest.mark.parametrize("letter", ["X", "Y", "Z"])
+def test_letters_without_those_of_the_first_two_are_no_notes(letter: str) -> None:
+    found, said = notes(f"000{letter}000000", "00y0000000", "0030000000", "1000000000", steps_type="pump-double")
     assert found == [(3, 0, "TAP")]
     (only,) = said
-    assert only.startswith("stepf2-note: X, Y and Z are steps of more than two") and only.endswith("3 rows")
+    assert only.startswith("stepf2-note: X, Y and Z are steps of several") and only.endswith("2 rows")
 
 
 def test_an_end_without_a_head_is_still_told() -> None:
@@ -80,9 +81,62 @@ def test_letters_of_two_players_are_the_notes_of_each() -> None:
     assert codes.count("stepf2-note") == 2 and "for two players" in chart.warnings[0].message
 
 
-@pytest.mark.parametrize("rows", [("X000000000", "000X000000"), ("Y000000000", "000X000Z00")])
-def test_one_letter_or_three_are_no_chart_for_two(rows: tuple[str, str]) -> None:
+@pytest.mark.parametrize("rows", [("X000000000", "000X000000"), ("Y000000000", "000Z000Z00")])
+def test_one_letter_or_no_first_player_are_no_chart_for_two(rows: tuple[str, str]) -> None:
     assert read(*rows, steps_type="pump-double").players == ()
+
+
+def steps_of(*rows: str, steps_type: str = "pump-double") -> list[list[tuple[int, int, str]]]:
+    padded = (*rows, *["0000000000"] * (8 - len(rows)))
+    return [cells(part) for part in read(*padded, steps_type=steps_type).players]
+
+
+def test_letters_of_three_players_are_the_notes_of_each() -> None:
+    """Few plain notes are of whoever steps that panel; a mine is everybody's, and so is a fake that nothing marks."""
+    rows = [
+        "X000Y0000Z",
+        "00x00Yz000",
+        "0030003000",
+        "0M0000000F",
+        "X0000Y000Z",
+        "100000000Z",
+        "0000Y00000",
+        "0000000000",
+    ]
+    chart = read(*rows, steps_type="pump-double")
+    everybodys = [(3, 1, "MINE"), (3, 9, "FAKE")]
+    assert [cells(part) for part in chart.players] == [
+        sorted([(0, 0, "TAP"), (1, 2, "HOLD"), *everybodys, (4, 0, "TAP"), (5, 0, "TAP")]),
+        sorted([(0, 4, "TAP"), (1, 5, "TAP"), *everybodys, (4, 5, "TAP"), (6, 4, "TAP")]),
+        sorted([(0, 9, "TAP"), (1, 6, "HOLD"), *everybodys, (4, 9, "TAP"), (5, 9, "TAP")]),
+    ]
+    assert [part.label for part in chart.players] == [f"pump-double Hard 9 P{n}" for n in (1, 2, 3)]
+    assert "for 3 players (X, Y and Z mark" in chart.warnings[0].message and len(chart.warnings) == 1
+
+
+def test_plain_notes_beside_three_letters_are_a_fourth_players() -> None:
+    assert steps_of("X00Y0Z0001", "0X00Y0Z010")[3] == [(0, 9, "TAP"), (1, 8, "TAP")]
+
+
+def test_a_letter_on_both_pads_at_once_is_of_two_players() -> None:
+    """As in a chart for five: those of X stand at the ends, those of Y beside them, and Z alone in the middle."""
+    parts = steps_of("X0Y0Z0Y0X0", "0X0Y0Z0Y0X", "XXYYZZYYXX", "X0Y0Z0Y0X0")
+    assert [sorted({column for _, column, _ in part}) for part in parts] == [[0, 1], [8, 9], [2, 3], [6, 7], [4, 5]]
+
+
+@pytest.mark.parametrize("kind", ["pump-double", "pump-routine"])
+def test_a_routine_whose_letters_nothing_parts_is_read_by_them(kind: str) -> None:
+    first, second = steps_of("X000Y00000", "0X00000Y00", steps_type=kind)
+    assert (first, second) == ([(0, 0, "TAP"), (1, 1, "TAP")], [(0, 4, "TAP"), (1, 7, "TAP")])
+
+
+def test_a_third_part_of_a_routine_is_told_and_not_read() -> None:
+    rows = ("1000000000", "0000000000", "&", "0100000000", "0000000000", "&", "0010000000", "0000000000")
+    chart = read(*rows, steps_type="pump-routine")
+    assert [cells(part) for part in chart.players] == [[(0, 0, "TAP")], [(0, 1, "TAP")]]
+    assert [one.message for one in chart.warnings if one.code == "several-players"] == [
+        "'&' parts the notes of 3 players; those of the first two are read, as in the games"
+    ]
 
 
 @pytest.mark.parametrize("row", ["X000", "x000"])
