@@ -9,7 +9,8 @@ A COMMAND has {folder}, or with --each-file {file}; what it writes is thrown awa
   tools/bench_peers.py pack --peer itgmania="/opt/itgmania-export {folder}"
 
 Wall time of another hour or machine says nothing, so every number is a ratio to ours: the least processor time of some
-runs, and the least wall time. A program that fails is told of and left out.
+runs, and the least wall time. Programs run in a folder of their own that is thrown away, for some leave logs where they
+run, and with nothing to read from a terminal. One that fails, or takes longer than --limit, is told of and left out.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
+import shutil
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -33,6 +36,7 @@ SUFFIXES = (".sm", ".ssc")
 Row = tuple[str, float, str, str, str]
 WELL = (0, 1, 2)  # 1: there are findings; 2: a file that nobody can read
 VARIABLE = "BENCH_PEERS"  # for tools/bench.py: a NAME="COMMAND" a line
+LIMIT = 600.0  # seconds that one command of a program may take
 
 
 @dataclass
@@ -46,11 +50,20 @@ class Program:
     failed: str = ""
 
 
-def commands(words: Sequence[str], folder: Path, files: Sequence[Path]) -> Iterable[list[str]]:
+@dataclass(frozen=True)
+class Work:
+    """What all programs do: a folder, its chart files, and how many seconds a command may take."""
+
+    folder: Path
+    files: Sequence[Path]
+    limit: float = LIMIT
+
+
+def commands(words: Sequence[str], work: Work) -> Iterable[list[str]]:
     """The command lines of one round: one for the folder, or one for each file."""
     if any("{file}" in word for word in words):
-        return ([word.replace("{file}", str(file)) for word in words] for file in files)
-    return iter([[word.replace("{folder}", str(folder)) for word in words]])
+        return ([word.replace("{file}", str(file)) for word in words] for file in work.files)
+    return iter([[word.replace("{folder}", str(work.folder)) for word in words]])
 
 
 def spent() -> float:
@@ -59,28 +72,34 @@ def spent() -> float:
     return now.children_user + now.children_system
 
 
-def one_round(program: Program, folder: Path, files: Sequence[Path]) -> None:
+def one_round(program: Program, work: Work) -> None:
     """Run a program once over everything and note its times."""
-    before, start = spent(), time.perf_counter()
-    for words in commands(program.words, folder, files):
-        try:
-            status = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
-        except OSError as error:
-            program.failed = f"{words[0]}: {error.strerror}"
-            return
-        if status not in WELL:
-            program.failed = f"{shlex.join(words)} ended with status {status}"
-            return
-    program.processor.append(spent() - before)
-    program.wall.append(time.perf_counter() - start)
+    quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with tempfile.TemporaryDirectory() as place:
+        before, start = spent(), time.perf_counter()
+        for words in commands(program.words, work):
+            try:
+                status = subprocess.run(words, cwd=place, check=False, timeout=work.limit, **quiet).returncode
+            except OSError as error:
+                program.failed = f"{words[0]}: {error.strerror}"
+                return
+            except subprocess.TimeoutExpired:
+                program.failed = f"{shlex.join(words)} took longer than {work.limit:g} s"
+                return
+            if status not in WELL:
+                program.failed = f"{shlex.join(words)} ended with status {status}"
+                return
+        program.processor.append(spent() - before)
+        program.wall.append(time.perf_counter() - start)
 
 
-def compare(programs: Sequence[Program], folder: Path, files: Sequence[Path], runs: int) -> list[str]:
+def compare(programs: Sequence[Program], work: Work, runs: int) -> list[str]:
     """Lines of a table: each program's times as multiples of the first one's. The first round does not count."""
     for turn in range(runs + 1):
         for program in programs:
             if not program.failed:
-                one_round(program, folder, files)
+                print(f"round {turn} of {runs}: {program.name}", file=sys.stderr)
+                one_round(program, work)
         if turn == 0:
             for program in programs:
                 program.processor.clear()
@@ -107,7 +126,7 @@ def measure(folder: Path = ROOT / "build" / "corpus" / "dev") -> list[Row]:
     if not peers or not folder.is_dir():
         return []
     programs = [Program("dancetutor", [str(DANCETUTOR), *shlex.split(OURS["{folder}"])]), *map(program_of, peers)]
-    compare(programs, folder, charts_in(folder), 3)
+    compare(programs, Work(folder.resolve(), charts_in(folder.resolve())), 3)
     good = [program for program in programs[1:] if not program.failed]
     ours = min(programs[0].processor)
     return [(program.name, min(program.processor) / ours, "times our processor time", "", "") for program in good]
@@ -124,7 +143,8 @@ def program_of(peer: str) -> Program:
     words = shlex.split(command)
     if not any(place in word for word in words for place in ("{folder}", "{file}")):
         raise SystemExit(f"{name}: the command needs {{folder}} or {{file}}")
-    return Program(name.strip(), words)
+    words[0] = shutil.which(words[0]) or words[0]
+    return Program(name.strip(), [str(Path(words[0]).resolve()) if "/" in words[0] else words[0], *words[1:]])
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -134,8 +154,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--ours", metavar='"COMMAND"', help="in place of analyze --format csv, uncached, one process")
     parser.add_argument("--runs", type=int, default=3, help="rounds that count, at least 1")
     parser.add_argument("--each-file", action="store_true", help="ours too is started for each file")
+    parser.add_argument("--limit", type=float, default=LIMIT, metavar="SECONDS", help="that one command may take")
     given = parser.parse_args(arguments)
-    files = charts_in(given.folder)
+    files = charts_in(given.folder.resolve())
     if not files:
         parser.error(f"{given.folder}: no .sm or .ssc file in it")
     what = "{file}" if given.each_file else "{folder}"
@@ -143,7 +164,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     programs = [Program("dancetutor", ours)]
     programs += map(program_of, given.peer)
     print(f"{len(files)} files, the least of {max(given.runs, 1)} rounds, as multiples of dancetutor's\n")
-    print("\n".join(compare(programs, given.folder, files, max(given.runs, 1))))
+    work = Work(given.folder.resolve(), files, given.limit)
+    print("\n".join(compare(programs, work, max(given.runs, 1))))
 
 
 if __name__ == "__main__":
