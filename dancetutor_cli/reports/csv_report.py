@@ -72,6 +72,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         "findings": len(chart.findings) if chart else 0,
         "preset": safe(chart.preset or "") if chart else "",
         **_estimated(chart),
+        "player": (chart.player or "") if chart else "",
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 from pathlib import Path
@@ -116,6 +117,8 @@ def test_each_player_has_feet_and_findings_of_ones_own(both: Path) -> None:
     status, text = run("analyze", both, "--format", "json", "--exit-zero")
     charts = json.loads(text)["files"][0]["charts"]
     assert status == 0 and [chart["player"] for chart in charts] == [1, 2, 1, 2]
+    _, text = run("analyze", both, "--format", "csv", "--exit-zero")
+    assert [line["player"] for line in csv.DictReader(text.splitlines())] == ["1", "2", "1", "2"]
     status, text = run("analyze", both, "--format", "json", "--player", "2", "--exit-zero")
     assert [chart["player"] for chart in json.loads(text)["files"][0]["charts"]] == [2, 2]
 
