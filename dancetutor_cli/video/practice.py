@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.lint.part import FASTEST, SLOWEST
 from dancetutor_cli.video.clock import Pass
@@ -47,14 +47,30 @@ def parse_rates(text: str) -> tuple[float, ...]:
 
 
 def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
-    """The runs through a section, slower ones first as asked for, each with its count-in."""
+    """The runs through a section, slower ones first as asked for, each with its count-in.
+
+    A count-in leads to steps: measures without any at the section's beginning are left out.
+    """
     lead = 0.0
     if practice.count_in:
+        start = _first_measure(chart, start, end)
         beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
         lead = practice.count_in * beat
     count = practice.loop or len(practice.rates)
     rates = (practice.rates[i % len(practice.rates)] for i in range(count))
     return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
+
+
+def _first_measure(chart: Chart, start: float, end: float) -> float:
+    """Where the measure with the first step of a section begins, not before `start`; `start` if there is no step."""
+    notes = chart.notes
+    stepped = notes.tick[~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))]
+    seconds = chart.timing.seconds(stepped)
+    here = stepped[(seconds >= start - 1e-6) & (seconds < end)]
+    if len(here) == 0:
+        return start
+    measure = here.min() // TICKS_PER_MEASURE * TICKS_PER_MEASURE
+    return max(start, float(chart.timing.seconds(np.array([measure]))[0]))
 
 
 def whole_song(chart: Chart) -> tuple[float, float]:

@@ -1,0 +1,44 @@
+"""The runs of a practice film: a count-in leads to steps, not to empty measures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.video.practice import Practice, passes_of
+
+BPM = 120.0
+MEASURE = 4 * 60 / BPM  # seconds
+COUNTED = Practice((0.5, 1.0), count_in=4)
+
+
+def _chart(first: int, tick: str = "1000") -> Chart:
+    """Steps on each beat from measure `first` on, before it only mines."""
+    empty, full = "0M00\n0000\n0000\n0000\n", f"0000\n{tick}\n0100\n0010\n"
+    measures = ",\n".join([empty] * first + [full] * 4)
+    text = f"#TITLE:t;\n#OFFSET:0;\n#BPMS:0={BPM};\n#NOTES:\ndance-single:\n:\nEasy:\n3:\n:\n{measures};\n"
+    return parse(text.encode(), Path("t.sm")).charts[0]
+
+
+def test_measures_without_steps_before_a_count_in_are_left_out() -> None:
+    for one in passes_of(_chart(3), COUNTED, 0.0, 12.0):
+        assert one.sound_from == pytest.approx(3 * MEASURE)
+        assert one.start == pytest.approx(3 * MEASURE - 4 * 60 / BPM)
+        assert one.end == 12.0
+
+
+def test_a_section_that_begins_amid_steps_begins_there() -> None:
+    one = passes_of(_chart(1), COUNTED, 4.6, 9.0)[0]
+    assert one.sound_from == pytest.approx(4.6)
+
+
+@pytest.mark.parametrize("practice", [Practice((0.5,)), Practice()])
+def test_without_a_count_in_the_section_is_as_asked_for(practice: Practice) -> None:
+    assert passes_of(_chart(3), practice, 0.0, 12.0)[0].start == 0.0
+
+
+def test_a_section_without_steps_is_as_asked_for() -> None:
+    assert passes_of(_chart(3), COUNTED, 1.0, 4.0)[0].sound_from == pytest.approx(1.0)
