@@ -7,7 +7,7 @@ library versions give the same bytes.
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import build_character_body as body
@@ -19,6 +19,7 @@ from build_character_mesh import Triangles, even, gradient, surface
 from build_character_parts import Part, heel_parts, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
 from build_character_skin import ORDER, Skin, four
+from build_character_socks import Cut, cut_level, on_side
 
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.colours import limb_colours
@@ -126,7 +127,7 @@ def occlusion(points: Array, normals: Array, strength: float) -> Array:
 
 @dataclass(frozen=True)
 class Piece:
-    """A part made and skinned: slot is its place in the atlas, -1 for a part in a limb's colour."""
+    """A part made and skinned: slot is its place in the atlas, -1 for a part in a limb's colour; side : whose it is."""
 
     part: Part
     points: Array
@@ -134,33 +135,50 @@ class Piece:
     triangles: Triangles
     weights: Array
     slot: int
+    sides: tuple[str, ...] = ("left",)
 
 
 def assemble(name: str, parts_: list[Part], skin: Skin, atlas: Atlas) -> Character:
     """Make all parts, skin them, paint their atlas and join what is drawn together."""
-    pieces = [_piece(part, skin, atlas) for part in parts_]
+    pieces = [piece for part in parts_ for piece in _pieces(part, skin, atlas)]
     uv = atlas.pack()
     material = Material(name, (1.0, 1.0, 1.0, 1.0), atlas.paint(uv))
     meshes: dict[str, list[Mesh]] = {}
     for piece in pieces:
-        for side in ("left", "right") if piece.part.mirror else ("left",):
+        for side in piece.sides:
             tint = f"{side}_{piece.part.tint}" if piece.part.tint else ""
             place = uv[piece.slot] if not tint else np.zeros((len(piece.points), 2))
-            mesh = _mesh(piece, side == "right", place, tinted(tint) if tint else material)
+            mesh = _mesh(piece, piece.part.mirror and side == "right", place, tinted(tint) if tint else material)
             meshes.setdefault(f"{side} {piece.part.name}" if tint else piece.part.mesh, []).append(mesh)
     print(f"{name}: atlas at {atlas.scale:.2f} of the wanted density, {len(atlas.charts)} charts")
     return character(name, [merged(mesh, group) for mesh, group in meshes.items()])
 
 
-def _piece(part: Part, skin: Skin, atlas: Atlas) -> Piece:
+def _pieces(part: Part, skin: Skin, atlas: Atlas) -> list[Piece]:
+    """The part and its socks: what is between two heights wears the feet's colours, what is below is in the shoes."""
     made = part.make()
-    points, normals, triangles = made
     weights = weights_of(part, made, skin)
+    if part.socks is None:
+        return [_piece(part, made, weights, atlas)]
+    bottom, top = part.socks
+    above, below = cut_level(Cut(*made, (weights,)), top)
+    socks, _ = cut_level(below, bottom)
+    worn = replace(part, name="long sock", tint="foot", socks=None)
+    sides = [(name, on_side(socks, sign)) for name, sign in (("left", 1), ("right", -1))]
+    return [
+        _piece(part, above[:3], above.others[0], atlas),
+        *(Piece(worn, s.points, s.normals, s.triangles, s.others[0], -1, (name,)) for name, s in sides),
+    ]
+
+
+def _piece(part: Part, made: Lofted, weights: Array, atlas: Atlas) -> Piece:
+    points, normals, triangles = made
+    sides = ("left", "right") if part.mirror else ("left",)
     if part.tint:
-        return Piece(part, points, normals, triangles, weights, -1)
+        return Piece(part, points, normals, triangles, weights, -1, sides)
     shade = occlusion(points, normals, part.shade) if part.shade else np.ones(len(points))
     source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
-    return Piece(part, points[source], normals[source], triangles, weights[source], len(atlas.parts) - 1)
+    return Piece(part, points[source], normals[source], triangles, weights[source], len(atlas.parts) - 1, sides)
 
 
 def _mesh(piece: Piece, mirror: bool, uv: Array, material: Material) -> Mesh:

@@ -67,6 +67,7 @@ SLEEVE = [
     (0.1175, 0.0514, 0.0516, 0.0520, 0.0), (0.128, 0.0500, 0.0502, 0.0506, 0.0),
 ]  # fmt: skip
 SLEEVE_END, CUFF, HEM, ANKLE = 0.122, 0.1035, 0.976, 0.120  # the cuff is the sleeve's own turned-up end
+SOCKS = (0.115, 0.395)  # bottom, inside the shoes, and top of the long socks that wear the feet's colours
 
 
 def on_arm(along: float, aside: float = 0.0, front: float = 0.0, palm: float = 0.0) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import build_character_head as head
 import numpy as np
 from build_character_bake import Paint
-from build_character_body import ARM, CUFF, HEM, SHOULDER, SLEEVE_END
+from build_character_body import ARM, CUFF, HEM, SHOULDER, SLEEVE_END, SOCKS
 from build_character_sdf import Array, spline
 
 
@@ -189,7 +189,7 @@ def braid(p: Array, n: Array) -> Array:
 
 
 def leggings(p: Array, n: Array) -> Array:
-    """Indigo with a white and pink stripe down the outer side, pink cuffs."""
+    """Indigo with a white and pink stripe down the outer side, a white rim above the socks."""
     axis = np.interp(p[:, 1], [0.1, 0.33, 0.49, 0.7, 0.9, 1.0], [-0.018, -0.010, 0.008, 0.0, -0.008, -0.012])
     outer = np.abs(p[:, 0]) > 0.09
     side = p[:, 2] - axis
@@ -197,7 +197,7 @@ def leggings(p: Array, n: Array) -> Array:
     base = over(base, colour("#433d98"), inside(np.abs(side) - 0.019, 0.001) * outer)
     base = over(base, WHITE, inside(np.abs(side - 0.006) - 0.0045, 0.001) * outer)
     base = over(base, PINK, inside(np.abs(side + 0.006) - 0.0045, 0.001) * outer)
-    return over(base, PINK, inside(np.abs(p[:, 1] - 0.163) - 0.006, 0.001))
+    return over(base, WHITE, inside(p[:, 1] - SOCKS[1] - 0.013, 0.001))
 
 
 def shirt(p: Array, n: Array) -> Array:

@@ -29,6 +29,7 @@ class Part:
     mirror : modelled on the left, copied to the right; tint : the limb whose colour it wears instead of paint
     shade : how dark hollows are painted; ankles : it reaches into the shoes; mesh : what it is drawn with
     on : the cloth it lies on; what lies on one cloth bends as one
+    socks : it ends in socks in the feet's colours, which are cut off it at these heights, bottom and top
     """
 
     name: str
@@ -42,6 +43,7 @@ class Part:
     ankles: bool = False
     mesh: str = "body"
     on: Shape | None = None
+    socks: tuple[float, float] | None = None
 
 
 def of_shape(shape: Shape, box: Box, grid: float, size: Size) -> Callable[[], Lofted]:
@@ -53,7 +55,7 @@ def leggings_mesh() -> Lofted:
     """The leggings, with normals that pass over the fold between the legs."""
     leg = ramp(
         [0.09, 0.14, 0.40, 0.44, 0.53, 0.57, 0.75, 0.85, 1.0],
-        [0.016, 0.019, 0.0245, 0.0180, 0.0180, 0.0265, 0.0272, 0.0220, 0.030],
+        [0.016, 0.0205, 0.0260, 0.0180, 0.0180, 0.0265, 0.0272, 0.0220, 0.030],
         lambda p: p[:, 1],
     )
 
@@ -188,7 +190,7 @@ def parts() -> list[Part]:
     """All parts of the dancer, in the order in which they are written."""
     made, cloth = surfaces(), body.shirt_cloth()
     return [
-        Part("leggings", leggings_mesh, "heat", 470, paint.leggings, shade=0.0, ankles=True),
+        Part("leggings", leggings_mesh, "heat", 470, paint.leggings, shade=0.0, ankles=True, socks=body.SOCKS),
         Part("shirt", shirt_mesh, "heat", 660, paint.shirt, shade=0.10, on=cloth),
         Part("shirt trim", lambda: joined(trims.hem(), trims.collar()), "heat", 400, paint.trim, on=cloth),
         Part("arm", made["arm"], "heat", 560, paint.arm, mirror=True),
@@ -238,7 +240,7 @@ def mannequin_parts() -> list[Part]:
     """A plain figure that shows the pose: one skin with its joints marked, and the limbs' colours."""
     fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0105, 0.0085], lambda p: np.abs(p[:, 0]))
     make = of_shape(body.figure(), ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16)), 0.0055, fine_between_legs(fine))
-    figure = Part("figure", make, "heat", 700, paint.figure, shade=0.0, ankles=True)
+    figure = Part("figure", make, "heat", 700, paint.figure, shade=0.0, ankles=True, socks=body.SOCKS)
     return [figure, *_limb_parts(surfaces()["shoe"])]
 
 

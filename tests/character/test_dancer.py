@@ -17,6 +17,7 @@ from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, dancer_skeleton
+from dancetutor_cli.video.scene.geometry import pack
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -96,11 +97,29 @@ def test_the_binding_pose_is_the_rest_pose(character: Character) -> None:
 def test_shoes_wear_the_colours_of_their_foot(character: Character) -> None:
     limbs = limb_colours()
     for side, x in (("left", 1), ("right", -1)):
-        for part, limb in (("shoe", "foot"), ("wristband", "hand")):
+        for part, limb in (("shoe", "foot"), ("long sock", "foot"), ("wristband", "hand")):
             mesh = mesh_named(character, f"{side} {part}")
             wanted = np.array(getattr(limbs, f"{side}_{limb}")) / 255
             np.testing.assert_allclose(mesh.material.base_color[:3], wanted, atol=1e-6)
             assert (mesh.positions[:, 0] * x > 0).all()
+
+
+def test_legs_wear_their_foots_colour_from_shoe_to_below_the_knee(character: Character) -> None:
+    knee = character.skeleton.rest[character.skeleton.index("l_knee"), 1]
+    for side in ("left", "right"):
+        sock, shoe = (mesh_named(character, f"{side} {part}").positions[:, 1] for part in ("long sock", "shoe"))
+        assert sock.min() < shoe.max() - 0.01, "there is a gap above the shoe"
+        assert 0.75 * knee < sock.max() < knee - 0.05
+    rest = np.concatenate([m.positions for m in character.meshes if m.name == "body"])
+    assert not ((rest[:, 1] > 0.15) & (rest[:, 1] < 0.39)).any(), "a shin in a colour of its own"
+
+
+def test_from_above_socks_do_not_hide_the_feet(character: Character) -> None:
+    packed = pack(character)
+    names = [m.name for m in character.meshes]
+    for side in ("left", "right"):
+        here = packed.material[packed.triangles[: packed.feet, 0]] == names.index(f"{side} long sock")
+        assert packed.positions[packed.triangles[: packed.feet][here]][..., 1].max(initial=0.0) < 0.15
 
 
 def test_she_stands_on_the_ground_and_is_as_tall_as_said(character: Character) -> None:
