@@ -18,10 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba
 from numba.core import caching as _caching
-from numba.core import cgutils as _cgutils
 from numba.core import event as _event
 from numba.core.runtime.nrt import rtsys as _runtime
-from numba.extending import intrinsic
 
 from dancetutor_cli import kernel_target
 from dancetutor_cli.kernel_folder import CHECKSUM, head, kernel_folder, shipped_folder
@@ -29,7 +27,6 @@ from dancetutor_cli.quick_numba import look_for_blas, without_scipy
 from dancetutor_cli.resources import PACKAGE
 
 caching: Any = _caching  # have types in some versions only, or in none
-cgutils: Any = _cgutils
 event: Any = _event
 runtime: Any = _runtime
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
@@ -60,28 +57,24 @@ def inner_kernel(function: F) -> F:
     return made
 
 
-def _borrowed(_typing: Any, array: Any) -> Any:
-    """The same array for numba, but one that nobody counts: the caller keeps it alive.
+def uncounted(function: Callable[..., Any] | None = None, **options: Any) -> Any:
+    """`njit` for a kernel that makes no arrays and only looks at those it is given: references to them are not counted.
 
-    Arrays in tuples are counted up and down, one atomic step each, by every function that they are handed to; where
-    small functions hand on many arrays that takes longer than what they do.
+    numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each, also inside of
+    loops: in the solver's rules that took half of the time.
     """
-
-    def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        made = context.make_array(signature.args[0])(context, builder, value=values[0])
-        made.meminfo = cgutils.get_null_value(made.meminfo.type)
-        made.parent = cgutils.get_null_value(made.parent.type)
-        return made._getvalue()
-
-    return array(array), build
+    if function is None:
+        return lambda later: uncounted(later, **options)
+    try:
+        return _njit(function, _nrt=False, **options)
+    except (KeyError, TypeError):  # the option may go
+        return _njit(function, **options)
 
 
 if TYPE_CHECKING:
     from numba import njit as njit  # a kernel has the types that it says, as with numba's own
-
-    def borrowed(array: Any) -> Any: ...
 else:
-    njit, borrowed = _njit, intrinsic(_borrowed)
+    njit = _njit
 
 
 class _NoCollecting(event.Listener):  # type: ignore[misc]

@@ -154,7 +154,8 @@ class Engine:
 
     def _is_full(self) -> bool:
         counts = self.tables.counts
-        return bool(counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
+        facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
+        return bool(facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
 
     def _found(self, n: int, c: int, *, margins: bool) -> Found:
         return Found(
@@ -181,11 +182,12 @@ class Engine:
     def _explore_from(self, row: int, arrays: RowArrays, nodes: RowStates) -> None:
         """Meet every state from a row on, so that the programme can go on there."""
         wanted = store.UNEXPLORED
-        before = self.tables.transition[nodes.transition[row - 1], store.TO_LAYER] if row else store.START
         while wanted != store.DONE:
             with _wrapping():
-                wanted = self._explore(row, np.int64(before), arrays.pattern, self.tables, self.rules, self._moves)
-            if wanted != store.DONE:
+                wanted = self._explore(row, arrays.pattern, nodes.transition, self.tables, self.rules, self._moves)
+            if wanted == store.MORE_SCRATCH:
+                self._moves = moves(len(self.preset.weights), 2 * len(self._moves.packed))
+            elif wanted != store.DONE:
                 self.tables = grown(self.tables, wanted, len(arrays.tick))
 
 
@@ -199,12 +201,12 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
     return RowArrays(
         rows.tick, rows.steps, rows.hold_end, rows.mines, rows.milliseconds,
         np.zeros(0, dtype=np.int64) if forced is None else forced,
-        np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32),
+        np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32), np.empty(rows.steps.shape[1], dtype=np.int64),
     )  # fmt: skip
 
 
 def _nodes(rows: int, node: NDArray[np.int64]) -> RowStates:
-    return RowStates(np.empty((rows + 2, 2), dtype=np.int64), node, np.empty(rows, dtype=np.int32))
+    return RowStates(np.empty((rows + 2, 2), dtype=np.int64), node, np.full(rows, -1, dtype=np.int32))
 
 
 def _make_room(nodes: RowStates, row: int) -> None:

@@ -14,41 +14,50 @@ import numpy as np
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_moves import expand_itg
-from dancetutor_cli.play.jit import borrowed, njit
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
     COST,
     DONE,
+    EDGE_COST_SHIFT,
     EDGE_COUNT,
     EDGES,
     EVENTS,
     FACTS,
     FACTS_KNOWN,
+    FACTS_SHIFT,
     FIRST_EDGE,
+    LAST_BIT,
     LAYER_FIRST,
     LAYER_SIZE,
     LAYER_STATES,
     LAYERS,
+    MET_IN,
+    MET_PLACE,
     MORE_EDGES,
     MORE_FACTS,
     MORE_LAYER_STATES,
     MORE_LAYERS,
     MORE_MOVES,
     MORE_PAIRS,
+    MORE_SCRATCH,
     MORE_STATES,
     MORE_TERMS,
     MORE_TRANSITIONS,
+    MOVE_LIMBS,
     MOVES,
     NEXT,
     PAIRS,
     PART_SHIFT,
-    PLACE_SHIFT,
+    START,
     STATES,
     TERMS_KNOWN,
     TERMS_SHIFT,
     TO_LAYER,
     TRANSITIONS,
+    TRIED,
+    UNEXPANDED,
     find,
     number_of_facts,
     number_of_layer,
@@ -56,7 +65,7 @@ from dancetutor_cli.play.store import (
     number_of_terms,
     slot_of,
 )  # fmt: skip
-from dancetutor_cli.play.tables import MOST_MOVES, Geometry, Moves, Rules
+from dancetutor_cli.play.tables import MOST_MOVES
 from dancetutor_cli.play.thesis_moves import expand_thesis
 
 _RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
@@ -64,20 +73,7 @@ _PLACE = (1 << PLACE_BITS) - 1
 _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
 
 
-@njit
-def _borrowed_rules(rules):  # type: ignore[no-untyped-def]
-    g = rules.geometry
-    geometry = Geometry(
-        borrowed(g.left), borrowed(g.right), borrowed(g.angle), borrowed(g.distance), borrowed(g.place),
-        borrowed(g.panels), borrowed(g.mask), borrowed(g.arrow),
-    )  # fmt: skip
-    return Rules(
-        rules.model, geometry, borrowed(rules.weights), borrowed(rules.switches), borrowed(rules.curves),
-        borrowed(rules.home),
-    )  # fmt: skip
-
-
-@njit
+@uncounted(inline="always")
 def _keep(count, out, t):  # type: ignore[no-untyped-def]
     """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
     counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
@@ -94,12 +90,12 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
         cost = 0
         for term in range(given_terms.shape[1]):
             cost += given_terms[i, term]
-        moves[move, COST] = cost
+        moves[move, COST], moves[move, MOVE_LIMBS] = cost, given[i, _ACTION]
     counts[MOVES] += count
     return first << 16 | count
 
 
-@njit
+@uncounted(inline="always")
 def _room(t):  # type: ignore[no-untyped-def]
     """What has no room for the moves of one more pair, or DONE."""
     counts = t.counts
@@ -116,7 +112,16 @@ def _room(t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-@njit
+@uncounted
+def _slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
+    """Where a pair stands in its table, or would."""
+    at = slot_of(key, len(pairs))
+    while pairs[at, 0] >= 0 and pairs[at, 0] != key:
+        at = (at + 1) & (len(pairs) - 1)
+    return at
+
+
+@uncounted
 def _rank(key):  # type: ignore[no-untyped-def]
     """Where a state (packed, int64) stands in its layer, above `_RANK_SHIFT`: of ways as cheap that meet again the one
     from the first state is taken. As people choose: the left foot has stepped last, and stands further to the left.
@@ -125,7 +130,7 @@ def _rank(key):  # type: ignore[no-untyped-def]
     return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
 
 
-@njit
+@uncounted
 def _sort(values, count):  # type: ignore[no-untyped-def]
     """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
     gap = 1
@@ -141,18 +146,18 @@ def _sort(values, count):  # type: ignore[no-untyped-def]
         gap //= 3
 
 
-@njit
-def _connect(key, packed, found, reached, slot, t):  # type: ignore[no-untyped-def]
+@uncounted(inline="always")
+def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
 
-    key : layer << 32 | pattern; packed : of each state of the layer, what `Tables.pair` says
-    reached : rank and number of each of the `found` next states, in any order; slot : scratch, by state
+    key : layer << 32 | pattern; total : moves of the layer
+    `out.packed` : of each state of the layer, what `Tables.pair` says; `out.reached` : rank and number of each of the
+        `found` next states, in any order; becomes scratch
     """
-    counts, moves, ends, transition = t.counts, t.move, t.ends, t.transition
-    size, total = t.layer[key >> 32, LAYER_SIZE], 0
-    for i in range(size):
-        total += packed[i] & 0xFFFF
-    if counts[EDGES] + total > len(ends):
+    counts, moves, edge, transition, met = t.counts, t.move, t.edge, t.transition, t.met
+    edge_move, edge_limbs, packed, reached = t.edge_move, t.edge_limbs, out.packed, out.reached
+    size = t.layer[key >> 32, LAYER_SIZE]
+    if counts[EDGES] + total > len(edge):
         return MORE_EDGES
     if counts[TRANSITIONS] >= len(transition):
         return MORE_TRANSITIONS
@@ -163,17 +168,27 @@ def _connect(key, packed, found, reached, slot, t):  # type: ignore[no-untyped-d
     _sort(reached, found)
     for i in range(found):
         reached[i] &= (1 << _RANK_SHIFT) - 1
-        slot[reached[i]] = i
-    e = counts[EDGES]
+        met[reached[i], MET_PLACE] = i
     number = counts[TRANSITIONS]
     transition[number, TO_LAYER] = number_of_layer(reached, found, t)
-    transition[number, FIRST_EDGE], transition[number, EDGE_COUNT] = e, total
+    transition[number, FIRST_EDGE], transition[number, EDGE_COUNT] = counts[EDGES], total
+    for u in range(found):
+        reached[u] = 0
     for i in range(size):
         for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
-            facts, to = np.int64(moves[move, FACTS]), np.int64(slot[moves[move, NEXT]])
-            ends[e] = i | to << PLACE_SHIFT | facts << 2 * PLACE_SHIFT
-            t.edge_cost[e], t.edge_move[e] = moves[move, COST], move
-            e += 1
+            reached[met[moves[move, NEXT], MET_PLACE]] += 1
+    e = counts[EDGES]
+    for u in range(found):
+        reached[u], e = e, e + reached[u]
+    for i in range(size):
+        for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+            u = met[moves[move, NEXT], MET_PLACE]
+            at = reached[u]
+            reached[u] = at + 1
+            edge[at] = i | np.int64(moves[move, FACTS]) << FACTS_SHIFT | np.int64(moves[move, COST]) << EDGE_COST_SHIFT
+            edge_move[at], edge_limbs[at] = move, moves[move, MOVE_LIMBS]
+    for u in range(found):
+        edge[reached[u] - 1] |= 1 << LAST_BIT
     t.transition_key[number] = key
     t.transition_hash[~find(key, t.transition_key, t.transition_hash)] = number
     counts[EDGES] = e
@@ -191,56 +206,63 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
     kernel looks different in every process, so that nothing would ever be found again.
     """
 
-    def explore(row, layer, pattern, t, rules, out):  # type: ignore[no-untyped-def]
-        """From the layer before `row` to the last row: meet every state, keep all moves. Returns what has no room."""
+    def explore(row, pattern, chosen, t, rules, out):  # type: ignore[no-untyped-def]
+        """From `row` to the last row: meet every state, keep all moves. Returns what has no room.
+
+        chosen : the number of each row's transition, known up to `row`, is written here
+        """
         assert len(stamp)
-        rules = _borrowed_rules(rules)
-        out = Moves(borrowed(out.wide), borrowed(out.terms), borrowed(out.scratch))
-        counts, pairs, keys = t.counts, t.pair, t.state_key
-        packed, reached = np.zeros(256, dtype=np.int64), np.zeros(256, dtype=np.int64)
-        slot, seen = np.zeros(len(keys), dtype=np.int32), np.full(len(keys), -1, dtype=np.int32)
+        counts, pairs, keys, met, moves, states = t.counts, t.pair, t.state_key, t.met, t.move, t.layer_state
+        packed, reached = out.packed, out.reached
+        layer = np.int64(t.transition[chosen[row - 1], TO_LAYER]) if row else np.int64(START)
         for r in range(row, len(pattern)):
             number = find(layer << 32 | pattern[r], t.transition_key, t.transition_hash)
             if number >= 0:
+                chosen[r] = number
                 layer = np.int64(t.transition[number, TO_LAYER])
                 continue
-            first, size, found = t.layer[layer, LAYER_FIRST], t.layer[layer, LAYER_SIZE], 0
+            counts[TRIED] += 1
+            tried = counts[TRIED]
+            first, size, known = t.layer[layer, LAYER_FIRST], t.layer[layer, LAYER_SIZE], True
             if size > len(packed):
-                packed = np.zeros(2 * size, dtype=np.int64)
+                return MORE_SCRATCH
+            for i in range(size):  # a short loop, so that the processor waits for many states' pairs at once
+                packed[i] = pairs[_slot_of_pair(np.int64(pattern[r]) << 32 | states[first + i], pairs), 1]
+                known &= packed[i] != UNEXPANDED
+            for i in range(0 if known else size):
+                if packed[i] != UNEXPANDED:
+                    continue
+                wanted = _room(t)
+                if wanted != DONE:
+                    return wanted
+                key = np.int64(pattern[r]) << 32 | states[first + i]
+                at = _slot_of_pair(key, pairs)
+                row, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
+                pairs[at, 0] = key
+                pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], row, more, rules, out), out, t)
+                counts[PAIRS] += 1
+            total = found = np.int64(0)
             for i in range(size):
-                state = np.int64(t.layer_state[first + i])
-                key = np.int64(pattern[r]) << 32 | state
-                at = slot_of(key, len(pairs))
-                while pairs[at, 0] >= 0 and pairs[at, 0] != key:
-                    at = (at + 1) & (len(pairs) - 1)
-                if pairs[at, 0] < 0:
-                    wanted = _room(t)
-                    if wanted != DONE:
-                        return wanted
-                    count = expand(keys[state], t.pattern[pattern[r], 0], t.pattern[pattern[r], 1], rules, out)
-                    pairs[at, 0], pairs[at, 1] = key, _keep(count, out, t)
-                    counts[PAIRS] += 1
-                packed[i] = pairs[at, 1]
-                if found + (packed[i] & 0xFFFF) > len(reached):
-                    longer = np.zeros(2 * (found + MOST_MOVES), dtype=np.int64)
-                    for k in range(found):
-                        longer[k] = reached[k]
-                    reached = longer
+                total += packed[i] & 0xFFFF
+            if total > len(reached):
+                return MORE_SCRATCH
+            for i in range(size):
                 for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
-                    state = np.int64(t.move[move, NEXT])
-                    if seen[state] != r:
-                        seen[state] = r
+                    state = np.int64(moves[move, NEXT])
+                    if met[state, MET_IN] != tried:
+                        met[state, MET_IN] = tried
                         reached[found] = _rank(keys[state]) | state
                         found += 1
-            wanted = _connect(layer << 32 | pattern[r], packed, found, reached, slot, t)
+            wanted = _connect(layer << 32 | pattern[r], total, found, out, t)
             if wanted != DONE:
                 return wanted
-            layer = np.int64(t.transition[counts[TRANSITIONS] - 1, TO_LAYER])
+            chosen[r] = counts[TRANSITIONS] - 1
+            layer = np.int64(t.transition[chosen[r], TO_LAYER])
         return DONE
 
     own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name, None, explore.__closure__)
     own.__qualname__ = name  # the name of the cache's files, too
-    return njit(cache=True)(own)
+    return uncounted(cache=True)(own)
 
 
 Explorer = Callable[..., int]

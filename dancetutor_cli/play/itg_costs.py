@@ -7,7 +7,7 @@ function again with all that it calls.
 
 from __future__ import annotations
 
-from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.state import LAST, LEFT_HELD, LEFT_LIFTED, SIDE, turn
 from dancetutor_cli.play.tables import DISTANCE_UNIT, EPSILON, LEFT, RIGHT
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES
@@ -44,7 +44,7 @@ _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner 
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 
-@njit
+@uncounted
 def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
     """Panels that a foot is reserved for, as bits. panels : of `Geometry`"""
     held, place = s[LEFT_HELD + foot], s[foot]
@@ -52,7 +52,7 @@ def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
     return mask | 1 << panels[place, foot, 1] if held & 2 else mask
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """What the feet of a row cost, not counting the pose. Facts and events.
 
@@ -78,7 +78,7 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
         if (
             before[LAST] in (0, foot + 1)
             and not before[LEFT_HELD + 1 - foot]
-            and _is_apart(old, pressed[foot], g.place)
+            and not g.near[before[foot]] & pressed[foot]
         ):
             facts |= _F_TELEPORT
     if left and right:
@@ -100,17 +100,7 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
     return facts | min(distance, (1 << _DISTANCE_BITS) - 1), events
 
 
-@njit
-def _is_apart(stands, pressed, place):  # type: ignore[no-untyped-def]
-    """Whether none of the pressed panels is one that the foot stood on, or its neighbour. place : of `Geometry`"""
-    for a in range(len(place)):
-        for b in range(len(place)):
-            if stands >> a & 1 and pressed >> b & 1 and place[a, b] >= 0:
-                return False
-    return True
-
-
-@njit
+@uncounted
 def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
     """Where a foot on two panels points: outward in front, as it likes best, costs nothing."""
     g, w = rules.geometry, rules.weights
@@ -127,7 +117,7 @@ def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
         terms[BRACKET_OUT_BACK] += w[BRACKET_OUT_BACK]
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
     g, w = rules.geometry, rules.weights
@@ -155,7 +145,7 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
     return facts, events
 
 
-@njit
+@uncounted
 def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
     g, w = rules.geometry, rules.weights
@@ -175,11 +165,10 @@ def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ign
         return 0, EVENT_DOUBLESTEP
     if pressed & stands:
         return _F_GROWN, EVENT_DOUBLESTEP
-    near = not _is_apart(stands, pressed, g.place)
-    return _F_NEAR if near else _F_DOUBLESTEP, EVENT_DOUBLESTEP
+    return _F_NEAR if g.near[before[foot]] & pressed else _F_DOUBLESTEP, EVENT_DOUBLESTEP
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-def]
     """What facing and stance after the row cost. Facts and events."""
     g, w = rules.geometry, rules.weights
@@ -223,7 +212,7 @@ def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-de
     return facts, events
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-untyped-def]
     """A foot that stays on a mine has to get off it, and is lifted from then on; a foot that presses is down again."""
     g, w = rules.geometry, rules.weights
@@ -238,7 +227,7 @@ def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-un
             terms[LIFTED] += w[LIFTED]
 
 
-@njit
+@uncounted
 def charge_time(facts, ms, curves, terms):  # type: ignore[no-untyped-def]
     """Write what packed facts cost when the row before was so many milliseconds ago; returns the sum.
 

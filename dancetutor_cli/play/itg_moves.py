@@ -24,7 +24,7 @@ from dancetutor_cli.play.itg_costs import (
     charge_pose,
     held_by,
 )  # fmt: skip
-from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.play.tables import (
     ACTION,
@@ -66,20 +66,20 @@ class _Asked(NamedTuple):
     forced: Whole
 
 
-@njit
+@uncounted
 def start_itg(home):  # type: ignore[no-untyped-def]
     """Left and right foot on the panels of the starting stance, no last leg."""
     return home[0] | home[1] << 5
 
 
-@njit
+@uncounted
 def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
     """Reserve the parts of a foot that stand on the panels of `mask`. panels : of `Geometry`"""
     heel, toe = panels[s[foot], foot, 0], panels[s[foot], foot, 1]
     s[LEFT_HELD + foot] = mask >> heel & 1 | (mask >> toe & 1) << 1 if toe >= 0 else mask >> heel & 1
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def]
     """What a foot can press of `steps`: panels, and its place then, into `out.scratch`. Returns in how many ways."""
     s, ways, to = out.scratch[BEFORE], out.scratch[LEFT_WAYS + foot], out.scratch[LEFT_TO + foot]
@@ -104,7 +104,7 @@ def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def
     return m
 
 
-@njit
+@uncounted
 def _bits(mask):  # type: ignore[no-untyped-def]
     count = 0
     while mask:
@@ -113,7 +113,7 @@ def _bits(mask):  # type: ignore[no-untyped-def]
     return count
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-def]
     """Write one way to play a row.
 
@@ -180,7 +180,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
     return m + 1
 
 
-@njit
+@uncounted
 def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
     """Whether limbs press what overrides ask for (3 bits for each column, 0: any limb)."""
     for p in range(c):
@@ -190,7 +190,7 @@ def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit
+@uncounted
 def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
     """The panel of a mask that is furthest to the left, `side` -1, or right, 1; of two, the one further back; or -1."""
     found = -1
@@ -202,7 +202,7 @@ def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
     return found
 
 
-@njit
+@uncounted
 def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped.
 
@@ -216,13 +216,16 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     left_free, right_free = before[LEFT_HOLDS] == 0, before[LEFT_HOLDS + 1] == 0
     hands = min(_bits(rest), int(left_free) + int(right_free))  # as Python, the sum of two of its flags is a flag
     crowded = _bits(rest) > hands and not forced & _FORCED
-    leftmost = _outermost(rest, g.left, -1)
-    rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)
+    leftmost = rightmost = -1
+    if crowded and hands:
+        leftmost = _outermost(rest, g.left, -1)
+        rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)
     rolls = asked.row >> ROLLS & _MASK
-    for i in range(-1, c):
+    choices = c if hands else 0
+    for i in range(-1, choices):
         if i >= 0 and (not (rest >> i & 1 and left_free) or (crowded and i != leftmost)):
             continue
-        for j in range(-1, c):
+        for j in range(-1, choices):
             if (j >= 0 and not (rest >> j & 1 and right_free and j != i)) or (i >= 0) + (j >= 0) != hands:
                 continue
             if crowded and j >= 0 and j != rightmost:
@@ -230,14 +233,14 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
             pressed[2], pressed[3] = 1 << i if i >= 0 else 0, 1 << j if j >= 0 else 0
             if forced & _FORCED and not _fits(pressed, forced, c):
                 continue
-            for holders in range(4):
+            for holders in range(4 if rolls else 1):
                 if (holders & 1 and not pressed[0] & rolls) or (holders & 2 and not pressed[1] & rolls):
                     continue
                 m = _emit(out, m, asked, holders, switched, rules)
     return m
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
     """Every way to share a row between the feet that leaves the fewest steps to hands."""
     steps, kept, after, pressed = asked.steps, asked.kept, out.scratch[AFTER], out.scratch[PRESS]
@@ -263,7 +266,7 @@ def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
     """One step while one foot holds: the free foot may take over the hold, and the other one steps."""
     g, before, after, pressed = rules.geometry, out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
@@ -280,7 +283,7 @@ def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@njit
+@uncounted
 def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """All ways to play a row from a state, into `out`; returns their number, at least 1.
 

@@ -18,17 +18,12 @@ def _as_it_is(function: Callable[..., Any] | None = None, **options: Any) -> Any
     return (lambda later: later) if function is None else function
 
 
-def _untouched(array: Any) -> Any:
-    """An array as it is."""
-    return array
-
-
 if TYPE_CHECKING:
     from numba import njit as njit
 
-    borrowed = _untouched
+    uncounted = njit
 elif INTERPRETED:
-    njit, borrowed = _as_it_is, _untouched
+    njit = uncounted = _as_it_is
 else:
-    from dancetutor_cli.kernels import borrowed as borrowed
     from dancetutor_cli.kernels import njit as njit
+    from dancetutor_cli.kernels import uncounted as uncounted

@@ -15,19 +15,23 @@ from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
-from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.store import (
     ACTION,
     BASE,
     COST_SHIFT,
     DONE,
+    EDGE_COST_SHIFT,
     EDGE_COUNT,
     EDGE_MASK,
     EVENTS,
     FACTS,
     FACTS_KNOWN,
+    FACTS_MASK,
+    FACTS_SHIFT,
     FIRST,
     FIRST_EDGE,
+    LAST_BIT,
     LAYER_SIZE,
     LIMBS,
     MORE_NODES,
@@ -39,7 +43,6 @@ from dancetutor_cli.play.store import (
     PART_SHIFT,
     PATTERNS,
     PLACE_MASK,
-    PLACE_SHIFT,
     START,
     TERMS_SHIFT,
     TO_LAYER,
@@ -50,14 +53,18 @@ from dancetutor_cli.play.store import (
     number_of_state,
     slot_of,
 )  # fmt: skip
-from dancetutor_cli.play.tables import ROLL_TAPS, ROLLS
+from dancetutor_cli.play.tables import ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
 PRICE = -1  # instead of a row to start from
 _NEVER = np.int64(1 << 60)
+# what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
+_KINDS = np.array(
+    [[0, 1, 1, 1 << columns.HOLDS, 1, 1], [0, 1, 1, 1 << columns.HOLDS, 1, 1 << columns.ROLL_TAPS]], dtype=np.int64
+)
 
 
-@njit
+@uncounted
 def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of a packed row, which takes two words."""
     at = slot_of(row ^ more * 31, len(numbers))
@@ -73,37 +80,50 @@ def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@njit
-def _rolls_on(steps):  # type: ignore[no-untyped-def]
-    """Bits of the columns in which a roll goes on after each row, (n,): the next step there is a virtual tap."""
+@uncounted
+def _any_from(cells, least):  # type: ignore[no-untyped-def]
+    """Whether some cell (n, c) is at least so much."""
+    n, c = cells.shape
+    found = False
+    for r in range(n):
+        for p in range(c):
+            found |= cells[r, p] >= least
+    return found
+
+
+@uncounted
+def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
+    """Bits of the columns in which a roll goes on after each row (n,): the next step there is a virtual tap."""
     n, c = steps.shape
-    out = np.zeros(n, dtype=np.int32)
     coming = 0
     for r in range(n - 1, -1, -1):
+        out[r] = 0
         for p in range(c):
             if steps[r, p]:
                 if coming >> p & 1 and steps[r, p] >= 4:
                     out[r] |= 1 << p
                 coming = coming & ~(1 << p) | (steps[r, p] == 5) << p
-    return out
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     """Pack every row and number it; False if the tables have no room for as many patterns."""
     steps, hold_end, mines, tick, forced = rows.steps, rows.hold_end, rows.mines, rows.tick, rows.forced
     patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
-    pattern = rows.pattern
+    pattern, ends = rows.pattern, rows.ends
     n, c = steps.shape
     if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
         return False
-    goes_on = _rolls_on(steps) if keep_rolls else np.zeros(n, dtype=np.int32)
-    ends = np.full(c, -1, dtype=np.int64)
+    kinds = _KINDS[1 if keep_rolls else 0]
+    rolled, mined = keep_rolls and _any_from(steps, 4), _any_from(mines, 1)
+    if rolled:
+        _rolls_on(steps, pattern)  # each is read before the number of its row takes its place
+    for p in range(c):
+        ends[p] = -1
     held, last, latest = 0, np.int64(-1), np.int64(-1)
     for r in range(n):
-        row = np.int64(goes_on[r]) << ROLLS
+        row = np.int64(pattern[r]) << ROLLS if rolled else np.int64(0)
         more = forced[r] if len(forced) else np.int64(0)
-        stepped = False
         if keep_rolls and latest >= last >= 0:
             for p in range(c):
                 if ends[p] == last:
@@ -115,26 +135,26 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
                     if keep_rolls and tick[r] - ends[p] <= columns.FRESH_TICKS:
                         row |= 1 << columns.FRESH
                     held &= ~(1 << p)
+        stepped = np.int64(0)
         for p in range(c):
-            step = steps[r, p]
-            if step:
-                stepped = True
-                if step == 3:
-                    row |= 1 << p + columns.HOLDS
+            stepped |= kinds[steps[r, p]] << p
+        if stepped >> columns.HOLDS & (1 << columns.COLUMN_BITS) - 1:
+            for p in range(c):
+                if stepped >> columns.HOLDS + p & 1:
                     ends[p] = hold_end[r, p]
                     latest = max(latest, ends[p])
                     held |= 1 << p
-                else:
-                    row |= 1 << p + (ROLL_TAPS if step == 5 and keep_rolls else columns.TAPS)
-            if mines[r, p]:
-                row |= 1 << p + columns.MINES
+        if mined:
+            for p in range(c):
+                row |= np.int64(mines[r, p]) << p + columns.MINES
         if stepped:
             last = tick[r]
+        row |= stepped
         pattern[r] = _pattern(row, more, patterns, numbers, counts)
     return True
 
 
-@njit
+@uncounted
 def _wait(rows):  # type: ignore[no-untyped-def]
     """Milliseconds since the last row with steps, for every row."""
     steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
@@ -147,48 +167,52 @@ def _wait(rows):  # type: ignore[no-untyped-def]
                 waited = 0
 
 
-@njit
+@uncounted
 def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
     """1 + what facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
     timed_cost[ms, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
     return timed_cost[ms, facts]
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
 
     Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
     """
     pattern, elapsed, first, node, chosen = rows.pattern, rows.elapsed, nodes.row, nodes.node, nodes.transition
-    layer, ends, edge_cost, transition = t.layer, t.ends, t.edge_cost, t.transition
+    layer, edge, transition = t.layer, t.edge, t.transition
     keys, numbers, curves = t.transition_key, t.transition_hash, rules.curves
     timed_key, timed_cost = t.timed_key, t.timed_cost
     here = np.int64(transition[chosen[r - 1], TO_LAYER]) if r else np.int64(START)
     for row in range(r, len(pattern)):
-        number = find(here << 32 | pattern[row], keys, numbers)
+        number = np.int64(chosen[row])
         if number < 0:
-            return row, UNEXPLORED
-        chosen[row] = number
+            number = find(here << 32 | pattern[row], keys, numbers)
+            if number < 0:
+                return row, UNEXPLORED
+            chosen[row] = number
         here = np.int64(transition[number, TO_LAYER])
         low, high, ms = first[row, FIRST], first[row + 1, FIRST], elapsed[row]
         top = high + layer[here, LAYER_SIZE]
         if top > len(node):
             return row, MORE_NODES
-        for u in range(high, top):
-            node[u] = _NEVER
+        u, best, cheapest = high, _NEVER, _NEVER
         start = np.int64(transition[number, FIRST_EDGE])
         for e in range(start, start + transition[number, EDGE_COUNT]):
-            facts = ends[e] >> 2 * PLACE_SHIFT
+            packed = edge[e]
+            facts = packed >> FACTS_SHIFT & FACTS_MASK
             price = timed_cost[ms, facts]
             if price == UNKNOWN:
                 price = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
-            cost = (node[low + (ends[e] & PLACE_MASK)] >> COST_SHIFT) + edge_cost[e] + price - 1
-            u = high + (ends[e] >> PLACE_SHIFT & PLACE_MASK)
-            node[u] = min(node[u], cost << COST_SHIFT | e)
-        cheapest = _NEVER
-        for u in range(high, top):
-            cheapest = min(cheapest, node[u])
+            cost = (node[low + (packed & PLACE_MASK)] >> COST_SHIFT) + (packed >> EDGE_COST_SHIFT) + price - 1
+            way = cost << COST_SHIFT | e
+            best = min(best, way)
+            node[u] = best
+            cheapest = min(cheapest, way)
+            last = packed >> LAST_BIT & 1
+            u += last
+            best = _NEVER if last else best
         cheapest >>= COST_SHIFT
         for u in range(high, top):
             node[u] -= cheapest << COST_SHIFT
@@ -197,10 +221,10 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     return len(pattern), DONE
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
     """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
-    first, node, ends, wide = nodes.row, nodes.node, t.ends, t.wide
+    first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
     limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
     at = first[n, FIRST]
@@ -208,7 +232,7 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
         at += 1
     for r in range(n - 1, -1, -1):
         e = node[at] & EDGE_MASK
-        at = first[r, FIRST] + (ends[e] & PLACE_MASK)
+        at = first[r, FIRST] + (edge[e] & PLACE_MASK)
         path[r] = t.edge_move[e]
         action = wide[path[r], ACTION]
         for p in range(c):
@@ -217,7 +241,7 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
             part[r, p] = action >> PART_SHIFT + 2 * p & 3
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term."""
     moves, wide, terms, timed_key, elapsed = t.move, t.wide, t.terms, t.timed_key, rows.elapsed
@@ -229,46 +253,55 @@ def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
             charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], rules.curves, cost[r])
 
 
-@njit(inline="always")
+@uncounted(inline="always")
 def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
 
     Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
+    Returns what there is no room for, or DONE.
     """
     first, node, chosen, elapsed = nodes.row, nodes.node, nodes.transition, rows.elapsed
-    ends, edge_cost, edge_move, transition = t.ends, t.edge_cost, t.edge_move, t.transition
+    edge, edge_limbs, transition = t.edge, t.edge_limbs, t.transition
     timed_cost, wide, path = t.timed_cost, t.wide, found.move
     margin, ambiguity = found.margin, found.ambiguity
     n = len(path)
-    least = first[n, BASE]
-    widest = 0
+    least, end = first[n, BASE], first[n + 1, FIRST]
+    widest = np.int64(0)
     for r in range(n + 1):
         widest = max(widest, first[r + 1, FIRST] - first[r, FIRST])
-    after, before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)
-    same_after, same_before = np.zeros(widest, dtype=np.int64), np.zeros(widest, dtype=np.int64)  # with the same limbs
+    if end + 4 * widest > len(node):
+        return MORE_NODES
+    after, before = node[end : end + widest], node[end + widest :]
+    same_after, same_before = node[end + 2 * widest :], node[end + 3 * widest :]  # with the same limbs
+    for v in range(widest):
+        after[v] = same_after[v] = 0
     for r in range(n - 1, -1, -1):
         low, base, ms = first[r, FIRST], first[r, BASE], elapsed[r]
         ours, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
         for v in range(first[r + 1, FIRST] - low):
             before[v] = same_before[v] = _NEVER
         start = np.int64(transition[chosen[r], FIRST_EDGE])
+        u = 0
         for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
-            v, u = ends[e] & PLACE_MASK, ends[e] >> PLACE_SHIFT & PLACE_MASK
-            price = np.int64(edge_cost[e]) + timed_cost[ms, ends[e] >> 2 * PLACE_SHIFT] - 1
+            packed = edge[e]
+            v, price = packed & PLACE_MASK, (packed >> EDGE_COST_SHIFT) - 1
+            price += timed_cost[ms, packed >> FACTS_SHIFT & FACTS_MASK]
             rest, same_rest = price + after[u], price + same_after[u]
             before[v] = min(before[v], rest)
-            if wide[edge_move[e], ACTION] & LIMBS == ours:
+            if edge_limbs[e] == ours:
                 same_before[v] = min(same_before[v], same_rest)
             else:
                 reached = base + (node[low + v] >> COST_SHIFT)
                 other, resolved = min(other, reached + rest), min(resolved, reached + same_rest)
+            u += packed >> LAST_BIT & 1
         margin[r] = other - least if other < _NEVER else -1
         ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
         after, before, same_after, same_before = before, after, same_before, same_after
+    return DONE
 
 
 def _compile(stamp: str) -> Any:
-    @njit(cache=True)
+    @uncounted(cache=True)
     def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
         """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
 
@@ -282,7 +315,8 @@ def _compile(stamp: str) -> Any:
         if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
             key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
             t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
-            number_of_layer(np.zeros(1, dtype=np.int64), 1, t)
+            nodes.node[0] = START
+            number_of_layer(nodes.node, 1, t)
             t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
         if start_row == 0:
             if not _number_rows(rows, rules.model > 0, t):
@@ -296,7 +330,7 @@ def _compile(stamp: str) -> Any:
         if wanted == DONE:
             _trace(t, nodes, found)
             if len(found.margin):
-                _margins(rows, t, nodes, found)
+                wanted = _margins(rows, t, nodes, found)
         return row, wanted
 
     return run

@@ -96,7 +96,7 @@ class OneTap:
         new.transition[0] = old.transition[row - 1]
         part = RowArrays(
             a.tick[around], a.steps[around], a.hold_end[around], a.mines[around], a.milliseconds[around],
-            a.forced[around], a.pattern[around].copy(), a.elapsed[around],
+            a.forced[around], a.pattern[around].copy(), a.elapsed[around], a.ends,
         )  # fmt: skip
         part.pattern[1] = pattern
         self._engine.go_on(part, new)
@@ -144,7 +144,7 @@ class OneTap:
             if here < row and move == self._path[here]:
                 break
             path.append(move)
-            at = int(t.ends[edge]) & store.PLACE_MASK
+            at = int(t.edge[edge]) & store.PLACE_MASK
         return Outline(total, last + 1 - len(path), self._engine.events(np.array(path[::-1], dtype=np.int32)))
 
     def _place_after(self, row: int) -> int:

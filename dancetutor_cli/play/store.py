@@ -11,19 +11,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.play.jit import njit
+from dancetutor_cli.play.jit import njit, uncounted
 from dancetutor_cli.play.vocabulary import MOST_MS as MOST_MS
 
 # places in `counts`
 (
-    STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES,
-) = range(10)  # fmt: skip
-NEXT, COST, FACTS = range(3)  # columns of `Tables.move`
+    STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
+) = range(11)  # fmt: skip
+NEXT, COST, FACTS, MOVE_LIMBS = range(4)  # columns of `Tables.move`
 ACTION, EVENTS = range(2)  # columns of `Tables.wide`
 LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
 TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
-PLACE_SHIFT = 18  # in `Tables.ends`: places in the layers before and after, so many bits each, then the facts
-PLACE_MASK = (1 << PLACE_SHIFT) - 1
+MET_IN, MET_PLACE = range(2)  # columns of `Tables.met`
+# in `Tables.edge`, from the lowest bit: place of its state in the layer before; whether it is the last that leads to
+# its state in the layer after; number of its facts; its cost without time
+PLACE_MASK = (1 << 18) - 1
+LAST_BIT, FACTS_SHIFT, EDGE_COST_SHIFT = 18, 19, 35
+FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
 COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
 EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `RowStates.row`
@@ -31,8 +35,9 @@ START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on
 (
     DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
-    MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, UNEXPLORED,
-) = range(14)  # fmt: skip
+    MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, MORE_SCRATCH, UNEXPLORED,
+) = range(15)  # fmt: skip
+UNEXPANDED = -1  # in `Tables.pair`, where no pair stands
 UNKNOWN = 0  # in `Tables.timed_cost`, so that most of it is never touched
 PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
 LIMBS = (1 << PART_SHIFT) - 1
@@ -44,11 +49,12 @@ GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 class Tables(NamedTuple):
     """All states, row patterns and moves met so far with one pad and preset; they outlive a chart.
 
-    counts : int64, how much of each is used
+    counts : int64, how much of each is used; and how many transitions have been tried
     state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
+    met : int32 (, 2), by state, scratch: the last transition, of those tried, that led there; its place among those
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
-    move : int32 (, 3), state it leads to, cost without time, number of its facts about time
+    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, limb codes
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
@@ -57,13 +63,15 @@ class Tables(NamedTuple):
     layer_key : int64, hash of the states; layer_hash : int32
     transition : int32 (, 3), layer it leads to, first edge, number of edges
     transition_key : int64, layer << 32 | pattern; transition_hash : int32
-    ends : int64, places of an edge's states in the layers before and after, and number of its facts; see `PLACE_SHIFT`
-    edge_cost, edge_move : int32, its cost without time, its move
+    edge : int64, from where, facts and cost, see `PLACE_MASK`; edges are in the order of the states that they lead to,
+        those to one state in the order of those they come from; edge_move : int32, its move; edge_limbs : int32, limb
+        codes of its move
     """
 
     counts: NDArray[np.int64]
     state_key: NDArray[np.int64]
     state_hash: NDArray[np.int32]
+    met: NDArray[np.int32]
     pattern: NDArray[np.int64]
     pattern_hash: NDArray[np.int32]
     pair: NDArray[np.int64]
@@ -81,9 +89,9 @@ class Tables(NamedTuple):
     transition: NDArray[np.int32]
     transition_key: NDArray[np.int64]
     transition_hash: NDArray[np.int32]
-    ends: NDArray[np.int64]
-    edge_cost: NDArray[np.int32]
+    edge: NDArray[np.int64]
     edge_move: NDArray[np.int32]
+    edge_limbs: NDArray[np.int32]
 
 
 class RowStates(NamedTuple):
@@ -91,7 +99,7 @@ class RowStates(NamedTuple):
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
     node : int64, how much dearer a node is than the cheapest of its row, and the edge that led there; see `COST_SHIFT`
-    transition : int32 (n,), number of the transition that each row is
+    transition : int32 (n,), number of the transition that each row is, -1 as long as nobody has looked for it
     """
 
     row: NDArray[np.int64]
@@ -105,6 +113,7 @@ class RowArrays(NamedTuple):
     forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column, or of length 0 if there are none
     pattern : int32 (n,), number of the row's pattern
     elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
+    ends : int64 (c,), scratch: when the last hold of each column ends
     """
 
     tick: NDArray[np.int64]
@@ -115,6 +124,7 @@ class RowArrays(NamedTuple):
     forced: NDArray[np.int64]
     pattern: NDArray[np.int32]
     elapsed: NDArray[np.int32]
+    ends: NDArray[np.int64]
 
 
 class Found(NamedTuple):
@@ -132,13 +142,13 @@ class Found(NamedTuple):
     cost: NDArray[np.int32]
 
 
-@njit
+@uncounted
 def slot_of(value, size):  # type: ignore[no-untyped-def]
     """Where the search for a number in a hash table of a power of two starts."""
     return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
 
 
-@njit
+@uncounted
 def find(key, keys, numbers):  # type: ignore[no-untyped-def]
     """Number of a key; if it is not known, ~ the slot for it."""
     at = slot_of(key, len(numbers))
@@ -149,7 +159,7 @@ def find(key, keys, numbers):  # type: ignore[no-untyped-def]
     return ~at
 
 
-@njit
+@uncounted
 def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of a packed state; a new one is entered."""
     at = slot_of(key, len(numbers))
@@ -164,7 +174,7 @@ def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
     return number
 
 
-@njit
+@uncounted
 def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of packed facts about time; new ones are entered. Facts 0 are number 0."""
     if facts == 0:
@@ -181,16 +191,17 @@ def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@njit
+@uncounted
 def _mixed(terms):  # type: ignore[no-untyped-def]
-    """One number from the costs by term."""
-    mixed = np.int64(0)
+    """One number from the costs by term. Products do not wait for each other: this is asked for every move."""
+    mixed, factor = np.int64(0), np.int64(1000003)
     for term in range(len(terms)):
-        mixed = mixed * 1000003 + terms[term]
+        mixed += terms[term] * factor
+        factor += 2097593
     return mixed
 
 
-@njit
+@uncounted
 def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of costs by term (t,); new ones are entered."""
     at = slot_of(_mixed(terms), len(numbers))
@@ -210,7 +221,7 @@ def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@njit
+@uncounted
 def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
     """Number of the layer of the first `count` of some states in order; a new one is entered."""
     layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts

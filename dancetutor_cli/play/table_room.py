@@ -18,13 +18,14 @@ def empty_tables(weights: int) -> Tables:
     edges, facts = 1 << 21, 1 << 9
     whole, small = np.int64, np.int32
     return Tables(
-        counts=np.zeros(10, dtype=whole),
+        counts=np.zeros(11, dtype=whole),
         state_key=np.zeros(states, dtype=whole),
         state_hash=np.full(2 * states, -1, dtype=small),
+        met=np.zeros((states, 2), dtype=small),
         pattern=np.zeros((patterns, 2), dtype=whole),
         pattern_hash=np.full(4 * patterns, -1, dtype=small),
         pair=np.full((pairs, 2), -1, dtype=whole),
-        move=np.zeros((moves, 3), dtype=small),
+        move=np.zeros((moves, 4), dtype=small),
         wide=np.zeros((moves, 2), dtype=whole),
         terms=np.zeros((costs, weights), dtype=small),
         terms_hash=np.full(4 * costs, -1, dtype=small),
@@ -34,13 +35,13 @@ def empty_tables(weights: int) -> Tables:
         layer=np.zeros((layers, 2), dtype=small),
         layer_state=np.zeros(16 * layers, dtype=small),
         layer_key=np.zeros(layers, dtype=whole),
-        layer_hash=np.full(4 * layers, -1, dtype=small),
+        layer_hash=np.full(2 * layers, -1, dtype=small),
         transition=np.zeros((2 * layers, 3), dtype=small),
         transition_key=np.zeros(2 * layers, dtype=whole),
-        transition_hash=np.full(8 * layers, -1, dtype=small),
-        ends=np.zeros(edges, dtype=whole),
-        edge_cost=np.zeros(edges, dtype=small),
+        transition_hash=np.full(4 * layers, -1, dtype=small),
+        edge=np.zeros(edges, dtype=whole),
         edge_move=np.zeros(edges, dtype=small),
+        edge_limbs=np.zeros(edges, dtype=small),
     )
 
 
@@ -49,7 +50,8 @@ def grown(t: Tables, wanted: int, rows: int) -> Tables:
     if wanted == store.MORE_STATES:
         table = np.full(2 * len(t.state_hash), -1, dtype=np.int32)
         store.fill_numbers(t.state_key, t.counts[store.STATES], table)
-        return t._replace(state_key=_longer(t.state_key), state_hash=table)
+        met = np.zeros((2 * len(t.met), 2), dtype=np.int32)
+        return t._replace(state_key=_longer(t.state_key), state_hash=table, met=met)
     if wanted == store.MORE_PATTERNS:
         least = 1 << int(len(t.pattern) + rows).bit_length()
         table = np.full(4 * least, -1, dtype=np.int32)
@@ -85,7 +87,7 @@ def grown(t: Tables, wanted: int, rows: int) -> Tables:
     if wanted == store.MORE_LAYER_STATES:
         return t._replace(layer_state=_longer(t.layer_state))
     if wanted == store.MORE_EDGES:
-        return t._replace(ends=_longer(t.ends), edge_cost=_longer(t.edge_cost), edge_move=_longer(t.edge_move))
+        return t._replace(edge=_longer(t.edge), edge_move=_longer(t.edge_move), edge_limbs=_longer(t.edge_limbs))
     return t._replace(move=_longer(t.move), wide=_longer(t.wide))
 
 

@@ -40,7 +40,7 @@ class Geometry(NamedTuple):
     distance : int64 (p, p), between the middles of places, 1/20 panel widths
     place : int64 (c, c), place of a foot on two panels, -1 if they are no neighbours; of one panel on the diagonal
     panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
-    mask : int64 (p,), the panels of a place as bits
+    mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these and their neighbours
     arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
     """
 
@@ -51,6 +51,7 @@ class Geometry(NamedTuple):
     place: NDArray[np.int64]
     panels: NDArray[np.int64]
     mask: NDArray[np.int64]
+    near: NDArray[np.int64]
     arrow: NDArray[np.int64]
 
 
@@ -73,12 +74,14 @@ class Moves(NamedTuple):
     """Every way to play one row from one state: room for `MOST_MOVES`.
 
     wide : int64 (, 5), see above; terms : int32 (, w), what each weight adds, not counting time
-    scratch : int64 (8, 32)
+    scratch : int64 (8, 32); packed : int64, by state of a layer; reached : int64, by move of a layer, both scratch
     """
 
     wide: NDArray[np.int64]
     terms: NDArray[np.int32]
     scratch: NDArray[np.int64]
+    packed: NDArray[np.int64]
+    reached: NDArray[np.int64]
 
 
 def geometry(pad: Pad) -> Geometry:
@@ -106,9 +109,12 @@ def geometry(pad: Pad) -> Geometry:
         place[a, b] = place[b, a] = c + 1 + number
         for foot in range(2):
             panels[c + 1 + number, foot] = heel_and_toe(pad, a, b, foot)
-    mask = np.where(panels >= 0, np.int64(1) << panels.clip(min=0), np.int64(0)).astype(np.int64)
+    bits = np.where(panels >= 0, np.int64(1) << panels.clip(min=0), np.int64(0)).astype(np.int64)
+    mask = bits[:, 0, 0] | bits[:, 0, 1]
+    around = np.where(place >= 0, np.int64(1) << np.arange(c), np.int64(0))
+    near = np.array([np.bitwise_or.reduce(around[(m >> np.arange(c) & 1).astype(bool)].ravel()) for m in mask.tolist()])
     return Geometry(
-        left, right, angle, distance, place, panels, mask[:, 0, 0] | mask[:, 0, 1],
+        left, right, angle, distance, place, panels, mask, near.astype(np.int64),
         np.array([_arrow(*way) for way in pad.arrows]),
     )  # fmt: skip
 
@@ -129,10 +135,12 @@ def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
     return (a, b) if (ax > bx) == (foot == 0) else (b, a)
 
 
-def moves(weights: int) -> Moves:
-    """Empty room for the ways to play one row."""
+def moves(weights: int, width: int = 1 << 10) -> Moves:
+    """Empty room for the ways to play one row, and for a layer of so many states."""
     return Moves(
         np.zeros((MOST_MOVES, 5), dtype=np.int64),
         np.zeros((MOST_MOVES, weights), dtype=np.int32),
         np.zeros((8, 32), dtype=np.int64),
+        np.empty(width, dtype=np.int64),
+        np.empty(16 * width, dtype=np.int64),
     )

@@ -13,8 +13,9 @@ from play_rows import first, letters, pad_of, rows_of
 from dancetutor_cli import play
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import Ambiguity, Preset, Rows
-from dancetutor_cli.play.engine import Engine, engine_for
-from dancetutor_cli.play.store import ACTION, COST, FACTS, LIMBS, NEXT
+from dancetutor_cli.play.engine import Engine, _arrays, _nodes, engine_for
+from dancetutor_cli.play.store import ACTION, COST, FACTS, FIRST, LIMBS, NEXT
+from dancetutor_cli.play.tables import moves
 
 PRESETS = {name: play.load_preset(name) for name in play.preset_names()}
 Ways = dict[tuple[int, ...], int]
@@ -141,6 +142,21 @@ def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Row
         assert (used.cheapest(rows).limb == fresh.cheapest(rows).limb).all()
         assert used.tables.state_key[:40].tolist() != fresh.tables.state_key[:40].tolist()
         assert (used.cheapest(first(rows, 99)).limb == Engine(pad, preset).cheapest(first(rows, 99)).limb).all()
+
+
+def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:
+    """A kernel that has no room left, for nodes or for a layer, goes on where it was when it gets more."""
+    for steps_type, rows in corpus_rows[:6]:
+        pad, preset = pad_of(steps_type), PRESETS["itg"]
+        usual, little = Engine(pad, preset), Engine(pad, preset)
+        expected = usual.cheapest(rows, None, margins=True)
+        little._moves = moves(len(preset.weights), 1)
+        used = int(usual.solved(rows)[1].row[len(rows) + 1, FIRST])
+        for room in (1, used, used + 1):
+            found = little._found(*rows.steps.shape, margins=True)
+            little._until_done(0, _arrays(rows, None), _nodes(len(rows), np.empty(room, dtype=np.int64)), found)
+            for field in ("limb", "part", "margin", "ambiguity"):
+                assert np.array_equal(getattr(found, field), getattr(expected, field)), (steps_type, room, field)
 
 
 @pytest.fixture(scope="module")
