@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from functools import lru_cache
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 
 _NUMBER = re.compile(r"\s*([+-]?)(?:(\d+)(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?\d+))?(.*)", re.DOTALL | re.ASCII)
 _LARGEST = 35 * 10**37  # beyond it the games' floats are infinite, which they read as 0
+_SHORT = 40  # characters of a text that is worth to be kept
 _DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
 
 
 def number(text: str) -> tuple[Fraction, bool]:
     """The decimal at the start of a text, and whether the text is nothing else. Junk and the not finite are 0."""
+    return _known(text) if len(text) < _SHORT else _number(text)
+
+
+def _number(text: str) -> tuple[Fraction, bool]:
     match = _NUMBER.match(text)
     if match is None:
         return Fraction(0), False
@@ -36,6 +42,9 @@ def number(text: str) -> tuple[Fraction, bool]:
     if len(whole) + power > 30 and abs(value) > _LARGEST:
         return Fraction(0), False
     return value, clean
+
+
+_known = lru_cache(maxsize=8192)(_number)  # charts of a song mostly say the same again
 
 
 def beat(text: str) -> tuple[Fraction, bool]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-_TOKEN = re.compile(rb"//[^\n]*|\\.?|#+|[:;]", re.DOTALL)
+# Each branch begins with a letter of its own, so that the search for the next one skips the rest quickly.
+_TOKEN = re.compile(rb"//[^\n]*|\\.?|##*|:|;", re.DOTALL)
 _MOST_VALUES = 4096  # of one tag; games read the first few; of more only the last is kept
 _COMMENT_OR_ESCAPE = re.compile(rb"//[^\n]*|\\(.?)", re.DOTALL)
 

@@ -7,14 +7,16 @@ import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
+from typing import NamedTuple
 
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.chart import decoding as text
 from dancetutor_cli.chart import msd, names, timing_tags
 from dancetutor_cli.chart.decimals import number
+from dancetutor_cli.chart.grid import LineIndex
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
-from dancetutor_cli.chart.note_data import LineIndex, NoteForm, read_notes, width_of_first_row
+from dancetutor_cli.chart.note_data import NoteForm, Value, read_notes, width_of_first_row
 from dancetutor_cli.chart.players import with_players
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, FileError, NoChartsError
@@ -83,6 +85,18 @@ def _wide_encoding(data: bytes) -> str | None:
     return "UTF-16 without a byte order mark" if _NUL_TEXT.match(data) else None
 
 
+class _Head(NamedTuple):
+    """What stands before the note data of a chart; see `Chart`."""
+
+    steps_type: str
+    difficulty: str
+    meter: int
+    description: str
+    line: int
+    tags: dict[str, str]
+    warnings: list[ReadWarning]
+
+
 class _Reader:
     """What both formats share: values, the song's tags, making a chart."""
 
@@ -94,6 +108,8 @@ class _Reader:
         self.encoding = text.encoding_of(data)
         self.warnings: list[ReadWarning] = []
         self.charts: list[Chart] = []
+        self._heads: list[_Head] = []
+        self._values: list[Value] = []
 
     def song(self) -> Song:
         raise NotImplementedError
@@ -113,6 +129,11 @@ class _Reader:
         if index >= len(tag.spans):
             return ""
         a, b = tag.spans[index]
+        value = self.data[a:b]
+        if value.isascii() and b"//" not in value and b"\\" not in value:  # most are, and the same in each encoding
+            plain = value.decode("ascii")
+            if plain.isprintable():
+                return plain.strip()
         return text.decode(msd.plain(self.data[a:b]), self.encoding).strip()
 
     def values(self, tags: Iterable[Tag]) -> dict[str, str]:
@@ -132,7 +153,7 @@ class _Reader:
     def chart(
         self, tags: dict[str, str], notes: tuple[int, int], timing: Timing, line: int, warnings: list[ReadWarning]
     ) -> None:
-        """Read one chart. tags : its values by name; notes : span of its note data; line : where it starts"""
+        """Take down one chart. tags : its values by name; notes : span of its note data; line : where it starts"""
         kind = names.steps_type(tags.get("STEPSTYPE", ""))
         columns = names.COLUMNS.get(kind)
         if columns is None:
@@ -150,15 +171,23 @@ class _Reader:
             message = f"difficulty '{text.shown(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
         form = NoteForm(columns, names.is_routine(kind), trimmed=self.format == "sm")
-        read = read_notes(self.data, notes, form, timing, self.lines)
-        chart = Chart(
-            index=len(self.charts), steps_type=text.one_line(kind), difficulty=difficulty, meter=meter,
-            description=description, columns=columns, notes=read.notes, rows=read.rows, measures=read.measures,
-            timing=timing, notes_span=notes, line=line, tags=tags, warnings=(*warnings, *read.warnings),
-        )  # fmt: skip
-        self.charts.append(with_players(chart, read, self.data))
+        self._values.append(Value(notes, form, timing))
+        self._heads.append(_Head(text.one_line(kind), difficulty, meter, description, line, tags, warnings))
+
+    def _read_charts(self) -> None:
+        """Read the note data of all charts."""
+        read_data = read_notes(self.data, self._values, self.lines)
+        for index, (read, head, value) in enumerate(zip(read_data, self._heads, self._values, strict=True)):
+            chart = Chart(
+                index=index, steps_type=head.steps_type, difficulty=head.difficulty, meter=head.meter,
+                description=head.description, columns=value.form.columns, notes=read.notes, rows=read.rows,
+                measures=read.measures, timing=value.timing, notes_span=value.span, line=head.line, tags=head.tags,
+                warnings=(*head.warnings, *read.warnings),
+            )  # fmt: skip
+            self.charts.append(with_players(chart, read, self.data))
 
     def finished(self, song_tags: list[Tag], timing: Timing) -> Song:
+        self._read_charts()
         values = self.values(song_tags)
         self._oddities(song_tags, values)
         title, subtitle, artist, music = (
@@ -257,7 +286,9 @@ class _Ssc(_Reader):
         if "BPMS" not in own:
             message = f"{', '.join(sorted(own))} gives the chart timing of its own, without BPMS: it plays at 60 BPM"
             warnings.append(ReadWarning("split-timing-without-bpms", message, line))
-        return timing_tags.read(own, source, song.offset, warnings, line)
+        timing = timing_tags.read(own, source, song.offset, warnings, line)
+        before = self._values[-1].timing if self._values else song
+        return next((known for known in (song, before) if known == timing), timing)  # so that charts share its work
 
     def _version(self, song_tags: list[Tag]) -> Fraction:
         version = [self.text(tag) for tag in song_tags if tag.name == "VERSION"]

@@ -39,7 +39,7 @@ class Timing:
     offset: Fraction = Fraction(0)
 
     def __post_init__(self) -> None:
-        if not self.bpms or any(value <= 0 for _, value in self.bpms):
+        if not self.bpms or any(value.numerator <= 0 for _, value in self.bpms):
             raise ValueError("BPMs must be there and positive")
 
     def seconds(self, ticks: NDArray[np.int64]) -> NDArray[np.float64]:

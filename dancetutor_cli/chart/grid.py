@@ -1,0 +1,271 @@
+"""The measures and rows of note data, and what stands in their cells: of all charts of a file at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart import stepf2
+from dancetutor_cli.chart.holds import OTHERS_HEAD, TAIL, Cells, report
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, ReadWarning, RowTable
+
+_LF, _CR, _COMMA, _BRACKET = 10, 13, 44, 91
+BLANKS = b"\r\n\t "
+_UNKNOWN = 101
+_TOO_SHORT = "the row has fewer than {} columns; missing ones are read as empty"
+_TOO_LONG = "the row is longer than {} columns; the rest is ignored"
+_BLANK, _CUT = np.zeros(256, dtype=bool), np.zeros(256, dtype=bool)
+_BLANK[list(BLANKS)] = _CUT[[_LF, _COMMA]] = True
+_KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
+_KIND[list(b"01234MLFK")] = (
+    Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
+)  # fmt: skip
+# As what the letters of several players are read: in most charts as nobody's notes, in one for them as theirs.
+_NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
+_NOBODYS[stepf2.FAKE_HEAD] = OTHERS_HEAD
+OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
+
+
+class LineIndex:
+    """Byte offset -> 1-based line of a file."""
+
+    def __init__(self, data: bytes) -> None:
+        self._breaks = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == _LF)
+
+    def __call__(self, offset: int) -> int:
+        return int(self._breaks.searchsorted(offset)) + 1
+
+    def many(self, offsets: NDArray[np.int64]) -> NDArray[np.int32]:
+        """The lines of some offsets."""
+        return (self._breaks.searchsorted(offsets) + 1).astype(np.int32)
+
+
+@dataclass(slots=True)
+class NotePart:
+    """The note data of a chart, or of one of its players, in the text of the file.
+
+    start, end : span; begin : offset before which a `,` ends no measure; letters : what those of players are read as
+    marks : (tick, column) -> player whose letter stands there, filled in as rows are read; warnings : likewise
+    """
+
+    start: int
+    end: int
+    begin: int
+    columns: int
+    letters: Mapping[int, int] = field(default_factory=lambda: _NOBODYS)
+    marks: dict[tuple[int, int], int] = field(default_factory=dict)
+    warnings: list[ReadWarning] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class NoteText:
+    """The bytes of a file without its comments and its escaping backslashes, which stood at `escapes`."""
+
+    value: bytes
+    escapes: frozenset[int]
+    lines: LineIndex
+
+
+class Grid:
+    """Measures and rows of some parts, in file order; `first` and `last` are the spans of the trimmed rows."""
+
+    def __init__(self, text: NoteText, parts: Sequence[NotePart]) -> None:
+        self._text, self._parts = text, parts
+        self._escapes = np.array(sorted(text.escapes), dtype=np.int64)
+        self._view = view = np.frombuffer(text.value, dtype=np.uint8)
+        cuts = np.flatnonzero(_CUT[view])
+        spans = [(part.start, part.end) for part in parts]
+        of_row, opens, closes = _pieces(cuts, spans)
+        self.first, self.last, self._of_row = _trimmed(view, opens, closes, of_row)
+        of_measure, opens, closes = _pieces(cuts[view[cuts] == _COMMA], spans)
+        real = closes > opens  # zero bytes between two commas are no measure
+        first = of_measure.searchsorted(np.arange(len(parts)))
+        real[first] &= closes[first] > [part.begin for part in parts]
+        self._anchor, of_measure = opens[real], of_measure[real]
+        self._row_first = self.first.searchsorted(self._anchor)
+        self._row_count = self.first.searchsorted(closes[real]) - self._row_first
+        self._measures = of_measure.searchsorted(np.arange(len(parts) + 1)).tolist()
+        self._rows = self._of_row.searchsorted(np.arange(len(parts) + 1)).tolist()
+        number = np.arange(len(self._anchor)) - np.array(self._measures)[of_measure]
+        measure = np.arange(len(self._anchor)).repeat(self._row_count)
+        count = self._row_count[measure]
+        scaled = TICKS_PER_MEASURE * (np.arange(len(self.first)) - self._row_first[measure])
+        whole, rest = np.divmod(scaled, np.maximum(count, 1))
+        up = (2 * rest > count) | ((2 * rest == count) & (whole % 2 == 1))  # halves to even
+        self._measure = number[measure].astype(np.int32)
+        self._tick = (number[measure] * TICKS_PER_MEASURE + whole + up).astype(np.int64)
+        self._line = text.lines.many(self.first)
+        self._opened = text.lines.many(self._anchor - 1)
+
+    def row_table(self, part: int) -> RowTable:
+        """The rows of a part."""
+        here = slice(self._rows[part], self._rows[part + 1])
+        return RowTable(
+            self.first[here], self.last[here], self._line[here], self._tick[here], self._measure[here],
+        )  # fmt: skip
+
+    def measure_table(self, part: int) -> MeasureTable:
+        """The measures of a part."""
+        here = slice(self._measures[part], self._measures[part + 1])
+        first = (self._row_first[here] - self._rows[part]).astype(np.int32)
+        return MeasureTable(self._anchor[here], self._opened[here], first, self._row_count[here].astype(np.int32))
+
+    def cells(self) -> Cells:
+        """The non-empty cells of all parts; those of a part in file order."""
+        columns = np.array([part.columns for part in self._parts])
+        irregular = self._of_row[self.last - self.first != columns[self._of_row]]
+        escaped = (number for number, part in enumerate(self._parts) if len(self._escapes_in(part)))
+        alone = {*np.unique(irregular).tolist(), *escaped}
+        found = []
+        for width in sorted({*columns.tolist()}):
+            mine = columns == width
+            mine[[*alone]] = False
+            rows = np.flatnonzero(mine[self._of_row])
+            kinds = _KIND[self._view[self.first[rows, None] + np.arange(width)]]
+            if (unknown := kinds == _UNKNOWN).any():
+                others = {*self._of_row[rows[unknown.any(axis=1)]].tolist()}
+                alone |= others
+                known = ~np.isin(self._of_row[rows], [*others])
+                rows, kinds = rows[known], kinds[known]
+            found.append(self._found(rows, kinds))
+        for part in sorted(alone):
+            rows = np.arange(self._rows[part], self._rows[part + 1])
+            found.append(self._found(rows, self._odd_kinds(part)))
+        return found[0] if len(found) == 1 else Cells.joined(found)
+
+    def _found(self, rows: NDArray[np.int64], kinds: NDArray[np.uint8]) -> Cells:
+        """The cells of some rows that hold something."""
+        cell = np.flatnonzero(kinds)
+        row, column = np.divmod(cell, max(kinds.shape[1], 1))
+        row = rows[row]
+        end = np.full(len(cell), -1, dtype=np.int64)
+        return Cells(self._of_row[row], self._tick[row], column, kinds.ravel()[cell], self._line[row], end)
+
+    def _escapes_in(self, part: NotePart) -> NDArray[np.int64]:
+        """Where in a part a backslash stood."""
+        first, after = self._escapes.searchsorted((part.start, part.end)).tolist()
+        return self._escapes[first:after]
+
+    def _odd_kinds(self, number: int) -> NDArray[np.uint8]:
+        """The kinds of a part in which some row is odd: those go character by character, as the games go."""
+        part, value, view = self._parts[number], self._text.value, self._view
+        here = slice(self._rows[number], self._rows[number + 1])
+        first, last, line, tick = self.first[here], self.last[here], self._line[here], self._tick[here]
+        columns, escapes = part.columns, self._escapes_in(part)
+        width = last - first
+        short, long = width < columns, width > columns
+        index = np.minimum(first[:, None] + np.arange(columns), len(view) - 1)
+        kinds = _KIND[view[index]] if len(first) else np.zeros((0, columns), np.uint8)
+        kinds[np.arange(columns) >= width[:, None]] = Kind.EMPTY
+        odd = (kinds == _UNKNOWN).any(axis=1)
+        odd[long] |= view[first[long] + columns] == _BRACKET
+        odd |= np.isin(np.arange(len(odd)), first.searchsorted(escapes, side="right") - 1)
+        findings: dict[tuple[str, str], list[int]] = {}
+        foreign: dict[str, list[int]] = {}
+        for row in np.flatnonzero(odd).tolist():
+            raw = value[first[row] : last[row]]
+            if len(escapes):
+                raw = bytes(c for at, c in enumerate(raw, int(first[row])) if at not in self._text.escapes)
+            kinds[row], found, others = odd_row(raw, columns, part.letters)
+            for column, (letter, _) in others.items():
+                part.marks[int(tick[row]), column] = stepf2.player_of(letter)
+            for what in {what for _, what in others.values()}:
+                foreign.setdefault(what, []).append(int(line[row]))
+            for finding in found:
+                findings.setdefault(finding, []).append(int(line[row]))
+        if part.letters is OF_PLAYERS:
+            foreign.pop("X", None)
+        for what, found_at in foreign.items():
+            message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
+            part.warnings.append(ReadWarning("stepf2-note", message, found_at[0]))
+        for (code, text), found_at in findings.items():
+            report(part.warnings, code, text, np.array(found_at))
+        for which, code, text in (
+            (short & ~odd, "short-row", _TOO_SHORT.format(columns)),
+            (long & ~odd, "long-row", _TOO_LONG.format(columns)),
+        ):
+            report(part.warnings, code, text, line[which].astype(np.int64))
+        return kinds
+
+
+def _pieces(
+    cuts: NDArray[np.int64], spans: Sequence[tuple[int, int]]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Into what cuts part some spans: number of the span, start and end of every piece."""
+    bounds = cuts.searchsorted(spans).tolist()
+    counts = [after - first + 1 for first, after in bounds]
+    opens, closes = np.empty(sum(counts), dtype=np.int64), np.empty(sum(counts), dtype=np.int64)
+    at = 0
+    for (start, end), (first, after), count in zip(spans, bounds, counts, strict=True):
+        opens[at], opens[at + 1 : at + count] = start, cuts[first:after] + 1
+        closes[at : at + count - 1], closes[at + count - 1] = cuts[first:after], end
+        at += count
+    return np.arange(len(spans)).repeat(counts), opens, closes
+
+
+def _trimmed(
+    view: NDArray[np.uint8], first: NDArray[np.int64], last: NDArray[np.int64], of: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Start and end without blanks, and the part, of the rows: of pieces that are not blank."""
+    full = last > first
+    first, last, of = first[full], last[full], of[full]
+    last -= view[last - 1] == _CR
+    full = last > first
+    if not full.all():
+        first, last, of = first[full], last[full], of[full]
+    ragged = np.flatnonzero(_BLANK[view[first]] | _BLANK[view[last - 1]])
+    if len(ragged):
+        inked = np.flatnonzero(~_BLANK[view])
+        start, end = inked.searchsorted((first[ragged], last[ragged]))
+        there = end > start
+        first[ragged[there]], last[ragged[there]] = inked[start[there]], inked[end[there] - 1] + 1
+        full = np.ones(len(first), dtype=bool)
+        full[ragged[~there]] = False
+        first, last, of = first[full], last[full], of[full]
+    return first, last, of
+
+
+def odd_row(
+    text: bytes, columns: int, letters: Mapping[int, int]
+) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
+    """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
+
+    And by column what is StepF2's: the letter, and which of `stepf2.SAID` it is.
+    """
+    cells: list[int] = []
+    found: dict[tuple[str, str], None] = {}
+    others: dict[int, tuple[int, str]] = {}
+    at = 0
+    while at < len(text) and len(cells) < columns:
+        if foreign := stepf2.note_at(text, at, columns):
+            letter, at, what = foreign
+            others[len(cells)] = letter, what
+            cells.append(letters.get(letter, int(_KIND[letter])))
+        else:
+            kind = int(_KIND[text[at]])
+            if kind == _UNKNOWN:
+                found[_unknown(text, at)] = None
+                kind = Kind.EMPTY
+            cells.append(kind)
+            at += 1
+        if text[at : at + 1] == b"[":
+            close = text.find(b"]", at)
+            number = text[at + 1 : close if close >= 0 else len(text)].strip()
+            if close < 0 or not number.isdigit() or len(number) > 9:
+                found["odd-keysound", "a keysound that is not a small number in [...] is ignored"] = None
+            at = close + 1 if close >= 0 else len(text)
+    if at < len(text):
+        found["long-row", _TOO_LONG.format(columns)] = None
+    if len(cells) < columns:
+        found["short-row", _TOO_SHORT.format(columns)] = None
+    return cells + [Kind.EMPTY] * (columns - len(cells)), list(found), others
+
+
+def _unknown(text: bytes, at: int) -> tuple[str, str]:
+    if b"{" in text[: at + 1]:
+        return "compound-note", "notes in {...} are not supported; the row is read letter by letter"
+    shown = f"'{chr(text[at])}'" if 32 < text[at] < 127 else f"byte {text[at]:#04x}"
+    return "unknown-note", f"{shown} is no note; the column is read as empty"
