@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
 from dancetutor_cli.video.scene.cpu.floor import Live, Shadow, blur, draw_ground, occupied
+from dancetutor_cli.video.scene.cpu.fragments import PER_METRE, Light, Surface, toon_numbers
 from dancetutor_cli.video.scene.cpu.raster import (
     BACK,
     FRONT,
@@ -25,16 +26,7 @@ from dancetutor_cli.video.scene.cpu.raster import (
     project_light,
     skin,
 )
-from dancetutor_cli.video.scene.cpu.shade import (
-    PER_METRE,
-    Drawn,
-    Light,
-    Room,
-    Surface,
-    light_vertices,
-    resolve,
-    toon_numbers,
-)
+from dancetutor_cli.video.scene.cpu.shade import Drawn, empty_room, light_vertices, resolve
 from dancetutor_cli.video.scene.cpu.standing import Background, draw_background
 from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.prepare import (
@@ -77,7 +69,7 @@ class CpuRenderer:
         shape = (height * self._samples, width * self._samples)
         self._canvas = empty_canvas(*shape)
         self._shadow = np.zeros((max(self._map, 1),) * 2, np.float32)
-        self._room = Room(np.empty(self._samples**2, np.int64), np.empty(self._samples**2))
+        self._room = empty_room(self._samples)
         self._mask, self._spare = np.zeros_like(self._shadow), np.zeros_like(self._shadow)
         self._out = np.empty((height, width, 3), np.uint8)
         self._background: tuple[Camera, Background] | None = None
