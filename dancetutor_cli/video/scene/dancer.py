@@ -17,7 +17,7 @@ from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.picture import FootFromAbove, Frame
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import WHOLE, Region, with_pan_range
-from dancetutor_cli.video.scene.follow import Follow, is_wide
+from dancetutor_cli.video.scene.follow import Follow, farther, is_wide
 from dancetutor_cli.video.scene.look import default_look
 from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
@@ -105,7 +105,12 @@ class Dancer:
             return {}
         if region == WHOLE and is_wide(self.scene) and not self.partners:
             region = look.follow.region
-        found = {r: Follow(self.scene, camera, size, m.times, self._roots(r), region) for r, m in self.motions.items()}
+        usual = look.cameras[camera].region if region == WHOLE else region
+        for back in (*np.arange(1.0, look.follow.back - 0.01, 0.04), look.follow.back):
+            box = farther(usual, float(back)) if back > 1 else region
+            found = {r: Follow(self.scene, camera, size, m.times, self._roots(r), box) for r, m in self.motions.items()}
+            if max(follow.cut for follow in found.values()) * size[0] < 1:
+                break
         low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
         for follow in found.values():  # what stands is drawn once for all of them
             follow.camera = with_pan_range(follow.camera, min(low), max(high))

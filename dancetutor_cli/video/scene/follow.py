@@ -35,6 +35,7 @@ class Follow:
     scene : with its pad; name : a preset camera; size : (width, height) of the picture; region : the part she fills
     seconds : float64 (f,), increasing; roots : float64 (f, 3), where the dancer's root is then, metres
         or (2, f, 3) of two who dance: then the camera goes with neither, it only shows both as they walk on and off
+    cut : after that, how much of the pad is outside of the picture at the worst moment, picture widths
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Follow:
         aside = max(_ASIDE, 1.1 * float(np.abs(rest_vertices(scene.character)[:, 2]).max()))  # seen from her side
         seen = np.array([_seen_at(scene, camera, size, one) + pans for one in across])
         pans = pans + _into_the_picture(seen, camera, size, aside)
+        self.cut = _pad_cut(scene, camera, size, pans)
         self._pans = pans
         self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
 
@@ -107,6 +109,21 @@ def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside:
     from_left = np.maximum(half - seen.min(axis=0), 0.0)
     from_right = np.maximum(seen.max(axis=0) - (1.0 - half), 0.0)
     return _early(from_left) - _early(from_right)
+
+
+def _pad_cut(scene: Scene, camera: Camera, size: tuple[int, int], pans: Array) -> float:
+    """How much of the pad is beside the picture at the worst moment, picture widths."""
+    low, high = scene.extent
+    corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    edges = camera.project(corners, size)[:, 0] / size[0]
+    return max(0.0, -float(edges.min() + pans.min()), float(edges.max() + pans.max()) - 1.0)
+
+
+def farther(region: Region, back: float) -> Region:
+    """The part of the picture that is filled from `back` times as far away, at the same lower edge."""
+    left, top, right, bottom = region
+    middle, half = (left + right) / 2, (right - left) / 2 / back
+    return middle - half, bottom - (bottom - top) / back, middle + half, bottom
 
 
 def _early(pans: Array) -> Array:

@@ -32,12 +32,14 @@ class FollowLook:
     """How the camera goes with her across a wide pad.
 
     seconds : how slowly; along : how much of the camera's sideways must be the pad's, 0..1; region : left, top, right,
-    bottom of the part of the picture that she fills
+    bottom of the part of the picture that she fills; back : how many times as far away it may stand to show the pad
+    and who walks on or off it whole
     """
 
     seconds: float
     along: float
     region: Box
+    back: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,8 @@ def read_look(path: Path) -> Look:
         if not value > 0:
             raise FileError(path, f"{name}: {value:g} must be more than 0")
     _check_region(path, "follow.region", look.follow.region)
+    if not 1 <= look.follow.back <= 2:
+        raise FileError(path, f"follow.back: {look.follow.back:g} must be 1 to 2")
     if not 0 <= look.toon.limbs <= 1:
         raise FileError(path, f"toon.limbs: {look.toon.limbs:g} must be 0 to 1")
     if not 20 <= look.light.elevation <= 89:

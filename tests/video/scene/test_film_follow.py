@@ -33,12 +33,15 @@ ASKED = [
 ]
 
 
-def dancer(pad_name: str, camera: str, stands: bool = False, size: tuple[int, int] = (96, 96)) -> Dancer:
-    """She stands 0.5 m to +x for ten seconds, then 0.5 m to -x."""
+def dancer(
+    pad_name: str, camera: str, stands: bool = False, size: tuple[int, int] = (96, 96), first: float = 0.5
+) -> Dancer:
+    """She is 0.5 m to +x for ten seconds, where she walks to from `first` in two, then 0.5 m to -x."""
     skeleton, times = dancer_skeleton(), np.arange(0.0, 20.0, 0.1)
     rotations = np.zeros((len(times), len(skeleton.names), 4))
     rotations[..., 0] = 1.0
-    root = np.column_stack([np.where(times < 10, 0.5, -0.5), np.full_like(times, 0.9), np.zeros_like(times)])
+    across = np.where(times < 10, np.maximum(0.5, np.interp(times, [0, 2], [first, 0.5])), -0.5)
+    root = np.column_stack([across, np.full_like(times, 0.9), np.zeros_like(times)])
     pad = load_pad(pad_name)
     assert pad is not None
     lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
@@ -82,6 +85,25 @@ def test_the_pad_of_a_double_is_never_cut(pad_name: str, camera: str) -> None:
         assert seen.min() >= -1
         assert seen.max() <= size[0] + 1
     assert who.view(Moment(2.0)).pan != who.view(Moment(18.0)).pan
+
+
+@pytest.mark.parametrize(
+    ("pad_name", "size", "first"), [("dance-double", (666, 672), 1.35), ("dance-single", (461, 672), 0.95)]
+)
+def test_pad_and_who_walks_on_are_seen_whole(pad_name: str, size: tuple[int, int], first: float) -> None:
+    """The camera stands as much farther away as it must, and no more than it may."""
+    who, near = dancer(pad_name, "back", size=size, first=first), dancer(pad_name, "back", size=size, first=0.0)
+    low, high = who.scene.extent
+    pad = np.array([(x, y, z) for x in (low[0], high[0]) for y in (high[1], 0) for z in (low[2], high[2])])
+    for second in np.arange(0.0, 9.0, 0.1):
+        view = who.view(Moment(float(second)))
+        root = who.joints([Moment(float(second))])[0, 0, :3, 3]
+        hands = root + [[0.4, 0, 0], [-0.4, 0, 0]]
+        seen = view.project(np.vstack([pad, hands]), size)[:, 0]
+        assert seen.min() >= -1
+        assert seen.max() <= size[0] + 1
+    away = [float(np.linalg.norm(np.array(one.view(Moment(5.0)).position))) for one in (near, who)]
+    assert 1.02 < away[1] / away[0] < 1.2
 
 
 def test_the_followed_frame_is_the_same_whoever_draws_it(tmp_path: Path) -> None:
