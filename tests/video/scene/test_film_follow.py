@@ -98,7 +98,7 @@ def test_pad_and_who_walks_on_are_seen_whole(pad_name: str, size: tuple[int, int
     for second in np.arange(0.0, 9.0, 0.1):
         view = who.view(Moment(float(second)))
         root = who.joints([Moment(float(second))])[0, 0, :3, 3]
-        hands = root + [[0.4, 0, 0], [-0.4, 0, 0]]
+        hands = root + np.array([[0.4, 0, 0], [-0.4, 0, 0]])
         seen = view.project(np.vstack([pad, hands]), size)[:, 0]
         assert seen.min() >= -1
         assert seen.max() <= size[0] + 1
