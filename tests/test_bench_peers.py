@@ -25,11 +25,11 @@ def test_ratios_and_failures(tmp_path: Path) -> None:
         (tmp_path / name).touch()
     ours, twice = command(SPIN.format(0.1)), command(SPIN.format(0.15), "{file}")
     run = told(tmp_path, "--runs", "2", "--ours", ours, "--peer", f"each={twice}", "--peer", "none=/not/there {folder}",
-               "--peer", f"dies={command('raise SystemExit(9)')}")  # fmt: skip
+               "--peer", f"dies={command('import nothing_of_this_name')}")  # fmt: skip
     assert run.returncode == 0, run.stderr
     ratio = re.search(r"\| each \| ([0-9.]+) \|", run.stdout)
     assert ratio and 1.5 < float(ratio[1]) < 6.0  # 0.3 s and two starts of Python against 0.1 s and one
-    assert "| none | left out: /not/there: " in run.stdout and "ended with status 9" in run.stdout
+    assert "| none | left out: /not/there: " in run.stdout and "ended with status 1" in run.stdout
 
 
 def test_a_program_leaves_nothing_where_it_is_asked_for(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@ A COMMAND has {folder}, or with --each-file {file}; what it writes is thrown awa
 
 Wall time of another hour or machine says nothing, so every number is a ratio to ours: the least processor time of some
 runs, and the least wall time. Programs run in a folder of their own that is thrown away, for some leave logs where they
-run, and with nothing to read from a terminal. One that fails, or takes longer than --limit, is told of and left out.
+run, and with nothing to read from a terminal. One that does not end with status 0, or not within --limit, is told of
+and left out.
 """
 
 from __future__ import annotations
@@ -34,17 +35,25 @@ OURS = {"{folder}": "analyze {folder} --format csv --no-cache --exit-zero --jobs
 OURS["{file}"] = OURS["{folder}"].replace("{folder}", "{file}")
 SUFFIXES = (".sm", ".ssc")
 Row = tuple[str, float, str, str, str]
-WELL = (0, 1, 2)  # 1: there are findings; 2: a file that nobody can read
+WELL = (
+    0,
+    1,
+    2,
+)  # of ours; 1: there are findings, 2: a file that nobody can read. Of a peer 1 may be a traceback: 0 alone
 VARIABLE = "BENCH_PEERS"  # for tools/bench.py: a NAME="COMMAND" a line
 LIMIT = 600.0  # seconds that one command of a program may take
 
 
 @dataclass
 class Program:
-    """A program and its times in seconds, one a round. words : its command line; failed : why it is left out"""
+    """A program and its times in seconds, one a round.
+
+    words : its command line; well : statuses with which it may end; failed : why it is left out
+    """
 
     name: str
     words: list[str]
+    well: tuple[int, ...] = (0,)
     processor: list[float] = field(default_factory=list)
     wall: list[float] = field(default_factory=list)
     failed: str = ""
@@ -86,7 +95,7 @@ def one_round(program: Program, work: Work) -> None:
             except subprocess.TimeoutExpired:
                 program.failed = f"{shlex.join(words)} took longer than {work.limit:g} s"
                 return
-            if status not in WELL:
+            if status not in program.well:
                 program.failed = f"{shlex.join(words)} ended with status {status}"
                 return
         program.processor.append(spent() - before)
@@ -125,7 +134,7 @@ def measure(folder: Path = ROOT / "build" / "corpus" / "dev") -> list[Row]:
     peers = [line for line in os.environ.get(VARIABLE, "").splitlines() if line.strip()]
     if not peers or not folder.is_dir():
         return []
-    programs = [Program("dancetutor", [str(DANCETUTOR), *shlex.split(OURS["{folder}"])]), *map(program_of, peers)]
+    programs = [Program("dancetutor", [str(DANCETUTOR), *shlex.split(OURS["{folder}"])], WELL), *map(program_of, peers)]
     compare(programs, Work(folder.resolve(), charts_in(folder.resolve())), 3)
     good = [program for program in programs[1:] if not program.failed]
     ours = min(programs[0].processor)
@@ -144,7 +153,7 @@ def program_of(peer: str) -> Program:
     if not any(place in word for word in words for place in ("{folder}", "{file}")):
         raise SystemExit(f"{name}: the command needs {{folder}} or {{file}}")
     words[0] = shutil.which(words[0]) or words[0]
-    return Program(name.strip(), [str(Path(words[0]).resolve()) if "/" in words[0] else words[0], *words[1:]])
+    return Program(name.strip(), [str(Path(words[0]).absolute()) if "/" in words[0] else words[0], *words[1:]])
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -161,7 +170,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         parser.error(f"{given.folder}: no .sm or .ssc file in it")
     what = "{file}" if given.each_file else "{folder}"
     ours = shlex.split(given.ours) if given.ours else [str(DANCETUTOR), *shlex.split(OURS[what])]
-    programs = [Program("dancetutor", ours)]
+    programs = [Program("dancetutor", ours, WELL)]
     programs += map(program_of, given.peer)
     print(f"{len(files)} files, the least of {max(given.runs, 1)} rounds, as multiples of dancetutor's\n")
     work = Work(given.folder.resolve(), files, given.limit)
