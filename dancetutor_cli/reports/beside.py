@@ -9,8 +9,6 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.jobs.beside import TEN, Beside, Compared
 from dancetutor_cli.reports.safe import safe, safe_path
 
-_PLACES = 12  # measures or rows of a chart that are named
-
 
 def table_lines(found: Beside) -> Iterator[str]:
     """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
@@ -63,5 +61,5 @@ def _places(what: str, places: Sequence[float]) -> str:
     named = list(dict.fromkeys(places))
     if not named:
         return ""
-    words = " ".join(f"{place:.3f}".rstrip("0").rstrip(".") for place in named[:_PLACES])
-    return f" ({what} {words}{' ...' if len(named) > _PLACES else ''})"
+    words = " ".join(f"{place:.3f}".rstrip("0").rstrip(".") for place in named)
+    return f" ({what} {words})"
