@@ -20,6 +20,7 @@ from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, FeetDiagram, NextRows, PadMap, PadView
+from dancetutor_cli.video.overlay.header import Header, Words
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -58,7 +59,7 @@ class FilmPlan:
 
     look: FilmLook
     clock: Clock
-    words: captions.Words
+    words: Words
     song: captions.SongShape
     notes: NoteTrack
     presses: Presses
@@ -141,20 +142,24 @@ class Film:
         return min(self.columns, WIDE_PAD) if square else self.columns
 
     @cached_property
-    def _header(self) -> captions.Header | None:
+    def _header(self) -> Header | None:
         if (part := self.layout.header) is None:
             return None
         scale = self.scale * part.text
-        return captions.Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
+        return Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
 
     @cached_property
     def _legend(self) -> captions.Legend | None:
         if (part := self.layout.legend) is None:
             return None
         limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
+        left, top, right, bottom = self._box("legend")
+        if self._header is not None and left < self._header.right and self._header.bottom > top > self._header.top:
+            bottom += round(self._header.bottom) - top  # many words: it stands below them
+            top = round(self._header.bottom)
         return captions.Legend(
             limbs,
-            self._box("legend"),
+            (left, top, right, bottom),
             self.scale * part.text,
             self.face,
             FACING if self.turned and not self.layout.highway else "",
@@ -262,7 +267,7 @@ class Film:
         self._runs.draw(picture, second, run, self._stay(self._runs, run).opacity(second))
         return picture
 
-    def _stay(self, words: captions.Header | captions.Legend | Runs, run: int) -> Stay:
+    def _stay(self, words: Header | captions.Legend | Runs, run: int) -> Stay:
         """When these words are in the picture: not while she walks through them."""
         if (key := (id(words), run)) not in self._stays:
             self._stays[key] = self._passed(words.boxes, run)

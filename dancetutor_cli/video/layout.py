@@ -45,7 +45,7 @@ class TextBox:
 
 @dataclass(frozen=True, slots=True)
 class HeaderPart:
-    """The song's words. room : share of the box's width that the lines below the title may take, beside her head."""
+    """The song's words. room : share of the box's width that they may take, beside her head."""
 
     box: Box
     text: float = 1.0

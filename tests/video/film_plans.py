@@ -11,7 +11,8 @@ from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
-from dancetutor_cli.video.overlay.captions import SongShape, Words
+from dancetutor_cli.video.overlay.captions import SongShape
+from dancetutor_cli.video.overlay.header import Words
 
 BPM = 120.0
 DIRECTIONS = (270.0, 180.0, 0.0, 90.0)

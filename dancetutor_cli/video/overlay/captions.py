@@ -1,4 +1,4 @@
-"""The standing words of the picture: title, artist, difficulty, legend; the strip with density, position and time."""
+"""The standing words of the picture but the song's: the legend; the strip with density, position and time."""
 
 from __future__ import annotations
 
@@ -14,91 +14,12 @@ from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.overlay import shapes, sprites
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
-from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted
+from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
 
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)
 INK = (12, 13, 22)
-
-
-@dataclass(frozen=True, slots=True)
-class Words:
-    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it."""
-
-    title: str
-    artist: str
-    badge: str
-    difficulty: str
-    detail: str
-    credit: str = ""
-
-
-class Header:
-    """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
-
-    room : share of the box's width for the lines below the title; longer ones are written smaller, then cut off
-    title_end : right and bottom of the title, pixels
-    """
-
-    def __init__(
-        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: float = 1.0
-    ) -> None:
-        self.lines: list[tuple[Sprite, float, float]] = []
-        self._scale, self._face = scale, face
-        self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
-        title_size, small = 33 * scale, 19 * scale
-        title, title_size = _title(words.title, title_size, 0.97 * (box[2] - box[0]), face)
-        self.bottom = float(box[1])
-        for line in title:
-            self._add(face.sprite(line, title_size, WHITE, weight=title_size / 60, shadow=2 * scale), box[0], 0)
-        self._title = len(title)
-        self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
-        if words.artist:
-            self._line(words.artist, small, box[0], 1 * scale, weight=0.25)
-        badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
-        top = self.bottom + 6 * scale
-        self._add(badge, box[0] + 2 * scale, 6 * scale)
-        if words.detail:
-            x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
-            if face.width(words.detail, size) <= self._right - x:
-                ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)
-                self.lines.append((ink, x, top + (badge.shape[0] - ink.shape[0]) / 2))
-            else:
-                self._line(words.detail, size, box[0], 3 * scale)
-        if words.credit:
-            self._line(words.credit, small * 0.85, box[0], 3 * scale)
-
-    def _add(self, sprite: Sprite, x: float, gap: float) -> None:
-        self.lines.append((sprite, x, self.bottom + gap))
-        self.bottom += gap + sprite.shape[0]
-
-    def _line(self, text: str, size: float, x: float, gap: float, weight: float = 0.0) -> None:
-        text, size = self._face.shrink(text, size, self._right - x)
-        self._add(self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale), x, gap)
-
-    @property
-    def boxes(self) -> list[Box]:
-        """Where the lines below the title stand: left, top, right, bottom."""
-        return [box_of(*line) for line in self.lines[self._title :]]
-
-    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
-        """Lay the words over the picture, those below the title by `opacity`."""
-        for number, (sprite, x, y) in enumerate(self.lines):
-            blit(frame, sprite, x, round(y), opacity if number >= self._title else 1.0)
-
-
-def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """A title in one line, a longer one smaller, then in two or three; only what would fill more is cut off."""
-    text = text[:LONGEST]
-    whole = face.width(text, size)
-    for least, most in ((0.72, 1), (0.6, 2), (0.6, 3)):
-        if least * whole > most * width:  # it cannot fit, and trying would take long with 1000 letters
-            continue
-        lines, fits = fitted(text, size, width, face, most)
-        if fits >= least * size:
-            return lines, fits
-    return [face.fit(text, 0.72 * size, width)], 0.72 * size
 
 
 def box_of(sprite: Sprite, x: float, y: float) -> Box:

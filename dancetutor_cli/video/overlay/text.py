@@ -19,6 +19,8 @@ from dancetutor_cli.video.overlay.fonts import font, has_all, has_glyph, system_
 RGB = tuple[int, int, int]
 FINE = 4  # text is drawn so many times larger and made smaller: letters need not stand on whole pixels then
 LEAST = 4.0  # pixels of letters; nobody reads them, but hostile words end there
+_NOT_FIRST = frozenset("、。，．・：；？！ー～〜）］｝」』】〉》ぁぃぅぇぉっゃゅょァィゥェォッャュョ)]}!?,.:;…々")
+_NOT_LAST = frozenset("（［｛「『【〈《([{")
 LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
 _FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
          "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
@@ -81,7 +83,7 @@ class Typeface:
         return sum(float(font(path, FINE * size).getlength(part)) for path, part in _runs(self._key, text)) / FINE
 
     def fit(self, text: str, size: float, width: float) -> str:
-        """`text`, shortened with an ellipsis until it is at most `width` pixels wide."""
+        """`text`, shortened with an ellipsis, behind a word if one is near, until it is at most `width` pixels wide."""
         if len(text) <= LONGEST and self.width(text, size) <= width:
             return text
         low, high = 0, min(len(text), LONGEST)
@@ -91,7 +93,10 @@ class Typeface:
                 low = middle
             else:
                 high = middle - 1
-        return text[:low].rstrip() + "…"
+        kept = text[:low]
+        words = kept if text[low : low + 1].isspace() else kept[: max(0, kept.rfind(" "))]
+        kept = words if len(words) > 0.5 * low else kept
+        return kept.rstrip(" ,;:-~/·&([") + "…"
 
     def shrink(self, text: str, size: float, width: float, least: float = 0.8) -> tuple[str, float]:
         """Text and size with which it is at most `width` wide: smaller, down to `least` of the size, then cut off."""
@@ -142,14 +147,68 @@ def clean(text: str) -> str:
 
 def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
     """Words in lines of at most `width` pixels, where a word is not wider itself."""
-    lines = [words[0]]
-    for word in words[1:]:
-        longer = f"{lines[-1]} {word}"
-        if face.width(longer, size) <= width:
-            lines[-1] = longer
-        else:
-            lines.append(word)
+    return _laid([words[0], *(f" {word}" for word in words[1:])], size, width, face)
+
+
+def _laid(parts: list[str], size: float, width: float, face: Typeface, most: int = LONGEST) -> list[str]:
+    """Parts of a text, with the blanks before them, in lines of at most `width` pixels if no part is wider.
+
+    most : lines after which the rest is left away
+    """
+    lines: list[str] = []
+    first = 0
+    while first < len(parts):
+        low, high = first + 1, len(parts)  # by halves: a stranger's title has 500 words
+        while low < high:
+            middle = (low + high + 1) // 2
+            if face.width("".join(parts[first:middle]).lstrip(), size) <= width:
+                low = middle
+            else:
+                high = middle - 1
+        lines.append("".join(parts[first:low]).lstrip())
+        first = low
+        if len(lines) == most:
+            break
     return lines
+
+
+def parts_of(text: str) -> list[str]:
+    """A text in the parts between which a line may end, each with the blank before it; "" has one.
+
+    Between words, and between two letters of scripts that are written without blanks, but not before what closes.
+    """
+    parts: list[str] = []
+    for word in text[:LONGEST].split():
+        blank = " " if parts else ""
+        for k, letter in enumerate(word):
+            wide = unicodedata.east_asian_width(letter) in "WF"
+            joined = k > 0 and (not (wide or _wide_before(word, k)) or letter in _NOT_FIRST or word[k - 1] in _NOT_LAST)
+            if joined:
+                parts[-1] += letter
+            else:
+                parts.append(blank + letter if k == 0 else letter)
+    return parts or [""]
+
+
+def _wide_before(word: str, k: int) -> bool:
+    return unicodedata.east_asian_width(word[k - 1]) in "WF"
+
+
+def in_lines(text: str, size: float, width: float, face: Typeface, most: int) -> list[str]:
+    """A text in at most `most` lines of at most `width` pixels; the last ends with an ellipsis if there is more."""
+    lines = _laid(parts_of(text), size, width, face, most + 1)
+    if len(lines) > most:
+        rest = _after(text, lines[: most - 1])
+        lines = [*lines[: most - 1], rest]
+    return [face.fit(line, size, width) for line in lines]
+
+
+def _after(text: str, lines: list[str]) -> str:
+    """What of a text comes after its first lines."""
+    rest = " ".join(text[:LONGEST].split())
+    for line in lines:
+        rest = rest[len(line) :].lstrip()
+    return rest
 
 
 def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
@@ -157,9 +216,9 @@ def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) 
 
     It is wrapped before it is made smaller.
     """
-    words = text[:LONGEST].split() or [""]
+    parts = parts_of(text)
     while True:
-        lines = wrapped(words, size, width, face)
+        lines = _laid(parts, size, width, face, most + 1)
         if size <= LEAST or (len(lines) <= most and max(face.width(line, size) for line in lines) <= width):
             return lines, size
         size = max(LEAST, 0.96 * size)

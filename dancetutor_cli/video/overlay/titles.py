@@ -6,7 +6,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.tempo import bpm_text
-from dancetutor_cli.video.overlay.captions import Words
+from dancetutor_cli.video.overlay.header import Words
 from dancetutor_cli.video.overlay.text import Typeface, clean
 
 

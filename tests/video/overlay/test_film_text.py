@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
 import pytest
+from film_plans import DIRECTIONS, film_plan
 
+from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.overlay import text
-from dancetutor_cli.video.overlay.captions import Header, Legend, Words
+from dancetutor_cli.video.overlay.captions import Legend
 from dancetutor_cli.video.overlay.fonts import system_fonts
+from dancetutor_cli.video.overlay.header import Header, Words
 from dancetutor_cli.video.overlay.sprites import highway_style
-from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, wrapped
+from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, in_lines, parts_of, wrapped
 
 
 @pytest.fixture
@@ -79,25 +85,65 @@ def test_titles_shrink() -> None:
     assert words.endswith("…") and size == pytest.approx(0.8 * 14) and face.width(words, size) <= 0.5 * width
 
 
-@pytest.mark.parametrize("name", [n for n in layout_names() if load_layout(n).header])
-@pytest.mark.parametrize(
-    "title",
-    ["Adore", "District of the Shadows", "Shiny Shiny (TANUKI -Half- Remix) Exclusive", "A Title of Many Words, " * 3],
-)
-def test_titles_are_not_cut(name: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They become smaller, then two lines; nothing is left out, and nothing leaves the box."""
-    written: list[str] = []
+TITLES = [
+    "Adore",
+    "District of the Shadows",
+    "Shiny Shiny (TANUKI -Half- Remix) Exclusive",
+    "A Title of Many Words, A Title of Many Words",
+    "高気圧ねこロック 〜ずっと一緒にいようね〜",
+]
+ARTISTS = ["x", "Somebody feat. Somebody Else & The Whole Others", "かめりあ feat. ななひら (Camellia feat. Nanahira)"]
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The lines that are written, in their order."""
+    lines: list[str] = []
     ink = Typeface.sprite
     monkeypatch.setattr(
-        Typeface, "sprite", lambda self, text, *a, **k: (written.append(text), ink(self, text, *a, **k))[1]
+        Typeface, "sprite", lambda self, text, *a, **k: (lines.append(text), ink(self, text, *a, **k))[1]
     )
+    return lines
+
+
+@pytest.mark.parametrize("columns", [4, 8])
+@pytest.mark.parametrize("name", [n for n in layout_names() if load_layout(n).header])
+@pytest.mark.parametrize(("title", "artist"), [*((t, "x") for t in TITLES), *(("Adore", a) for a in ARTISTS)])
+def test_titles_and_artists_are_not_cut(name: str, title: str, artist: str, columns: int, written: list[str]) -> None:
+    """They become smaller, then take more lines; nothing is left out, and nothing leaves what is beside her head."""
     layout = load_layout(name)
-    words = Words(title.strip(), "", "Hard 8", "Hard", "")
+    words = Words(title, artist, "Hard 8", "Hard", "dance-double · 128-164 BPM", "steps by somebody")
     assert layout.header is not None
-    box = layout.box("header", layout.size, 4)
+    box = layout.box("header", layout.size, columns)
     header = Header(words, box, layout.header.text, Typeface(), highway_style(), layout.header.room)
-    assert " ".join(written[:-1]) == title.strip()
-    assert header.title_end[0] <= box[2] + 4
+    all_of_it = "".join(written).replace(" ", "")
+    assert all_of_it.startswith((title + artist + "Hard 8").replace(" ", ""))
+    assert header.right <= box[0] + layout.header.room * (box[2] - box[0]) + 10 * layout.header.text
+    assert header.top == box[1]
+
+
+def test_what_does_not_fit_ends_at_a_word(written: list[str]) -> None:
+    face, style = Typeface(), highway_style()
+    words = Words("Many Long Words of a Song " * 12, "Very Many Artists, " * 9, "Hard 8", "Hard", "", "steps by x")
+    header = Header(words, (0, 0, 280, 200), 1.0, face, style)
+    title, artist = written[:4], written[4:6]
+    assert written[6] == "Hard 8" and len(written) == 7  # no room for the credit
+    for lines, whole in ((title, words.title), (artist, words.artist)):
+        assert lines[-1].endswith("…") and not any("…" in line for line in lines[:-1])
+        shown = " ".join(lines)[:-1]
+        assert whole.startswith(shown) and whole[len(shown)] in " ,"
+    assert header.right <= 286
+
+
+def test_scripts_without_blanks_break_between_letters_but_not_before_what_closes() -> None:
+    assert parts_of("Ab cd") == ["Ab", " cd"]
+    assert parts_of("") == [""]
+    assert parts_of("ねこ（ロック）！ x") == ["ね", "こ", "（ロッ", "ク）！", " x"]
+    assert "".join(parts_of("高気圧ねこロック 〜ずっと")) == "高気圧ねこロック 〜ずっと"
+    face = Typeface()
+    title = "高気圧ねこロック"
+    lines = in_lines(title, 20, face.width(title, 20) / 2 + 1, face, 2)
+    assert len(lines) == 2 and "".join(lines) == title
 
 
 def test_a_title_of_a_stranger_is_not_tried_in_every_size(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,3 +195,16 @@ def test_a_legend_of_five_lines_leaves_the_songs_words_alone(name: str, columns:
     box = layout.box("legend", layout.size, columns)
     legend = Legend({0, 1, 2, 3}, box, part.text, face, "she faces you")
     assert min(y for _, _, y in legend.lines) >= box[1] - 10 * part.text
+
+
+@pytest.mark.parametrize("layout", ["side-by-side", "vertical", "dancer"])
+def test_the_legend_stands_below_many_words(layout: str) -> None:
+    look = FilmLook(load_layout(layout), load_layout(layout).size)
+    words = Words(TITLES[3] + " " + TITLES[2], ARTISTS[1], "Hard 8", "Hard", "dance-double · 128-164 BPM", "steps by x")
+    plan = replace(film_plan(np.arange(1.0, 4.0)), look=look, directions=DIRECTIONS * 2, words=words)
+    film = Film(plan)
+    assert film._header is not None and film._legend is not None
+    (left, top, _, bottom), height = film._legend.boxes[0], look.size[1]
+    assert bottom < height
+    for one in film._header.boxes:
+        assert one[3] <= top + 12 * film.scale or one[0] >= left + film._legend.lines[0][0].shape[1]

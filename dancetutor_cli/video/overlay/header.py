@@ -1,0 +1,122 @@
+"""The song's words at the top left of the picture: title, artist, difficulty, who made the steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.overlay.blit import Box, Sprite, blit
+from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of, pill
+from dancetutor_cli.video.overlay.sprites import HighwayStyle
+from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted, in_lines
+from dancetutor_cli.video.picture import Frame
+
+# How a title is written, the first way that fits: its least size, and how many lines.
+TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it."""
+
+    title: str
+    artist: str
+    badge: str
+    difficulty: str
+    detail: str
+    credit: str = ""
+
+
+class Header:
+    """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
+
+    room : share of the box's width for all of it, beside her head; the title is written smaller and in up to four
+    lines, the artist in two, then they end at a word, with an ellipsis; the credit needs room above the box's end
+    title_end : right and bottom of the title, pixels
+    """
+
+    def __init__(
+        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: float = 1.0
+    ) -> None:
+        self.lines: list[tuple[Sprite, float, float]] = []
+        self._scale, self._face = scale, face
+        self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
+        title_size, small = 33 * scale, 19 * scale
+        title, title_size = _title(words.title, title_size, 0.97 * (self._right - box[0]), face)
+        self.bottom = float(box[1])
+        for number, line in enumerate(title):
+            ink = face.sprite(line, title_size, WHITE, weight=title_size / 60, shadow=2 * scale)
+            self._add(ink, box[0], -0.12 * title_size if number else 0)
+        self._title = len(title)
+        self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
+        if words.artist:
+            self._artist(words.artist, small)
+        badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
+        top = self.bottom + 6 * scale
+        self._add(badge, box[0] + 2 * scale, 6 * scale)
+        if words.detail:
+            x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
+            if face.width(words.detail, size) <= self._right - x:
+                ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)
+                self.lines.append((ink, x, top + (badge.shape[0] - ink.shape[0]) / 2))
+            else:
+                self._line(words.detail, size, 3 * scale)
+        if words.credit and self.bottom + 3 * scale + 1.3 * 0.85 * small <= box[3]:
+            self._line(words.credit, small * 0.85, 3 * scale)
+
+    def _add(self, sprite: Sprite, x: float, gap: float) -> None:
+        self.lines.append((sprite, x, self.bottom + gap))
+        self.bottom += gap + sprite.shape[0]
+
+    def _artist(self, text: str, size: float) -> None:
+        """In one line, a little smaller, or in two."""
+        room = self._right - self._left
+        if 0.85 * self._face.width(text[:LONGEST], size) <= room:
+            self._line(text, size, self._scale, weight=0.25)
+            return
+        lines, fits = fitted(text, 0.9 * size, room, self._face, 2)
+        if fits < 0.75 * size:
+            fits = 0.75 * size
+            lines = in_lines(text, fits, room, self._face, 2)
+        size = fits
+        for number, line in enumerate(lines):
+            self._line(line, size, -0.1 * size if number else self._scale, weight=0.25)
+
+    def _line(self, text: str, size: float, gap: float, weight: float = 0.0) -> None:
+        text, size = self._face.shrink(text, size, self._right - self._left)
+        ink = self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale)
+        self._add(ink, self._left, gap)
+
+    @property
+    def top(self) -> float:
+        """y above the title."""
+        return self.lines[0][2]
+
+    @property
+    def right(self) -> float:
+        """x behind the longest line."""
+        return float(max(x + ink.shape[1] for ink, x, _ in self.lines))
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Where the lines below the title stand: left, top, right, bottom."""
+        return [box_of(*line) for line in self.lines[self._title :]]
+
+    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
+        """Lay the words over the picture, those below the title by `opacity`."""
+        for number, (sprite, x, y) in enumerate(self.lines):
+            blit(frame, sprite, x, round(y), opacity if number >= self._title else 1.0)
+
+
+def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
+    """A title in one line or several of a size that is read from afar; only what would fill more is cut off."""
+    text = text[:LONGEST]
+    whole = face.width(text, size)
+    for least, most in TITLE_FITS:
+        if least * whole > most * width:  # it cannot fit, and trying would take long with 1000 letters
+            continue
+        lines, fits = fitted(text, size, width, face, most)
+        if fits >= least * size:
+            return lines, fits
+    least, most = TITLE_FITS[-1]
+    return in_lines(text, least * size, width, face, most), least * size
