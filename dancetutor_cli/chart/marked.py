@@ -20,7 +20,8 @@ def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, l
 
     Of two players each has the notes with one's letter, and what nothing marks on one's half of the pads. With a third
     one plain notes are a fourth player's, as StepF2 colours them, if there are enough of them, else of whoever mostly
-    steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either.
+    steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either. Whoever
+    has fakes alone does not dance.
 
     marks : (tick, column) -> player whose letter stands there
     """
@@ -34,7 +35,8 @@ def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, l
     step, plain = np.isin(cells.kind, _STEPS), said == 0
     colour = np.where(plain, _PLAIN, said)
     whose = 2 * colour + right * np.isin(colour, _of_two(colour[step], cells.tick[step], right[step]))
-    if (step & plain).sum() < _LEAST * min((step & (said == player)).sum() for player in (1, 2, 3)):
+    counts = np.bincount(said[step & ~plain], minlength=1)
+    if (step & plain).sum() < _LEAST * counts[counts > 0].min(initial=len(said)) and counts.any():
         players = np.unique(whose[step & ~plain])
         steps = np.array([np.bincount(cells.column[step & (whose == one)], minlength=columns) for one in players])
         whose[plain] = players[steps.argmax(axis=0)][cells.column[plain]]

@@ -116,13 +116,15 @@ class _Found:
         warnings = [warning for at in parts for warning in self._parts[at].warnings]
         first = self._parts[parts[0]]
         letters = stepf2.letters_of(self._text.value[start:end], form.columns) if first.letters is OF_PLAYERS else b""
-        if letters:
-            shared = marked.parts_of(players[0], first.marks, form.columns, letters)
+        shared = marked.parts_of(players[0], first.marks, form.columns, letters) if letters else []
+        if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
             said = stepf2.for_several(len(own), letters)
             warnings.insert(0, ReadWarning("stepf2-note", said, self._text.lines(start)))
+        elif not form.routine:  # letters of fakes alone
+            own = []
         tables = self._tables(parts[0])
-        return NoteData(_table(players, timing), *tables, tuple(warnings), tuple(own), bool(letters))
+        return NoteData(_table(players, timing), *tables, tuple(warnings), tuple(own), len(shared) > 1)
 
     def _tables(self, at: int) -> tuple[RowTable, MeasureTable]:
         return self._grid.row_table(at), self._grid.measure_table(at)

@@ -124,6 +124,15 @@ def test_a_letter_on_both_pads_at_once_is_of_two_players() -> None:
     assert [sorted({column for _, column, _ in part}) for part in parts] == [[0, 1], [8, 9], [2, 3], [6, 7], [4, 5]]
 
 
+@pytest.mark.parametrize("fakes", ["XYZ", "Y", "XY"])
+def test_letters_of_fakes_alone_are_no_players(fakes: str) -> None:
+    rows = [f"{{{letter}|n|{int(letter in fakes)}|0}}000000001" for letter in "XYZ"]
+    dancing = 3 - len(fakes)
+    chart = read(*rows, *["0000000000"] * 5, steps_type="pump-double")
+    assert len(chart.players) == (dancing + 1 if dancing else 0)  # the plain notes are one more's
+    assert [cell[2] for cell in cells(chart)].count("FAKE") == len(fakes)
+
+
 @pytest.mark.parametrize("kind", ["pump-double", "pump-routine"])
 def test_a_routine_whose_letters_nothing_parts_is_read_by_them(kind: str) -> None:
     first, second = steps_of("X000Y00000", "0X00000Y00", steps_type=kind)
