@@ -7,8 +7,9 @@ run that share it.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ _LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
 _KINDS = {int(kind): kind.name.lower() for kind in StepKind}
 _PARTS = {int(Part.HEEL): "heel", int(Part.TOE): "toe"}
 _SMALL, _LARGE = 0.001, 1e9  # numbers beyond are written with an exponent, or with more digits than a float has
+_UNASKED, _UNKNOWN = -1.0, -2.0  # for confidence that nobody has measured, and in rows without a step
+_BETWEEN = ", "
 _MOST_KNOWN = 100_000  # texts kept, so that a long run does not fill the memory
 
 
@@ -33,16 +36,25 @@ def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
     others = np.flatnonzero(~is_shown)
     is_shown[others] = (play.cost[others] != 0).any(axis=1)
     shown = np.flatnonzero(is_shown)
-    beats = map(_beat, play.rows.tick[shown].tolist())
-    seconds, lines = map(_second, play.rows.second[shown].tolist()), file_lines[shown].tolist()
-    said = _said(play, shown)
-    margins = ["null"] * len(shown) if play.margin is None else [*map(_margin, play.margin[shown].tolist())]
+    looks, costs = _looks(play, shown), _costs(play, shown)
+    margins = [-1] * len(shown) if play.margin is None else play.margin[shown].tolist()
+    sure = [_UNASKED] * len(shown)
     if play.confidence is not None:
-        sure = ["null" if one != one else _percent(one) for one in play.confidence[shown].tolist()]
-        margins = [f'{margin}, "confidence": {one}' for margin, one in zip(margins, sure, strict=True)]
-    rows = zip(beats, seconds, lines, said, margins, strict=True)
-    texts = [f'{beat}{second}, "line": {line}, {what}{margin}}}' for beat, second, line, what, margin in rows]
-    return f"[{', '.join(texts)}]"
+        sure = np.nan_to_num(play.confidence[shown], nan=_UNKNOWN).tolist()
+    parts = (
+        map(_beat, play.rows.tick[shown].tolist()),
+        map(_second, play.rows.second[shown].tolist()),
+        map(_line, file_lines[shown].tolist()),
+        looks,
+        costs,
+        map(_end, margins, sure),
+    )
+    pieces = [""] * (len(parts) * len(shown))
+    for place, part in enumerate(parts):
+        pieces[place :: len(parts)] = part
+    if pieces:
+        pieces[-1] = pieces[-1][: -len(_BETWEEN)]
+    return "".join(("[", *pieces, "]"))
 
 
 def _second(second: float) -> str:
@@ -59,54 +71,61 @@ def _beat(tick: int) -> str:
 
 
 @lru_cache(maxsize=_MOST_KNOWN)
-def _margin(margin: int) -> str:
-    return "null" if margin < 0 else str(margin)
+def _line(line: int) -> str:
+    return f', "line": {line}, '
 
 
 @lru_cache(maxsize=_MOST_KNOWN)
-def _percent(confidence: float) -> str:
-    return repr(round(100 * confidence, 1))
+def _end(margin: int, sure: float) -> str:
+    """The end of a row, and what stands between it and the next. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
+    text = "null" if margin < 0 else str(margin)
+    if sure != _UNASKED:
+        text += f', "confidence": {"null" if sure == _UNKNOWN else repr(round(100 * sure, 1))}'
+    return f"{text}}}{_BETWEEN}"
 
 
-def _said(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """What each of some rows says between its line and its margin."""
-    poses, costs = _poses(play.limb.shape[1]), _costs(play.terms)
-    moves, said = play.moves, []
-    looks = _bytes(shown, play.rows.steps, play.limb, play.part, play.feet, play.facing[:, None])
-    for row, look, cost in zip(shown.tolist(), looks, _bytes(shown, play.cost), strict=True):
-        if (pose := poses.get(look)) is None:
-            pose = poses[look] = _pose(play, row)
-        if (terms := costs.get(cost)) is None:
-            terms = costs[cost] = _terms(play, row)
-        said.append(f"{pose}{_moves(moves[row])}{terms}")
-    for known in (poses, costs):
-        if len(known) > _MOST_KNOWN:
-            known.clear()
-    return said
+def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
+    """What each of some rows says of its steps, feet and moves."""
+    moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
+    known: dict[bytes, str] = {} if play.events is None else _looks_known(play.limb.shape[1])
+    rows = play.rows
+    keys = _bytes(shown, rows.steps, play.limb, play.part, play.feet, play.facing[:, None], moves[:, None])
+    return _said(keys, known, lambda at: _pose(play, int(shown[at])))
+
+
+def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
+    """What each of some rows says of its cost."""
+    return _said(_bytes(shown, play.cost), _costs_known(play.terms), lambda at: _terms(play, int(shown[at])))
+
+
+def _said(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
+    """What is known of each key; of a new one what `say` tells of its place."""
+    if len(known) > _MOST_KNOWN:
+        known.clear()
+    said = [*map(known.get, keys)]
+    for place, (key, text) in enumerate(zip(keys, said, strict=True)):
+        if text is None:
+            said[place] = known[key] = known.get(key) or say(place)
+    return cast("list[str]", said)
 
 
 @lru_cache(maxsize=32)
-def _poses(columns: int) -> dict[bytes, str]:
-    """What is known of rows of so many columns: the text of steps, feet and facing by their bytes."""
+def _looks_known(columns: int) -> dict[bytes, str]:
+    """What is known of rows of so many columns: the text of steps, feet, facing and moves by their bytes."""
     return {}
 
 
 @lru_cache(maxsize=32)
-def _costs(terms: tuple[str, ...]) -> dict[bytes, str]:
+def _costs_known(terms: tuple[str, ...]) -> dict[bytes, str]:
     """The text of costs by their bytes."""
     return {}
-
-
-@lru_cache(maxsize=_MOST_KNOWN)
-def _moves(names: tuple[str, ...]) -> str:
-    return f"{json.dumps(names)}, "
 
 
 def _bytes(shown: NDArray[np.intp], *arrays: NDArray[Any]) -> list[bytes]:
     """For each of some rows all that arrays have there."""
     table = np.concatenate([np.ascontiguousarray(array[shown]).view(np.uint8) for array in arrays], axis=1)
-    data, width = table.tobytes(), table.shape[1]
-    return [data[at : at + width] for at in range(0, len(data), width)]
+    keys: list[bytes] = table.view(f"V{table.shape[1]}").ravel().tolist() if table.size else [b""] * len(table)
+    return keys
 
 
 def _pose(play: Play, row: int) -> str:
@@ -122,7 +141,7 @@ def _pose(play: Play, row: int) -> str:
         "feet": {"left": left, "right": right},
         "facing": round(float(play.facing[row]), 6),
     }  # fmt: skip
-    return f'{json.dumps(said)[1:-1]}, "moves": '
+    return f'{json.dumps(said)[1:-1]}, "moves": {json.dumps(play.moves[row])}, '
 
 
 def _terms(play: Play, row: int) -> str:

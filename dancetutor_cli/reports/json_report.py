@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import IO, Any
 
@@ -33,7 +34,7 @@ class JsonReport:
         """Write one file."""
         if not self._files:
             self._head(next((chart.preset for chart in result.charts if chart.preset), self._preset))
-        self._write(f"{',' if self._files else ''}\n {file_text(result)}")
+        self._write(f"{',' if self._files else ''}\n ", *file_texts(result))
         self._files += 1
 
     def end(self, tally: Tally) -> None:
@@ -47,18 +48,21 @@ class JsonReport:
         head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": preset}
         self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
 
-    def _write(self, text: str) -> None:
-        self._stream.write(text.encode("utf-8", "replace"))
+    def _write(self, *texts: str) -> None:
+        self._stream.writelines(text.encode("utf-8", "replace") for text in texts)
 
 
-def file_text(result: FileResult) -> str:
-    """One entry of `files`; findings about the file itself follow its charts."""
+def file_texts(result: FileResult) -> Iterator[str]:
+    """One entry of `files`, in pieces, for it may be long; findings about the file itself follow its charts."""
     head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
     tail = _members({"findings": [finding_object(finding) for finding in result.findings]})
-    return f'{{{head}, "charts": [{", ".join(map(_chart_text, result.charts))}], {tail}}}'
+    yield f'{{{head}, "charts": ['
+    for number, chart in enumerate(result.charts):
+        yield from _chart_texts(chart, ", " if number else "")
+    yield f"], {tail}}}"
 
 
-def _chart_text(chart: ChartResult) -> str:
+def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
     """One entry of `charts`; its rows are JSON already."""
     head = {
         "index": chart.index,
@@ -77,7 +81,9 @@ def _chart_text(chart: ChartResult) -> str:
         "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
     }
-    return f'{{{_members(head)}, "rows": {chart.rows or "[]"}, {_members(tail)}}}'
+    yield f'{before}{{{_members(head)}, "rows": '
+    yield chart.rows or "[]"
+    yield f", {_members(tail)}}}"
 
 
 def _estimate_object(estimate: Estimate) -> dict[str, Any]:
