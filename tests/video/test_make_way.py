@@ -118,7 +118,7 @@ def test_what_is_called_out_on_a_phone_does_not_cover_her_head() -> None:
     assert box[0] + left >= max(line[2] for line in film._header.boxes)
 
 
-def test_the_title_is_always_there() -> None:
+def test_a_title_of_one_line_is_always_there() -> None:
     film = walked("side-by-side", 1.1, away=False)
     header = film._header
     assert header is not None
@@ -126,3 +126,17 @@ def test_the_title_is_always_there() -> None:
     header.draw(picture, 0.0)
     assert picture.any()
     assert not picture[round(header.boxes[0][1]) + 4 :].any()
+
+
+def test_a_title_of_several_lines_makes_way_for_her() -> None:
+    """Its second line would go through her head as she walks on."""
+    film = walked("side-by-side", 1.1, away=False)
+    words = replace(film.plan.words, title="A Title of Many Words That Go On")
+    header = Film(replace(film.plan, words=words))._header
+    assert header is not None
+    assert header.boxes[0][1] == header.top
+    picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    header.draw(picture, 0.0)
+    assert not picture.any()
+    header.draw(picture, 1.0)
+    assert picture[: round(header.title_end[1])].any()

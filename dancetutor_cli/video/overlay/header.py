@@ -11,8 +11,8 @@ from dancetutor_cli.video.overlay.sprites import HighwayStyle
 from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted, in_lines
 from dancetutor_cli.video.picture import Frame
 
-# How a title is written, the first way that fits: its least size, and how many lines.
-TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))
+BESIDE = 0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))  # least size and number of lines of a title, the first that fits
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Header:
         for number, line in enumerate(title):
             ink = face.sprite(line, title_size, WHITE, weight=title_size / 60, shadow=2 * scale)
             self._add(ink, box[0], -0.12 * title_size if number else 0)
-        self._title = len(title)
+        self._always = 1 if len(title) == 1 else 0  # a title of one line is above her head, even as she walks on
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._artist(words.artist, small)
@@ -56,7 +56,8 @@ class Header:
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
             x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
-            if face.width(words.detail, size) <= self._right - x:
+            end = self._right if room == 1 else box[0] + BESIDE * (self._right - box[0])
+            if face.width(words.detail, size) <= end - x:
                 ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)
                 self.lines.append((ink, x, top + (badge.shape[0] - ink.shape[0]) / 2))
             else:
@@ -99,13 +100,13 @@ class Header:
 
     @property
     def boxes(self) -> list[Box]:
-        """Where the lines below the title stand: left, top, right, bottom."""
-        return [box_of(*line) for line in self.lines[self._title :]]
+        """Where the lines stand that make way for her, all but a title of one line: left, top, right, bottom."""
+        return [box_of(*line) for line in self.lines[self._always :]]
 
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
-        """Lay the words over the picture, those below the title by `opacity`."""
+        """Lay the words over the picture, those that make way for her by `opacity`."""
         for number, (sprite, x, y) in enumerate(self.lines):
-            blit(frame, sprite, x, round(y), opacity if number >= self._title else 1.0)
+            blit(frame, sprite, x, round(y), opacity if number >= self._always else 1.0)
 
 
 def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
