@@ -158,7 +158,7 @@ def test_the_simfile_library_reads_the_same(corpus: Path, hostile: Path) -> None
 
 
 def test_steps_are_found_by_an_independent_count(corpus: Path) -> None:
-    """As many letters as there are 1, 2, 4 and L in the rows that StepMania's model sees."""
+    """As many letters as there are 1, 2, 4 and L, or players' letters, in the rows that StepMania's model sees."""
     for path in chart_files(corpus)[::10]:
         song = readable(path)
         if song is None or b"[" in song.data or b"\\" in song.data or b"&" in song.data:
@@ -166,8 +166,9 @@ def test_steps_are_found_by_an_independent_count(corpus: Path) -> None:
         for chart in song.charts:
             text = b"#NOTES:" + song.data[slice(*chart.notes_span)] + b";"
             ((_, measures),) = READERS["StepMania 5, ITGmania"](text)
+            steps = b"124LXYZxyz" if chart.marked else b"124L"
             expected = [
-                [i for i, cell in enumerate(row[: chart.columns]) if cell in b"124L"]
+                [i for i, cell in enumerate(row[: chart.columns]) if cell in steps]
                 for rows in measures
                 for row in rows
             ]
