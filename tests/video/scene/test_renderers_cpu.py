@@ -211,6 +211,17 @@ def test_the_picture_without_pan_range_is_the_same(scene):
     assert np.abs(plain - ranged).max() <= 1  # the dither may start elsewhere
 
 
+def test_a_pan_range_to_one_side_shows_all_of_the_stage(scene):
+    """She may stay aside for all of a film: then no pan of the range is 0."""
+    cpu = renderer.create(scene, SIZE, "draft", "cpu")
+    state = rs.state(scene, "step", "back", SIZE)
+    wide, aside = (
+        cpu.frame(replace(state, camera=replace(with_pan_range(state.camera, -0.3, most), pan=-0.25))).astype(int)
+        for most in (0.0, -0.2)
+    )
+    assert np.abs(wide - aside).max() <= 1  # the dither may start elsewhere
+
+
 def test_more_samples_come_nearer_to_many(scene):
     """Smooth edges: draft and good, both compared with a picture of four times the size, averaged."""
     big = (SIZE[0] * 4, SIZE[1] * 4)

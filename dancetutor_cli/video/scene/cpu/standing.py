@@ -140,7 +140,7 @@ def _boxes(stage: Stage, camera: Camera, size: tuple[int, int], left: int, wide:
     height = size[1]
     out = np.tile(np.array([0, 0, wide, height], np.int64), (len(stage.corners), 1))
     for number, corners in enumerate(stage.corners):
-        places = replace(camera, pan=0.0).project(corners, size)
+        places = replace(camera, pan=0.0, pan_range=(0.0, 0.0)).project(corners, size)
         if (places[:, 2] < NEAR).any():
             continue
         low, high = np.floor(places[:, :2].min(0)) - 2, np.ceil(places[:, :2].max(0)) + 3
