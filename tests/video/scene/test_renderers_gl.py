@@ -167,3 +167,21 @@ def test_arguments_by_reference_are_known_to_pyopengl(needs_gl):
     assert FormatHandler.match(kind) is None
     compat._register_references()
     assert FormatHandler.match(kind).load().__name__ == "CtypesParameterHandler"
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("quality", ["draft", "good"])
+@pytest.mark.parametrize(("kind", "camera"), [("step", "back"), ("jump", "three-quarter")])
+def test_only_floor_that_nothing_falls_on_is_left_alone(needs_gl, monkeypatch, quality, kind, camera):
+    state = rs.state(rs.scene(), kind, camera, SIZE, [(0, 0.6), (2, 1.0)])
+    drawing = renderer.create(rs.scene(), SIZE, quality, "gl")
+    from dancetutor_cli.video.scene.gl import renderer as gl  # where there is OpenGL
+
+    try:
+        frame = drawing.frame(state).copy()
+        some, rectangles = [], gl.rectangles
+        monkeypatch.setattr(gl, "rectangles", lambda touched: some.append(touched) or rectangles(touched | True))
+        assert drawing.frame(state).tobytes() == frame.tobytes()
+        assert 0.02 < some[0].mean() < 0.5  # of the picture's tiles
+    finally:
+        drawing.close()

@@ -21,16 +21,17 @@ from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.gl.available import gpu_device
 from dancetutor_cli.video.scene.gl.framebuffers import Target, pyramid, refill, texture
 from dancetutor_cli.video.scene.gl.matrices import bounds_of, camera_matrix, light_matrix, reach, within
+from dancetutor_cli.video.scene.gl.patches import Patches, is_lit, rectangles, shaded, trodden
 from dancetutor_cli.video.scene.gl.primitive import SkinnedPrimitive
 from dancetutor_cli.video.scene.gl.programs import Program, ProgramCache
 from dancetutor_cli.video.scene.gl.standing import Standing
+from dancetutor_cli.video.scene.look import LightLook
 from dancetutor_cli.video.scene.prepare import (
     SAMPLES,
     SHADOW_MAP,
     Cast,
     Shown,
     feet_on_floor,
-    ground_box,
     joints_of,
     panel_lights,
     pixel_box,
@@ -44,6 +45,7 @@ from dancetutor_cli.video.scene.scene import SOLE_RADIUS, FrameState, Scene, che
 
 Array = NDArray[np.float64]
 _OFF_SURFACE = (0.012, 0.006)
+_RING = 0.032  # metres from a sole: no ring of ground.frag is farther out
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 
 
@@ -87,6 +89,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._resolved = Target(self._size)
         self._picture = Target(self._size)
         self._standing: tuple[Camera, Standing] | None = None
+        self._patches = Patches()
         self._lights = texture(np.zeros((1, max(scene.panels, 1), 4), np.float32))
         self._joints = int(GL.glGenBuffers(1))
         self._bytes = np.empty((self._size[1], self._size[0], 3), np.uint8)
@@ -112,7 +115,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         light = light_matrix(cast)
         self._draw_shadow(light, cast, part)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
-        self._draw_ground(state, standing, shift, cast, light, bounds)
+        self._draw_ground(state, standing, shift, cast, light)
         self._draw_dancer(part, joints, camera, cast, light, bounds)
         return self._read()
 
@@ -122,6 +125,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._platform.make_current()
             for primitive, *_ in self._primitives:
                 primitive.delete()
+            self._patches.delete()
             self.delete()
             self._platform.delete_context()
             self._platform = None
@@ -150,22 +154,25 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         GL.glUniformBlockBinding(program.number, GL.glGetUniformBlockIndex(program.number, "Joints"), 0)
         return program
 
-    def _draw_ground(
-        self, state: FrameState, standing: Standing, shift: int, cast: Cast, light: Array, bounds: tuple[Array, Array]
-    ) -> None:
+    def _draw_ground(self, state: FrameState, standing: Standing, shift: int, cast: Cast, light: Array) -> None:
         look = self._scene.look
         lit, colour = panel_lights(self._scene, state)
         refill(self._lights, np.column_stack([colour / 255.0, lit]).astype(np.float32)[None])
         feet = feet_on_floor(self._scene, state)
-        program: Program = self._program_cache.program("screen.vert", "ground.frag")
+        part = within(light, joints_of(self._scene, state), self._reach)
+        spread = float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0])
+        touched = is_lit(standing.tiles, lit) | trodden(standing.tiles, feet, _foot_reach(look.light))
+        if cast.scale:
+            touched |= shaded(standing.tiles, light, part, spread)
+        program: Program = self._program_cache.program("patches.vert", "ground.frag")
         units = {"standing": standing.colour, "ground": standing.ground, "panels": standing.panels}
         units |= {"lights": self._lights}
         program.use(
             shift=shift,
             light=light,
             dark=float(look.light.shadow if cast.scale else 0.0),
-            within=within(light, joints_of(self._scene, state), self._reach),
-            spread=float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0]),
+            within=part,
+            spread=spread,
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
             foot=feet[:, :4],
@@ -179,8 +186,9 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         _bind_texture(_SHADOW_UNIT, self._map.texture)
         self._picture.bind()
         GL.glDisable(GL.GL_DEPTH_TEST)
-        _scissor(ground_box(self._scene, state.camera, self._size, bounds, cast))
-        _cover(program)
+        GL.glDisable(GL.GL_SCISSOR_TEST)
+        touched &= standing.has_ground
+        self._patches.draw(rectangles(touched) - [shift, 0, shift, 0], self._size)
 
     def _draw_dancer(
         self, part: Shown, joints: Array, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]
@@ -191,8 +199,9 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             return
         look, (width, height) = self._scene.look.toon, self._size
         self._drawn.bind()
-        _scissor(self._fine * box)
+        GL.glDisable(GL.GL_SCISSOR_TEST)  # to clear all of it is quicker than a part where a processor draws
         GL.glClear(GL.GL_COLOR_BUFFER_BIT | GL.GL_DEPTH_BUFFER_BIT)
+        _scissor(self._fine * box)
         GL.glEnable(GL.GL_DEPTH_TEST)
         program = self._use_skinned(
             "dancer.frag",
@@ -251,6 +260,11 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         if error != GL.GL_NO_ERROR:
             raise UnavailableError(f"OpenGL failed with error {int(error):#06x} while drawing; use --renderer cpu")
         return self._bytes
+
+
+def _foot_reach(light: LightLook) -> float:
+    """Metres from the line between heel and toe that marks and contact shadows reach, pixels apart."""
+    return SOLE_RADIUS + max(1.6 * light.contact_soft, _RING)
 
 
 def _start(size: tuple[int, int]) -> EGLPlatform:
