@@ -23,6 +23,7 @@ from numba.core.runtime.nrt import rtsys as _runtime
 
 from dancetutor_cli import kernel_target
 from dancetutor_cli.kernel_folder import CHECKSUM, head, kernel_folder, shipped_folder
+from dancetutor_cli.quick_compiling import compile_quicker
 from dancetutor_cli.quick_numba import look_for_blas, without_scipy
 from dancetutor_cli.resources import PACKAGE
 
@@ -87,6 +88,7 @@ class _NoCollecting(event.Listener):  # type: ignore[misc]
         """A kernel is compiled, maybe for another one."""
         if self._depth == 0:
             look_for_blas()
+            compile_quicker()
             self._was_on = gc.isenabled()
             gc.disable()
         self._depth += 1
