@@ -40,9 +40,26 @@ def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
         return lambda later: _njit(later, **options)
     kept = options.pop("cache", False)
     compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
+    _without_literals(compiled)
     if kept and (kernel_folder().kept or shipped_folder(Path(function.__code__.co_filename))):
         compiled._cache = _KernelCache(function)
     return compiled
+
+
+def _without_literals(kernel: Any) -> None:
+    """Compile a kernel for whole numbers, not once more for each that stands in a call of it.
+
+    Also what is 0 before a loop and counts in it is such a number at first: numba has compiled what is called with it
+    by the time that it sees the loop.
+    """
+    asked: Any = getattr(kernel, "get_call_template", None)
+    plain: Any = numba.types.unliteral
+
+    def get_call_template(args: Any, kws: Any) -> Any:
+        return asked([plain(one) for one in args], {name: plain(one) for name, one in kws.items()})
+
+    if asked is not None:  # there is none where NUMBA_DISABLE_JIT is set
+        kernel.get_call_template = get_call_template
 
 
 F = TypeVar("F")

@@ -85,4 +85,3 @@ def compile_quicker() -> None:
     options.values = _values
     ir.Inst._rec_list_vars = _quick_listing(listed, variable)
     function.get_call_type = _remembered_types(asked, numbers, flags_now)
-

@@ -52,10 +52,14 @@ def compile_into(out: Path, root: Path) -> None:
     if not fits_shipped():
         sys.exit("kernels for others are compiled on a processor with AVX2, and without settings of numba's")
     with tempfile.TemporaryDirectory() as folder:
+        source, cache = Path(folder) / "source", Path(folder) / "cache"
+        for name in ("dancetutor_cli", "configs", "charts"):  # a copy: what is kept beside the modules would be fetched
+            shutil.copytree(root / name, source / name, ignore=shutil.ignore_patterns("__pycache__", "_data"))
         kept = {key: value for key, value in os.environ.items() if not key.startswith(("NUMBA_", "DANCETUTOR_"))}
-        own = {"NUMBA_CACHE_DIR": folder, "DANCETUTOR_KERNELS": "compiled", "PYTHONPATH": str(root)}
-        subprocess.run([sys.executable, "-m", "dancetutor_cli", "warmup", "--quiet"], env=kept | own, check=True)
-        for made, where in _folders(Path(folder), root / "dancetutor_cli"):
+        own = {"NUMBA_CACHE_DIR": str(cache), "DANCETUTOR_KERNELS": "compiled", "PYTHONPATH": str(source)}
+        command = [sys.executable, "-m", "dancetutor_cli", "warmup", "--quiet"]
+        subprocess.run(command, env=kept | own, cwd=source, check=True)
+        for made, where in _folders(cache, source / "dancetutor_cli"):
             (out / where).mkdir(parents=True)
             for file in sorted(made.glob("*.nb[ic]")):
                 shutil.copyfile(file, out / where / file.name)
