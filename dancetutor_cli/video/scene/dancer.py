@@ -103,7 +103,7 @@ class Dancer:
         named = camera in look.cameras
         if not (named and along) or self.camera.feet_only:
             return {}
-        if region == WHOLE and is_wide(self.scene) and not self.partners:
+        if region == WHOLE and is_wide(self.scene):
             region = look.follow.region
         usual = look.cameras[camera].region if region == WHOLE else region
         for back in (*np.arange(1.0, look.follow.back - 0.01, 0.04), look.follow.back):
