@@ -18,7 +18,9 @@ from dancetutor_cli.play.preset import Preset
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
 _HERE = Path(__file__).parent
-_SOURCES = ("explore", "itg_costs", "itg_moves", "kernel", "state", "store", "tables", "thesis_moves", "vocabulary")
+_SOURCES = (
+    "explore", "happens", "itg_costs", "itg_moves", "kernel", "state", "store", "tables", "thesis_moves", "vocabulary",
+)  # fmt: skip
 _TINY = 12_000  # bytes of chart files that Python solves in less time than it takes to load what is compiled
 _SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
 _OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid

@@ -14,12 +14,13 @@ from dancetutor_cli.play import store
 from dancetutor_cli.play.curves import curve_table
 from dancetutor_cli.play.explore import explore_itg, explore_thesis
 from dancetutor_cli.play.jit import INTERPRETED
-from dancetutor_cli.play.kernel import PRICE, run
+from dancetutor_cli.play.kernel import TELL, run
 from dancetutor_cli.play.played import Limb, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.store import Found, RowArrays, RowStates
 from dancetutor_cli.play.table_room import empty_tables, grown
 from dancetutor_cli.play.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Rules, geometry, moves
+from dancetutor_cli.play.techniques import limits, long_ways
 from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
@@ -45,13 +46,18 @@ class Engine:
             np.array([value for _, value in preset.switches], dtype=np.bool_),
             curve_table(preset),
             np.array(pad.home, dtype=np.int64),
+            limits(),
+            long_ways(pad),
         )
         self._moves = moves(len(preset.weights))
         self.tables = empty_tables(len(preset.weights))
         self.era = 0  # numbers of the tables hold as long as this stays
         self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
-        self._scratch = np.zeros((1, len(self.terms)), dtype=np.int32)
+        self._untold = (
+            np.zeros((1, len(self.terms)), dtype=np.int32), np.empty(0, dtype=np.int32),
+            np.empty((0, 2), dtype=np.int16), np.empty(0, dtype=np.float64),
+        )  # fmt: skip
 
     def cheapest(self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False) -> Found:
         """The cheapest way through rows.
@@ -127,14 +133,20 @@ class Engine:
             (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
             nothing,
             nothing.astype(np.uint8),
-            self._scratch,
+            *self._untold,
         )
 
-    def price(self, rows: Rows, found: Found) -> NDArray[np.int32]:
-        """Cost of each row of a way by term, (n, t)."""
-        priced = found._replace(cost=np.empty((len(rows), len(self.terms)), dtype=np.int32))
-        self._call(_arrays(rows, None), PRICE, _nodes(0, self._node), priced)
-        return priced.cost
+    def told(self, rows: Rows, found: Found) -> Found:
+        """A way, and what it costs and what happens in each row."""
+        n = len(rows)
+        told = found._replace(
+            events=np.empty(n, dtype=np.int32),
+            feet=np.empty((n, 2), dtype=np.int16),
+            facing=np.empty(n, dtype=np.float64),
+            cost=np.empty((n, len(self.terms)), dtype=np.int32),
+        )
+        self._call(_arrays(rows, None), TELL, _nodes(0, self._node), told)
+        return told
 
     def _call(self, arrays: RowArrays, row: int, nodes: RowStates, found: Found) -> tuple[int, int]:
         with _wrapping():
@@ -164,7 +176,7 @@ class Engine:
             np.empty((n, c), dtype=np.uint8),
             np.empty(n if margins else 0, dtype=np.int64),
             np.empty(n if margins else 0, dtype=np.uint8),
-            self._scratch,
+            *self._untold,
         )
 
     def _until_done(self, row: int, arrays: RowArrays, nodes: RowStates, found: Found) -> None:
@@ -202,6 +214,7 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
         rows.tick, rows.steps, rows.hold_end, rows.mines, rows.milliseconds,
         np.zeros(0, dtype=np.int64) if forced is None else forced,
         np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32), np.empty(rows.steps.shape[1], dtype=np.int64),
+        rows.second,
     )  # fmt: skip
 
 

@@ -13,9 +13,11 @@ import numpy as np
 
 from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.compiled import source_stamp
+from dancetutor_cli.play.happens import name_neighbours
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
 from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
     BASE,
@@ -24,6 +26,7 @@ from dancetutor_cli.play.store import (
     EDGE_COST_SHIFT,
     EDGE_COUNT,
     EDGE_MASK,
+    EVENT_BITS,
     EVENTS,
     FACTS,
     FACTS_KNOWN,
@@ -56,7 +59,8 @@ from dancetutor_cli.play.store import (
 from dancetutor_cli.play.tables import ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
-PRICE = -1  # instead of a row to start from
+TELL = -1  # instead of a row to start from
+_PLACE = (1 << PLACE_BITS) - 1
 _NEVER = np.int64(1 << 60)
 # what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
 _KINDS = np.array(
@@ -242,15 +246,25 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
 
 
 @uncounted(inline="always")
-def _price(t, rows, rules, path, cost):  # type: ignore[no-untyped-def]
-    """Cost of every row of a path by term."""
-    moves, wide, terms, timed_key, elapsed = t.move, t.wide, t.terms, t.timed_key, rows.elapsed
+def _tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
+    """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
+    moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
+    path, cost, events, feet, facing = found.move, found.cost, found.events, found.feet, found.facing
+    panels, angle = rules.geometry.panels, rules.geometry.angle
     for r in range(len(path)):
-        number = wide[path[r], EVENTS] >> TERMS_SHIFT
+        move = path[r]
+        number = wide[move, EVENTS] >> TERMS_SHIFT
+        events[r] = wide[move, EVENTS] & EVENT_BITS
         for term in range(cost.shape[1]):
             cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
-        if moves[path[r], FACTS]:
-            charge_time(timed_key[moves[path[r], FACTS]], elapsed[r], rules.curves, cost[r])
+        if moves[move, FACTS]:
+            charge_time(timed_key[moves[move, FACTS]], elapsed[r], rules.curves, cost[r])
+        key = keys[moves[move, NEXT]]
+        left, right = key & _PLACE, key >> PLACE_BITS & _PLACE
+        feet[r, 0], feet[r, 1] = panels[left, 0, 0], panels[right, 1, 0]
+        by_right = angle[left, right] > 179.0 and key >> 2 * PLACE_BITS & 3 == 2  # reached by turning right
+        facing[r] = -180.0 if by_right else angle[left, right]
+    name_neighbours(rows, found, rules)
 
 
 @uncounted(inline="always")
@@ -305,12 +319,12 @@ def _compile(stamp: str) -> Any:
     def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
         """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
 
-        From PRICE on: write the cost of the rows of `found.move` by term into `found.cost`; else that is scratch.
+        From TELL on: write what the rows of `found.move` cost, and what happens in them, into `found`.
         """
         assert len(stamp)
-        if start_row == PRICE:
+        if start_row == TELL:
             _wait(rows)
-            _price(t, rows, rules, found.move, found.cost)
+            _tell(t, rows, rules, found)
             return start_row, DONE
         if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
             key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)

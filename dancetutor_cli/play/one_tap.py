@@ -97,6 +97,7 @@ class OneTap:
         part = RowArrays(
             a.tick[around], a.steps[around], a.hold_end[around], a.mines[around], a.milliseconds[around],
             a.forced[around], a.pattern[around].copy(), a.elapsed[around], a.ends,
+            a.second[around],
         )  # fmt: skip
         part.pattern[1] = pattern
         self._engine.go_on(part, new)

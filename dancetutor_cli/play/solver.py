@@ -13,11 +13,8 @@ from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.played import Play, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
-from dancetutor_cli.play.state import PLACE_BITS
-from dancetutor_cli.play.store import EVENT_BITS, EVENTS, NEXT, Found
-from dancetutor_cli.play.techniques import all_events, names_of
-
-_PLACE = (1 << PLACE_BITS) - 1
+from dancetutor_cli.play.store import Found
+from dancetutor_cli.play.techniques import names_of
 
 
 def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True) -> Play:
@@ -64,28 +61,21 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
     """The play that a way through the rows is."""
-    t, g = engine.tables, engine.rules.geometry
-    events = all_events(rows, found.limb, engine.pad, t.wide[found.move, EVENTS] & EVENT_BITS)
-    state = t.state_key[t.move[found.move, NEXT]].astype(np.int32)
-    left, right = state & _PLACE, state >> PLACE_BITS & _PLACE
-    facing = g.angle[left, right]
-    facing[(state >> 2 * PLACE_BITS & 3 == 2) & (facing > 179.0)] = -180.0  # reached by turning right
-    feet = np.stack([g.panels[left, 0, 0], g.panels[right, 1, 0]], axis=1).astype(np.int16)
-    del state, left, right
+    told = engine.told(rows, found)
     return Play(
         rows=rows,
-        limb=found.limb,
-        part=found.part,
-        feet=feet,
-        facing=facing,
+        limb=told.limb,
+        part=told.part,
+        feet=told.feet,
+        facing=told.facing,
         terms=engine.terms,
-        cost=engine.price(rows, found),  # the largest array comes last, when nothing else is needed any more
-        margin=found.margin if len(found.margin) or not len(rows) else None,
-        ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
-        moves=names_of(events),
+        cost=told.cost,
+        margin=told.margin if len(told.margin) or not len(rows) else None,
+        ambiguity=told.ambiguity if len(told.margin) or not len(rows) else None,
+        moves=names_of(told.events),
         preset=engine.preset.name,
-        confidence=_confidence(rows, engine.preset, found.margin) if len(found.margin) else None,
-        events=events,
+        confidence=_confidence(rows, engine.preset, told.margin) if len(told.margin) else None,
+        events=told.events,
     )
 
 

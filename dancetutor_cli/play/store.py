@@ -113,7 +113,7 @@ class RowArrays(NamedTuple):
     forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column, or of length 0 if there are none
     pattern : int32 (n,), number of the row's pattern
     elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
-    ends : int64 (c,), scratch: when the last hold of each column ends
+    ends : int64 (c,), scratch: when the last hold of each column ends; second : float64 (n,)
     """
 
     tick: NDArray[np.int64]
@@ -125,6 +125,7 @@ class RowArrays(NamedTuple):
     pattern: NDArray[np.int32]
     elapsed: NDArray[np.int32]
     ends: NDArray[np.int64]
+    second: NDArray[np.float64]
 
 
 class Found(NamedTuple):
@@ -132,6 +133,7 @@ class Found(NamedTuple):
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
     cost : int32 (n, t), of each row by term; or one row, which is scratch, where nobody wants to know
+    events : int32 (n,), bits of `EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; written with the cost
     """
 
     move: NDArray[np.int32]
@@ -140,6 +142,9 @@ class Found(NamedTuple):
     margin: NDArray[np.int64]
     ambiguity: NDArray[np.uint8]
     cost: NDArray[np.int32]
+    events: NDArray[np.int32]
+    feet: NDArray[np.int16]
+    facing: NDArray[np.float64]
 
 
 @uncounted

@@ -30,6 +30,11 @@ DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 # column; packed facts that cost by the time since the row before, 0 none; bits of `vocabulary.EVENTS`
 KEY, ACTION, PART, TIMED, EVENTS = range(5)
 UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
+# places in `Rules.limits`: from which time and length on, or up to it, moves are called what they are
+(
+    GALLOP_TICKS, GALLOP_SECONDS, GALLOP_NEIGHBOURS, STREAM_TICKS, STREAM_SECONDS, STREAM_LENGTH, DRILL_TICKS,
+    DRILL_SECONDS, DRILL_LENGTH,
+) = range(9)  # fmt: skip
 
 
 class Geometry(NamedTuple):
@@ -60,6 +65,7 @@ class Rules(NamedTuple):
 
     weights : int64 (w,); switches : bool (s,); curves : int64 (c, MOST_MS + 1), by milliseconds since the row before
     home : int64 (2,), the panels on which left and right foot start
+    limits : float64, see `GALLOP_TICKS`; long : bool (c, c), see `techniques.long_ways`
     """
 
     model: int
@@ -68,6 +74,8 @@ class Rules(NamedTuple):
     switches: NDArray[np.bool_]
     curves: NDArray[np.int64]
     home: NDArray[np.int64]
+    limits: NDArray[np.float64]
+    long: NDArray[np.bool_]
 
 
 class Moves(NamedTuple):
