@@ -38,13 +38,15 @@ def density(chart: Chart, stream_rows: int) -> Density:
     ticks = notes.tick[notes.judged & _IS_STEP[notes.kind]]  # ascending
     if not len(ticks):
         return Density(0.0, 0.0, "", 0, ())
-    ticks = np.append(ticks[:-1][ticks[1:] != ticks[:-1]], ticks[-1])
+    new = np.ones(len(ticks), dtype=bool)
+    np.not_equal(ticks[1:], ticks[:-1], out=new[1:])
+    ticks = ticks[new]
     counts = np.bincount(np.maximum(ticks, 0) // TICKS_PER_MEASURE)
     edges = np.arange(len(counts) + 3, dtype=np.int64) * TICKS_PER_MEASURE
     edges[-2:] = ticks[[0, -1]]
     seconds = chart.timing.seconds(edges)
     lengths = seconds[1:-2] - seconds[:-3]
-    rates = np.divide(counts, lengths, out=np.zeros(len(counts)), where=lengths > _SHORTEST)
+    rates = counts / np.where(lengths > _SHORTEST, lengths, np.inf)
     first, last = seconds[-2:].tolist()
     mean = (len(ticks) - 1) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows
@@ -55,6 +57,8 @@ def density(chart: Chart, stream_rows: int) -> Density:
 
 def breakdown(stream: Sequence[bool]) -> str:
     """Runs of stream measures as numbers, the breaks between them in brackets; no break at the start or the end."""
+    if not any(stream):
+        return ""
     runs = [(is_stream, len(list(group))) for is_stream, group in groupby(stream)]
     if runs and not runs[0][0]:
         runs = runs[1:]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,4 +69,9 @@ def _held(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def arrows(pad: Pad) -> str:
     """A sign for each panel of a pad, as its arrow points."""
-    return "".join(_ARROWS.get((int(np.sign(x)), int(np.sign(y))), "■") for x, y in pad.arrows.tolist())
+    return _arrows(tuple(map(tuple, pad.arrows.tolist())))
+
+
+@lru_cache(maxsize=64)
+def _arrows(ways: tuple[tuple[float, ...], ...]) -> str:
+    return "".join(_ARROWS.get((int(np.sign(x)), int(np.sign(y))), "■") for x, y in ways)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,16 +26,18 @@ class Notes:
     def off_grid(self, grid: Sequence[int]) -> Iterator[tuple[int, int, int]]:
         """Tick, line and number of rows of every run of rows with steps that no quantisation of `grid` has."""
         notes = self._chart.notes
-        if not _off(grid)[notes.tick % TICKS_PER_MEASURE].any():
+        off = _off(tuple(grid))
+        if not off[notes.tick % TICKS_PER_MEASURE].any():
             return
         steps = _IS_STEP[notes.kind]
         ticks, first = np.unique(notes.tick[steps], return_index=True)
-        yield from _runs(_off(grid)[ticks % TICKS_PER_MEASURE], ticks, notes.line[steps][first])
+        yield from _runs(off[ticks % TICKS_PER_MEASURE], ticks, notes.line[steps][first])
 
     def unjudged(self) -> Iterator[tuple[int, int, int]]:
         """Tick, line and number of the notes of every run that lies in a warp or a fake segment."""
         notes = self._chart.notes
-        if notes.judged.all():
+        timing = self._chart.timing
+        if not (timing.warps or timing.fakes) or notes.judged.all():
             return
         hidden = ~notes.judged & _IS_JUDGED[notes.kind]
         yield from _runs(hidden, notes.tick, notes.line)
@@ -51,7 +54,8 @@ class Notes:
         return list(zip(ticks[rows].tolist(), notes.line[steps][first][rows].tolist(), strict=True))
 
 
-def _off(grid: Sequence[int]) -> NDArray[np.bool_]:
+@lru_cache(maxsize=64)
+def _off(grid: tuple[int, ...]) -> NDArray[np.bool_]:
     """For each tick of a measure whether no quantisation of `grid` has it."""
     off = np.ones(TICKS_PER_MEASURE, dtype=bool)
     for quantisation in grid:

@@ -91,6 +91,8 @@ class ReaderRule(Rule):
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each line with warnings that are claimed."""
+        if not subject.is_warned_of:
+            return
         kinds: tuple[tuple[frozenset[str], dict[str, str]], ...]
         kinds = (self.codes - self.usual, {}), (self.usual, {"severity": "info"})
         for codes, least in kinds:

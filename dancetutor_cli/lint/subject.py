@@ -29,6 +29,11 @@ class FileSubject:
 
     song: Song
 
+    @property
+    def is_warned_of(self) -> bool:
+        """Whether the reader warned of anything about the song."""
+        return bool(self.song.warnings)
+
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
         """Message and place of what the reader warned of about the song, if the warning has one of these codes."""
         for warning in self.song.warnings:
@@ -92,6 +97,11 @@ class ChartSubject:
     def row_count(self) -> int:
         """Rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
+
+    @property
+    def is_warned_of(self) -> bool:
+        """Whether the reader warned of anything about the chart."""
+        return bool(self.chart.warnings)
 
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
         """Message and place of what the reader warned of about the chart, if the warning has one of these codes."""
