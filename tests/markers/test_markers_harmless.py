@@ -168,9 +168,7 @@ def test_steps_are_found_by_an_independent_count(corpus: Path) -> None:
             ((_, measures),) = READERS["StepMania 5, ITGmania"](text)
             steps = b"124LXYZxyz" if chart.marked else b"124L"
             expected = [
-                [i for i, cell in enumerate(row[: chart.columns]) if cell in steps]
-                for rows in measures
-                for row in rows
+                [i for i, cell in enumerate(row[: chart.columns]) if cell in steps] for rows in measures for row in rows
             ]
             found = step_rows(song.data, chart).steps
             assert [row.nonzero()[0].tolist() for row in found] == [row for row in expected if row], path
