@@ -197,7 +197,9 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     feet, waiting = both_feet(plan.feet, at, context.settings), waiting_at(plan, at, context)
     hands = hand_use(plan, body, at, waiting, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
-    doing = Doing(stepping(feet, context.settings), free, plan.lead, plan.last, waiting)
+    doing = Doing(
+        stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting
+    )
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)

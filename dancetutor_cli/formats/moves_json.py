@@ -13,7 +13,8 @@ the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
      "let_go": [{"second": 31.2, "column": 3, "why": "leap"}]}
 
 `start` is how she stands before the first of these moves. `from` and `to` are the ball of the foot, or for a hand its
-palm; kind is step, jump, gallop, evade, pivot, aside (a side-step in a wait) or walk (on the floor beside the pad its
+palm; kind is step, jump, gallop, evade, pivot, aside (a side-step in a wait), shake (a leg shaken out) or
+walk (on the floor beside the pad its
 "level" is below 0); of a hand reach, on its way to a panel, `from` null where it hung free, and press, down on it.
 Of one of two who dance on two pads "pad_at" says where her pad's middle, the origin, is from that of both: [x, z].
 With a bar there is also "hold", a hand that rests on the rail from start to end, and its place has a "height".
@@ -30,7 +31,7 @@ from typing import Any
 
 from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.motion.baked import Bar, Grip
-from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Sidestep, Step, Swing, Walk
+from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Shake, Sidestep, Step, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack, Plan, Press
 from dancetutor_cli.play.played import Limb, Part, StepKind
 
@@ -40,6 +41,7 @@ _FEET = ("left_foot", "right_foot")
 
 KINDS: dict[type[Move], str] = {  # what moves are called in the file
     Step: "step", Jump: "jump", Gallop: "gallop", Hover: "evade", Pivot: "pivot", Sidestep: "aside", Walk: "walk",
+    Shake: "shake",
 }  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
     play.Play                      who steps what, from the solver
       |   let_go.without_unplayable  without the notes that no person plays
-      |   footwork.plan_footwork     rules: step, jump, gallop, hold, bracket, mine, sidestep, walk
+      |   footwork.plan_footwork     rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake
     plan.Plan                      when each foot leaves and lands, where, how; turns; palms; walks; contacts
       |   swing.foot_path.both_feet  where a foot is at any time
       |   trajectory.body.body_trajectory   balance, height, facing, reach, counter-rotation, beat bounce

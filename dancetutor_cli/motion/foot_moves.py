@@ -59,6 +59,20 @@ class Gallop(Swing):
 
 
 @dataclass(frozen=True, slots=True)
+class Shake(Swing):
+    """In a wait, and back to where it was: up for a while, loosely shaken.
+
+    rate : per second; far : metres to and fro along `heading` (radians), and half as far up and down
+    flap : radians that the foot flaps
+    """
+
+    rate: float = 0.0
+    far: float = 0.0
+    flap: float = 0.0
+    heading: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Walk(Swing):
     """A step of a walk. level : height of the ground where it lands, metres"""
 

@@ -194,6 +194,25 @@ class LayerSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class GrooveSettings:
+    """How her trunk and head take part in jacks and slow steps."""
+
+    around: float
+    ease: float
+    mostly: float
+    jack: float
+    steps: float
+    shortest: float
+    stays: float
+    lean: float
+    twist: float
+    nod: float
+    shrug: float
+    hands: float
+    deeper: float
+
+
+@dataclass(frozen=True, slots=True)
 class HairSettings:
     """The braid."""
 
@@ -237,6 +256,29 @@ class WaitSettings:
     shrug: float
     neck: float
     heel: float
+
+
+@dataclass(frozen=True, slots=True)
+class LooseSettings:
+    """How she shakes out her legs while she waits."""
+
+    least: float
+    pause: float
+    ready: float
+    share: float
+    both: float
+    every: float
+    between: float
+    up: float
+    shortest: float
+    longest: float
+    height: float
+    aside: float
+    ahead: float
+    rate: float
+    far: float
+    hangs: float
+    flap: float
 
 
 @dataclass(frozen=True, slots=True)

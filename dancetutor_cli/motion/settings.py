@@ -22,12 +22,14 @@ from dancetutor_cli.motion.sections import (
     BarSettings,
     BodySettings,
     FingerSettings,
+    GrooveSettings,
     HairSettings,
     HandSettings,
     InertiaSettings,
     KneeSettings,
     LayerSettings,
     LookSettings,
+    LooseSettings,
     SamplingSettings,
     UnplayableSettings,
     WaitSettings,
@@ -47,6 +49,7 @@ __all__ = [
     "BarSettings",
     "BodySettings",
     "FingerSettings",
+    "GrooveSettings",
     "HairSettings",
     "HandSettings",
     "HomeSettings",
@@ -55,6 +58,7 @@ __all__ = [
     "KneeSettings",
     "LayerSettings",
     "LookSettings",
+    "LooseSettings",
     "MineSettings",
     "MotionSettings",
     "SamplingSettings",
@@ -82,12 +86,14 @@ class MotionSettings:
     look: LookSettings
     inertia: InertiaSettings
     layers: LayerSettings
+    groove: GrooveSettings
     hair: HairSettings
     bar: BarSettings
     walk: WalkSettings
     aside: AsideSettings
     home: HomeSettings
     wait: WaitSettings
+    loose: LooseSettings
     fingers: FingerSettings
     unplayable: UnplayableSettings
     sampling: SamplingSettings

@@ -11,6 +11,7 @@ from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.waits import Waiting, waiting_at
 from dancetutor_cli.play.played import Play
 from tests.bake.bake_mirror import mirrored_play
@@ -19,6 +20,9 @@ from tests.bake.bake_plays import L, R, chart, context, pad, play
 SINGLE = np.array([3, 1, 2, 0])
 FIRST, WAIT, LAST = 8.0, 24.0, 33.0  # seconds of the first note, of a wait, and of the last note
 TIMES = np.arange(-2.0, 45.0, 1 / 60)
+
+
+STANDING = replace(default_settings(), loose=replace(default_settings().loose, share=0.0))  # no leg is shaken out
 
 
 def danced() -> Play:
@@ -32,7 +36,7 @@ def beaten(every: float = 0.5) -> Context:
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return plan_of(chart(), danced(), pad())
+    return plan_of(chart(), danced(), pad(), settings=STANDING)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +80,7 @@ def test_nothing_repeats(waiting: Waiting) -> None:
 
 
 def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
-    image = waiting_at(plan_of(chart(), mirrored_play(danced(), SINGLE), pad()), TIMES, beaten())
+    image = waiting_at(plan_of(chart(), mirrored_play(danced(), SINGLE), pad(), settings=STANDING), TIMES, beaten())
     np.testing.assert_allclose(image.shift, -waiting.shift, atol=1e-12)
     np.testing.assert_allclose(image.tilt, -waiting.tilt, atol=1e-12)
     np.testing.assert_allclose(image.hands, waiting.hands[:, ::-1] * [-1.0, 1.0, 1.0], atol=1e-12)

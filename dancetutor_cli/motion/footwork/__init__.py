@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.motion.footwork.insertion import with_walks
+from dancetutor_cli.motion.footwork.insertion import with_shakes, with_walks
 from dancetutor_cli.motion.footwork.planner import Planner
+from dancetutor_cli.motion.footwork.shaking import leg_shakes
 
 if TYPE_CHECKING:
     from dancetutor_cli.motion.context import Context
@@ -27,4 +28,6 @@ def plan_footwork(play: Play, second: Callable[[int], float], gait: str, context
     Raises DancetutorError if the play has no steps.
     """
     plan = Planner(play, second, context).run()
-    return with_walks(plan, play.rows.second[play.rows.mines.any(axis=1)], gait, context)
+    mines = play.rows.second[play.rows.mines.any(axis=1)]
+    plan = with_walks(plan, mines, gait, context)
+    return with_shakes(plan, leg_shakes(plan, mines, context))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.foot_moves import Jump, Move, Step, Swing
+from dancetutor_cli.motion.foot_moves import Jump, Move, Shake, Step, Swing
 from dancetutor_cli.motion.footwork.footfalls import Stand, standing
 from dancetutor_cli.motion.footwork.walks import WalkProposal, next_step, waits, walk_off, walk_on, walk_over
 from dancetutor_cli.motion.plan import FootTrack, Plan, Turn
@@ -24,6 +24,18 @@ def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
         plan = inserted(plan, walk_over(plan, wait, gait, context), context)
     plan = inserted(plan, walk_on(plan, mines, gait, context), context)
     return inserted(plan, walk_off(plan, mines, gait, context), context)
+
+
+def with_shakes(plan: Plan, shakes: list[tuple[int, Shake]]) -> Plan:
+    """The plan with feet (0 left) that are shaken out where they stand."""
+    if not shakes:
+        return plan
+    both = ([shake for foot, shake in shakes if foot == side] for side in (0, 1))
+    left, right = (
+        replace(track, moves=tuple(sorted([*track.moves, *own], key=lambda move: move.lift)))
+        for track, own in zip(plan.feet, both, strict=True)
+    )
+    return replace(plan, feet=(left, right))
 
 
 def inserted(plan: Plan, walk: WalkProposal | None, context: Context) -> Plan:

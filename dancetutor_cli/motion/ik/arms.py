@@ -115,6 +115,9 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
     hang[..., 2] += arms.jump * jump
+    pumped = context.settings.groove.hands * body.sway[:, None] * (1.0 + effort)
+    hang[..., 1] += 0.5 * np.abs(pumped)
+    hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
     hang += arms.wander * wander
     hang += waiting_at(plan, body.times, context).hands
     free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)

@@ -30,22 +30,24 @@ class Doing:
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
     free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
-    waiting : at the same times
+    beat : (f,) as in `Trajectory`; waiting : at the same times
     """
 
     stepping: Array
     free: Array
     lead: int
     last: float
+    beat: Array
     waiting: Waiting
 
 
 def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
     """Add all layers to the poses at `times` (f,), seconds, in place."""
     skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
+    groove, beat = context.settings.groove, doing.beat
     stepping, free, lead = doing.stepping, doing.free, doing.lead
     breath = np.sin(2 * np.pi * times / settings.breath_time)
-    raised = np.radians(settings.breath_shoulders) * breath * free
+    raised = (np.radians(settings.breath_shoulders) * breath - np.radians(groove.shrug) * beat) * free
     for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
         shrug = doing.waiting.shrug[:, k] * free
         _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * (raised + shrug))
@@ -64,7 +66,7 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
         )
     bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt
     _turn(skeleton, rotations, "skullbase", FRONT, -bob)
-    nod = np.radians(settings.breath_nod) * breath
+    nod = np.radians(settings.breath_nod) * breath + np.radians(groove.nod) * beat
     _turn(skeleton, rotations, "vc4", ACROSS, nod)
     closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time, settings.blink)
     for side in "lr":

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Swing, Walk
+from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Shake, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.settings import MotionSettings, WalkSettings
 from dancetutor_cli.motion.swing.clearance import bend
@@ -18,6 +18,7 @@ from dancetutor_cli.rig.dimensions import dancer_foot
 
 Array = NDArray[np.float64]
 HEEL_BACK, BALL_UP = dancer_foot()
+FLAPS_LATE = 1.2  # radians that a loose foot's flapping is behind the way of its leg
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 
 
@@ -68,9 +69,26 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
     turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s, step.pitch_top), _stand_pitch(track, times, done, settings))
+    for k in np.flatnonzero(_are(track, Shake)):
+        near = swinging & (i == k)
+        if near.any():
+            ball[near], pitch[near] = _shaken(moves[k], times[near], ball[near], pitch[near])
     pivoting = swinging & _are(track, Pivot)[i]
     turned = np.where(swinging, turned, yaw[done])
     return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
+
+
+def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array, Array]:
+    """Ball (m, 3) and pitch (m,) of a foot that is shaken out, at times (m,) in its move."""
+    assert isinstance(move, Shake)
+    s = (times - move.lift) / (move.land - move.lift)
+    fade = smooth(4.0 * s) * smooth(4.0 * (1.0 - s))
+    turn = 2 * np.pi * move.rate * (times - move.lift)
+    way = move.far * fade * np.sin(turn)
+    out = ball + np.column_stack((
+        np.sin(move.heading) * way, move.far / 2 * fade * np.cos(turn), np.cos(move.heading) * way,
+    ))  # fmt: skip
+    return out, pitch + move.flap * fade * np.sin(turn - FLAPS_LATE)
 
 
 def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:
@@ -120,7 +138,7 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array, rising: float) -> 
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
     step = np.sin(np.pi * s**rising)
-    shape = np.where(_are(track, Hover, Gallop)[i], hover, step)
+    shape = np.where(_are(track, Hover, Gallop, Shake)[i], hover, step)
     return np.asarray(np.where(_are(track, Jump)[i], jump, height * shape))
 
 

@@ -13,11 +13,11 @@ from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.motion.trajectory.balance import Pendulum, balanced_path
-from dancetutor_cli.motion.trajectory.beat_bounce import beat_bounce
 from dancetutor_cli.motion.trajectory.counter_rotation import counter_rotation
 from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_drive, jump_lean, tempo_factor
 from dancetutor_cli.motion.trajectory.facing import chest_and_head, pelvis_yaw
+from dancetutor_cli.motion.trajectory.groove import Engaged, groove_of
 from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, height_path
 from dancetutor_cli.motion.trajectory.leaning_back import kept_back, leaning_share
 from dancetutor_cli.motion.trajectory.legs import leg_room
@@ -44,6 +44,7 @@ class Trajectory:
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
     the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
+    beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
     """
 
@@ -58,6 +59,8 @@ class Trajectory:
     tilt: Array
     reaching: Array
     heels: Array
+    beat: Array
+    sway: Array
     softened: tuple[str, ...] = ()
 
 
@@ -87,10 +90,12 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     own = np.zeros(len(times)) if gait is None else gait.own
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
-    beat = beat_bounce(context, times, tempo, reached.sum(axis=1) + held + own)
+    waiting = waiting_at(plan, times, context)
+    engaged = Engaged(tempo, reached.sum(axis=1) + held + own, waiting.share)
+    groove = groove_of(plan, times, engaged, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
-    sink = (np.zeros(len(times)) if gait is None else gait.sink) + settings.layers.bounce * beat
+    sink = groove.sink + (0.0 if gait is None else gait.sink)
     push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
@@ -106,16 +111,18 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     lean = np.radians(lean - held * (lean + settings.bar.lean_back))
     tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
-    drop -= np.radians(settings.wait.lean) * waiting_at(plan, times, context).shift / max(settings.wait.shift, 1e-6)
+    drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
+    chest += np.radians(settings.groove.twist) * groove.sway
+    drop += np.radians(settings.groove.lean) * groove.sway
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
-    fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * beat
+    fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, course.rate, controller)
     height = mass_height.at(times) - course.above[:, 1]
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
-        np.zeros((len(times), 2)), (*softened, *((HEIGHT,) if mass_height.softened else ())),
+        np.zeros((len(times), 2)), groove.beat, groove.sway, (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
 
 
