@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character import load_dancer
 from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.scene.textures import Skins, density, skins_of
@@ -48,6 +50,16 @@ class Packed:
 
 def pack(character: Character) -> Packed:
     """Put the meshes of a character together; UsageError if there is nothing to draw."""
+    return _dancer() if character is load_dancer() else _packed(character)
+
+
+@cache
+def _dancer() -> Packed:
+    """The project's own dancer, who is drawn most: once a process, and for workers before they are made."""
+    return _packed(load_dancer())
+
+
+def _packed(character: Character) -> Packed:
     meshes = [m for m in character.meshes if len(m.triangles)]
     if not meshes:
         raise UsageError(f"character '{character.name}' has no triangles to draw")
