@@ -7,8 +7,11 @@ import tarfile
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 os.environ.setdefault("DANCETUTOR_KERNELS", "compiled")  # whatever is compiled already, and in every process of a test
+settings.register_profile("any machine", deadline=None)  # what a busy machine takes says nothing of the code
+settings.load_profile("any machine")
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared"
 
