@@ -28,7 +28,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
-TIGHTENED = 2  # rounds of tightening the limits of her balance in the last of those
+TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
 COARSE = 4  # every so many samples of the path are baked in a round
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bake_plays import MEDLEY, RH, L, R, chart, pad, play, stream
 
 from dancetutor_cli.bake import bake, report
+from dancetutor_cli.bake.quality.contact import soles_inside
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.sampling import sample
@@ -128,3 +131,10 @@ def test_hand_reaches_the_floor_with_its_palm(medley: Motion) -> None:
     contact = next(c for c in medley.contacts if c.limb == RH)
     height, touching = lowest(medley, RH, contact.start)
     assert abs(height) < 2e-4 and np.abs(touching[0] - contact.panel).max() < 0.1
+
+
+def test_the_report_tells_how_far_soles_are_inside_their_panels(medley: Motion) -> None:
+    inside = soles_inside(medley)
+    assert report(medley)["soles with it 2 cm inside"].value == pytest.approx(100.0 * (inside > 0.02).mean())
+    shifted = replace(medley, root=medley.root + np.array([0.5, 0.0, 0.0]))
+    assert report(shifted)["soles with their middle on the panel"].value == 0.0

@@ -10,11 +10,14 @@ from dancetutor_cli.motion.baked import Contact, Motion
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.play.played import Limb, Part
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.dimensions import BALL_AHEAD
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.soles import SOLE_NAMES, BodyPoint, palm_points, place, sole_points
 
 Array = NDArray[np.float64]
 TOUCH = 0.0002  # metres over the surface that count as touching
+INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
 OFFSETS = np.arange(-50, 51) / 1000.0  # seconds around a note: 1 kHz
 
 
@@ -23,13 +26,32 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
     errors = contact_errors(motion)
     missed = np.isnan(errors)
     worst = float(np.abs(errors[~missed]).max()) if (~missed).any() else float("nan")
+    inside = soles_inside(motion)
+    on, well = ((100.0 * float((inside > least).mean()) if len(inside) else float("nan")) for least in (-1e-3, INSIDE))
     figures = (
         Figure("contacts", float(len(errors)), ""),
         Figure("contact error", worst, "ms", 1.0),
         Figure("contacts missed", float(missed.sum()), "", 0.0),
         Figure("notes let go", float(len(motion.let_go)), ""),
+        Figure("soles with their middle on the panel", on, "%"),
+        Figure(f"soles with it {100 * INSIDE:g} cm inside", well, "%"),
     )
     return figures, errors
+
+
+def soles_inside(motion: Motion) -> Array:
+    """How far (k,) the middle of the sole is inside the panel that a whole foot comes down on, metres; below 0
+    outside."""
+    whole = [c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.WHOLE]
+    if not whole:
+        return np.zeros(0)
+    positions, world = world_transforms(motion.skeleton, *sample(motion, np.array([c.start for c in whole])))
+    balls = np.array([motion.skeleton.index(f"{side}_metatarsal") for side in "lr"])[[c.limb for c in whole]]
+    row = np.arange(len(whole))
+    ahead = quat.rotate(world[row, balls], np.array([0.0, 0.0, 1.0]))[:, [0, 2]]
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    middle = positions[row, balls][:, [0, 2]] - BALL_AHEAD * ahead
+    return np.asarray(HALF_PANEL - np.abs(middle - np.array([c.panel for c in whole])).max(axis=1))
 
 
 def contact_errors(motion: Motion) -> Array:

@@ -31,7 +31,7 @@ from dancetutor_cli.rig.skeleton import dancer_skeleton
 Array = NDArray[np.float64]
 NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
 UNIT = 0.03  # metres; scales the programme
-ACROSS = np.array([[1.0, 0.0], [0.0, 1.0], [0.5**0.5, 0.5**0.5], [0.5**0.5, -(0.5**0.5)]])  # of the sides of a hull
+ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # between sides of hulls of so many soles
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
@@ -75,8 +75,8 @@ def balanced_path(
     offset = sample_path(pendulum.offset, times, nodes)
     room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
     feet = _carrying(feet, rate)
-    low, high, middle = _support(feet, float(np.radians(body.heel_carries)))
-    middle = middle + hand * _sway(feet, nodes, settings.layers)
+    support = support_of(feet, float(np.radians(body.heel_carries)))
+    middle = support.middle + hand * _sway(feet, nodes, settings.layers)
     if shift is not None:
         middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
     down = np.stack([f.down for f in feet])
@@ -84,30 +84,43 @@ def balanced_path(
     middle_weight = np.where(_brief(both, settings.step.longest * rate), body.middle_weight_fast, body.middle_weight)
     weight = np.where(both, middle_weight, body.foot_weight)
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
-    want = _Wanted(middle, low, high, weight, offset, *room)
+    want = _Wanted(replace(support, middle=middle), weight, offset, *room)
     what = f"the path of her balance {span(times)}"
     found = _solved(want, flight, slowness, rate, body, what)
     softened = found.softened
     for _ in range(tightened):
         path = found.x.reshape(-1, 2)
-        want = _tightened(want, low, high, _zero_moment(low_pass(path, rate), seen, rate), flight)
+        want = _tightened(want, support, _zero_moment(low_pass(path, rate), seen, rate), flight)
         found = _solved(want, flight, slowness, rate, body, what)
         softened |= found.softened
     return cubic(nodes, found.x.reshape(-1, 2), times), softened
 
 
 @dataclass(frozen=True, slots=True)
+class Support:
+    """Where the zero-moment point may be at each of n nodes: in a hull of the soles that stand.
+
+    across : (n, 5, 2) unit vectors square to its sides; low, high : (n, 5) metres along these, without end where one
+        sole has no such side
+    middle : (n, 2) where it is best
+    """
+
+    across: Array
+    low: Array
+    high: Array
+    middle: Array
+
+
+@dataclass(frozen=True, slots=True)
 class _Wanted:
     """What the path shall do at each of n nodes.
 
-    middle : (n, 2) where the zero-moment point shall be; low, high : (n, 4) where it may be, along `ACROSS`
-    weight : (n,) how much the former counts; offset : (n, 2) from the pelvis to the centre of mass
+    support : where the zero-moment point may be and shall be
+    weight : (n,) how much the latter counts; offset : (n, 2) from the pelvis to the centre of mass
     nearest, farthest : (n, 2) where the pelvis may be
     """
 
-    middle: Array
-    low: Array
-    high: Array
+    support: Support
     weight: Array
     offset: Array
     nearest: Array
@@ -137,26 +150,61 @@ def _carrying(feet: Feet, rate: float) -> Feet:
     return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
 
 
-def _support(feet: Feet, heel_down: float) -> tuple[Array, Array, Array]:
-    """Where the zero-moment point may be, (n, 4) lowest and highest along `ACROSS`, and (n, 2) where best.
+def support_of(feet: Feet, heel_down: float) -> Support:
+    """The soles that stand. heel_down : radians; a heel lower than this carries"""
+    soles = [_sole(foot, heel_down) for foot in feet]
+    across = _sides(feet, soles)
+    along = [np.einsum("nda,nca->ndc", across, sole) for sole in soles]
+    down = [foot.down[:, None] for foot in feet]
+    low = np.minimum(*(np.where(d, x.min(axis=2), np.inf) for d, x in zip(down, along, strict=True)))
+    high = np.maximum(*(np.where(d, x.max(axis=2), -np.inf) for d, x in zip(down, along, strict=True)))
+    one = np.flatnonzero(down[0][:, 0] != down[1][:, 0])
+    low[one, len(ONE) :], high[one, len(ONE) :] = -np.inf, np.inf
+    left, right = (sole.mean(axis=1) for sole in soles)
+    best = np.where(down[0] == down[1], (left + right) / 2, np.where(down[0], left, right))
+    return Support(across, low, high, best)
 
-    The limits are a hull of the soles that stand; its eight sides have the same directions at all times.
-    heel_down : radians; a heel lower than this carries
+
+def _sole(foot: FootPath, heel_down: float) -> Array:
+    """Corners (n, 4, 2) of what of a foot carries, once round."""
+    ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
+    aside = SOLE_HALF_WIDTH * np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
+    toe, heel = (foot.ball[:, [0, 2]] + far * ahead for far in (SOLE_FRONT, back))
+    return np.stack((toe - aside, toe + aside, heel + aside, heel - aside), axis=1)
+
+
+def _sides(feet: Feet, soles: list[Array]) -> Array:
+    """Unit vectors (n, 5, 2) square to the sides of a hull of the soles that stand.
+
+    Of one foot its own two; of two those that touch both soles, and at the ends of the line between them.
+    With the same directions at all times the hull of a turned foot would be centimetres wider than the foot.
     """
-    lows, highs, middles = [], [], []
-    for foot in feet:
-        ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
-        across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
-        back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
-        middle = foot.ball[:, [0, 2]] + (SOLE_FRONT + back) / 2 * ahead
-        half = np.abs(ahead @ ACROSS.T) * (SOLE_FRONT - back) / 2 + np.abs(across @ ACROSS.T) * SOLE_HALF_WIDTH
-        down = foot.down[:, None]
-        lows.append(np.where(down, middle @ ACROSS.T - half, np.inf))
-        highs.append(np.where(down, middle @ ACROSS.T + half, -np.inf))
-        middles.append(middle)
-    left, right = feet[0].down[:, None], feet[1].down[:, None]
-    best = np.where(left == right, (middles[0] + middles[1]) / 2, np.where(left, middles[0], middles[1]))
-    return np.minimum(*lows), np.maximum(*highs), best
+    line = soles[0].mean(axis=1) - soles[1].mean(axis=1)
+    left, right = feet[0].down, feet[1].down
+    angle = np.where(left, feet[0].yaw, feet[1].yaw)[:, None] + np.concatenate((ONE, np.zeros(3)))
+    both = np.flatnonzero(left & right)
+    angle[both, :3] = np.arctan2(line[both, 0], line[both, 1])[:, None] + TWO
+    out = np.stack((np.sin(angle), np.cos(angle)), axis=-1)
+    out[both, 3:] = _touching(soles[0][both], soles[1][both])
+    return out
+
+
+def _touching(a: Array, b: Array) -> Array:
+    """Unit vectors (m, 2, 2) square to the two lines that touch both of two rectangles (m, 4, 2) on the same side."""
+    edge = (b[:, None] - a[:, :, None]).reshape(-1, 16, 2)
+    square = np.stack((edge[..., 1], -edge[..., 0]), axis=-1)
+    square /= np.maximum(np.linalg.norm(square, axis=-1, keepdims=True), 1e-9)
+    corners = np.concatenate((a, b), axis=1)
+    beyond = np.einsum("mea,mca->mec", square, corners)
+    beyond -= np.einsum("mea,mea->me", square, np.repeat(a, 4, axis=1))[..., None]
+    outer = np.stack((beyond.max(axis=2).argmin(axis=1), beyond.min(axis=2).argmax(axis=1)), axis=1)
+    return np.take_along_axis(square, outer[..., None], axis=1)
+
+
+def _along(across: Array, places: Array) -> Array:
+    """How far (n, d) places (n, 2) are along each of the directions (n, d, 2)."""
+    return np.asarray(np.einsum("nda,na->nd", across, places))
 
 
 def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
@@ -197,30 +245,33 @@ def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
     return out
 
 
-def _tightened(want: _Wanted, low: Array, high: Array, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
+def _tightened(want: _Wanted, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
     """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
 
     What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
     goes from foot to foot within a few hundredths of a second, some of that is needed to arrive in time.
     """
-    along = zmp @ ACROSS.T
+    low, high, tight = given.low, given.high, want.support
+    along = _along(given.across, zmp)
     stand = ~flight[:, None]
     span = np.subtract(high, low, where=stand, out=np.zeros_like(low))
     inside = np.minimum(NARROWEST, span) / 2
-    lower = want.low + np.where(stand, np.clip(low - along, 0.0, NARROWER), 0.0)
-    upper = want.high - np.where(stand, np.clip(along - high, 0.0, NARROWER), 0.0)
-    return replace(
-        want,
+    lower = tight.low + np.where(stand, np.clip(low - along, 0.0, NARROWER), 0.0)
+    upper = tight.high - np.where(stand, np.clip(along - high, 0.0, NARROWER), 0.0)
+    narrowed = replace(
+        tight,
         low=np.where(stand, np.minimum(lower, high - inside), low),
         high=np.where(stand, np.maximum(upper, low + inside), high),
     )
+    return replace(want, support=narrowed)
 
 
 def _solved(
     want: _Wanted, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
 ) -> Solution:
     """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
-    n = len(want.middle)
+    support = want.support
+    n = len(support.middle)
     problem = BandedLeastSquares(2 * n, 1, 8)
     inner = np.arange(1, n - 1)
     second = differences(2) * rate**2
@@ -234,20 +285,24 @@ def _solved(
     limits = []
     for a in (0, 1):
         axis = np.eye(2)[a]
-        problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], want.middle[k, a, None] / UNIT)
+        problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], support.middle[k, a, None] / UNIT)
         straight = _both(np.tile(second, (len(fly), 1)), axis)
         problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
-        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), want.middle[:, a, None] / UNIT)
+        problem.add(
+            2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), support.middle[:, a, None] / UNIT
+        )
         problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.zeros((n - 3, 1)))
         every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)
         limits.append(Limits(*every, low[:, a] / UNIT, high[:, a] / UNIT, GIVE_REACH))
-    for d, direction in enumerate(ACROSS):
-        along = 2 * k - 2, _both(zmp[stand], direction)
-        limits.append(Limits(*along, want.low[k, d] / UNIT, want.high[k, d] / UNIT, GIVE_SUPPORT))
+    for d in range(support.low.shape[1]):
+        there = np.isfinite(support.low[k, d])
+        at = k[there]
+        along = 2 * at - 2, _both(zmp[stand][there], support.across[at, None, d])
+        limits.append(Limits(*along, support.low[at, d] / UNIT, support.high[at, d] / UNIT, GIVE_SUPPORT))
     return solve_surely(problem, limits, what)
 
 
 def _both(coefficients: Array, direction: Array) -> Array:
-    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction."""
+    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction (2,) or (m, 1, 2)."""
     count, width = coefficients.shape
     return (coefficients[:, :, None] * direction).reshape(count, 2 * width)

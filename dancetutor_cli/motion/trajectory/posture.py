@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,6 +138,10 @@ def _course(
         return Course(times, known.trajectory.mass, above, yaw), softened
     pendulum = _pendulum(times, None if known is None else known.trajectory.mass_height, above)
     shift = waiting_at(plan, times, context).shift
+    if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
+        up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
+        left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
+        feet = left, right
     mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
         mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar)
