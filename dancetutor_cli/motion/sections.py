@@ -92,6 +92,10 @@ class ArmSettings:
     aside_from: float
     aside_full: float
     aside_out: float
+    hips_clear: float
+    hips_half: float
+    hips_high: float
+    hips_ease: float
     twist_slowest: float
     twist_fastest: float
     wander_slow: float

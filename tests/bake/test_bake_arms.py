@@ -59,6 +59,13 @@ def test_no_arm_is_in_a_trunk_that_leans_far_aside() -> None:
     assert [f.value for f in measured.figures if f.name == "limb in torso"] == [0.0]
 
 
+def test_no_hand_hangs_in_hips_that_turn_and_sway() -> None:
+    """From panel to panel over two pads and back, two steps a second: the hips are ahead of the shoulders."""
+    events = [(1.0 + 0.5 * k, {(0, 1, 2, 3, 4, 5, 6, 7, 6, 5, 4, 3, 2, 1)[k % 14]: (L, R)[k % 2]}) for k in range(20)]
+    measured = report(bake(chart(), play(events, True), pad(True)))
+    assert [f.value for f in measured.figures if f.name in ("limb in torso", "arm in leg")] == [0.0, 0.0]
+
+
 @pytest.mark.parametrize("side", [0, 1])
 def test_the_hand_of_the_higher_shoulder_goes_outward(side: int) -> None:
     """A trunk that leans 20 degrees aside; both wrists hang straight down."""

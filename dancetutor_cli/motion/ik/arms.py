@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.bar import hold_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
+from dancetutor_cli.motion.ik.beside_hips import Hips, beside_hips
 from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
@@ -40,8 +41,8 @@ GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which i
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
-def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: Context) -> HandTargets:
-    """Targets at times `at` (f,); torso : at the same times, as the IK will be asked for it."""
+def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, hips: Hips, context: Context) -> HandTargets:
+    """Targets at times `at` (f,); torso, hips : at the same times, as the IK will be asked for them."""
     lean, upright = quat.swing_twist(torso.chest, UP)
     hang, lag, held = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
     arms = context.settings.arms
@@ -56,6 +57,7 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, context: 
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
     wrists += held[..., None] * kept_clear(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
+    wrists += beside_hips(wrists, hips, arms)
     inward = _on_her_own_pad(wrists[..., 0], context)
     ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
     wrists += np.abs(inward)[..., None] * ahead[:, None]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking, with_gait
 from dancetutor_cli.motion.ik.arms import arm_targets
+from dancetutor_cli.motion.ik.beside_hips import Hips
 from dancetutor_cli.motion.ik.full_body import Targets
 from dancetutor_cli.motion.ik.hands import Torso
 from dancetutor_cli.motion.ik.knees import Hung, knee_poles, knees_apart
@@ -38,7 +39,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     if gait is not None:
         pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
-    hands = arm_targets(plan, body, at, Torso(shoulders, chest), context)
+    hands = arm_targets(plan, body, at, Torso(shoulders, chest), Hips(pelvis, pelvis_rotation), context)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
     soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
