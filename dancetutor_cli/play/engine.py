@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
@@ -68,6 +69,22 @@ class Engine:
         margins : whether to look for the best way with other limbs, too
         """
         return self._run(_arrays(rows, forced), margins)[0]
+
+    def edited(self, rows: Rows) -> Callable[[], NDArray[np.int32]]:
+        """What to call for the moves of the cheapest way through rows, as often as their arrays are edited in place.
+
+        The next call overwrites what it returns. Only one such function of an engine may be in use at a time: they and
+        the other ways to ask share memory, which takes longer to make than a few rows to solve.
+        """
+        arrays, (found, nodes) = _arrays(rows, None), self._room(*rows.steps.shape, margins=False)
+
+        def moves() -> NDArray[np.int32]:
+            self._start_anew_if_full()
+            nodes.transition.fill(-1)
+            self._until_done(0, arrays, nodes, found)
+            return found.move
+
+        return moves
 
     def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
         """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
@@ -153,16 +170,21 @@ class Engine:
             return run(arrays, row, self.tables, nodes, self.rules, found)
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, RowStates]:
-        n, c = arrays.steps.shape
+        self._start_anew_if_full()
+        found, nodes = self._room(*arrays.steps.shape, margins=margins)
+        self._until_done(0, arrays, nodes, found)
+        return found, nodes
+
+    def _start_anew_if_full(self) -> None:
         if self._is_full():
             self.tables = empty_tables(len(self.preset.weights))
             self.era += 1
             self._numbers.clear()
-        found = self._found(n, c, margins=margins)
+
+    def _room(self, n: int, c: int, *, margins: bool) -> tuple[Found, RowStates]:
         wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
         nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
-        self._until_done(0, arrays, nodes, found)
-        return found, nodes
+        return self._found(n, c, margins=margins), nodes
 
     def _is_full(self) -> bool:
         counts = self.tables.counts
