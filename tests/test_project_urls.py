@@ -52,6 +52,9 @@ def test_the_remote_of_a_checkout_and_the_workflow_before_it(
     assert tool.urls(tmp_path)["Issues"] == "https://example.org/ann/dancetutor/issues"
     monkeypatch.setenv("GITHUB_SERVER_URL", "https://github.com")
     monkeypatch.setenv("GITHUB_REPOSITORY", "bob/fork")
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(tmp_path.parent))  # which installs it from elsewhere
+    assert tool.urls(tmp_path)["Homepage"] == "https://example.org/ann/dancetutor"
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(tmp_path))
     assert tool.urls(tmp_path)["Homepage"] == "https://github.com/bob/fork"
 
 

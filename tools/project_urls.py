@@ -1,8 +1,9 @@
 """The project's URLs for the package's metadata: those of the repository that the wheel or sdist is built from.
 
-A checkout knows its home: the workflow that builds it says so (`GITHUB_SERVER_URL`, `GITHUB_REPOSITORY`), or its git
-remote `origin` does. A fork's wheel so points to the fork. Where neither is known (an archive without git, a clone of
-a local folder) no address is made up; a wheel built from an sdist keeps the sdist's.
+A checkout knows its home: the workflow whose checkout it is says so (`GITHUB_SERVER_URL`, `GITHUB_REPOSITORY`), or its
+git remote `origin` does. The wheel of a fork so points to the fork, and one that another workflow installs does not point
+to whatever that builds. Where neither is known (an archive without git, a clone of a local folder) no address is made
+up; a wheel built from an sdist keeps those of the sdist.
 """
 
 import os
@@ -24,7 +25,8 @@ REMOTE = re.compile(
 def home(root: Path) -> str | None:
     """The web address of the repository at `root`, without a slash at the end, or None if nothing tells it."""
     server, repository = os.environ.get("GITHUB_SERVER_URL"), os.environ.get("GITHUB_REPOSITORY")
-    if server and repository:
+    of_workflow = Path(os.environ.get("GITHUB_WORKSPACE") or os.devnull).resolve() == root.resolve()
+    if of_workflow and server and repository:
         return f"{server.rstrip('/')}/{repository}"
     if not (root / ".git").exists():  # an unpacked archive inside somebody else's checkout is not that checkout
         return None
