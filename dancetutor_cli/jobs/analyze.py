@@ -116,10 +116,15 @@ class _Window:
     def _look(self) -> None:
         from dancetutor_cli.lint.together import look_at_together
 
-        look_at_together(subject for _, subject in self._waiting)
-        for file, subject in self._waiting:
-            file.add(subject)
-        self._waiting, self._rows = [], 0
+        waiting, self._waiting, self._rows = self._waiting, [], 0
+        look_at_together(subject for _, subject in waiting)
+        for file, subject in waiting:
+            try:
+                file.add(subject)
+            except Exception:  # only the files before are told: of others some charts are missing
+                if file in self._files:
+                    del self._files[self._files.index(file) :]
+                raise
 
 
 class _File:

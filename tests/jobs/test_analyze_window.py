@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,6 +14,8 @@ from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs import analyze
 from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file, analyze_files
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+from dancetutor_cli.jobs.result import ChartResult
+from dancetutor_cli.lint.subject import ChartSubject
 
 KINDS = {"dance-single": 4, "dance-double": 8, "pump-single": 5}
 DEMO = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet" / "two_left_feet.ssc"
@@ -86,3 +89,25 @@ def test_what_was_analysed_is_told_before_an_error(tasks: list[AnalyzeTask], mon
     assert [next(results).path for _ in range(2)] == [str(task.path) for task in tasks[:2]]
     with pytest.raises(FileError, match="is broken"):
         next(results)
+
+
+@pytest.mark.parametrize("broken", range(8))
+def test_after_a_fault_no_file_is_told_with_charts_twice_or_missing(
+    tasks: list[AnalyzeTask], broken: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = [replace(task, want_rows=False) for task in tasks[:4]]
+    alone = [analyze_file(task) for task in few]
+    told, numbers = analyze.chart_result, itertools.count()
+
+    def fails(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
+        if next(numbers) == broken:
+            raise RuntimeError("a fault")
+        return told(subject, task)
+
+    monkeypatch.setattr(analyze, "chart_result", fails)
+    monkeypatch.setattr(analyze, "_ROWS", 300)
+    results, found = analyze_files(few), []
+    with pytest.raises(RuntimeError, match="a fault"):
+        for result in results:
+            found.append(result)
+    assert found == alone[: len(found)]
