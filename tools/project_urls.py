@@ -1,9 +1,9 @@
 """The project's URLs for the package's metadata: those of the repository that the wheel or sdist is built from.
 
 A checkout knows its home: the workflow whose checkout it is says so (`GITHUB_SERVER_URL`, `GITHUB_REPOSITORY`), or its
-git remote `origin` does. The wheel of a fork so points to the fork, and one that another workflow installs does not point
-to whatever that builds. Where neither is known (an archive without git, a clone of a local folder) no address is made
-up; a wheel built from an sdist keeps those of the sdist.
+git remote `origin` does. A fork's wheel so points to the fork, and never to a project whose workflow installs this one.
+Where neither is known (an archive without git, a clone of a local folder) no address is made up; a wheel built from an
+sdist keeps the sdist's.
 """
 
 import os
