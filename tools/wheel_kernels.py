@@ -52,7 +52,8 @@ def compile_into(out: Path, root: Path) -> None:
     if not fits_shipped():
         sys.exit("kernels for others are compiled on a processor with AVX2, and without settings of numba's")
     with tempfile.TemporaryDirectory() as folder:
-        source, cache = Path(folder) / "source", Path(folder) / "cache"
+        place = Path(folder).resolve()  # as the modules there are told where they are: kernels are kept by that
+        source, cache = place / "source", place / "cache"
         for name in ("dancetutor_cli", "configs", "charts"):  # a copy: what is kept beside the modules would be fetched
             shutil.copytree(root / name, source / name, ignore=shutil.ignore_patterns("__pycache__", "_data"))
         kept = {key: value for key, value in os.environ.items() if not key.startswith(("NUMBA_", "DANCETUTOR_"))}
