@@ -25,8 +25,8 @@ REMOTE = re.compile(
 def home(root: Path) -> str | None:
     """The web address of the repository at `root`, without a slash at the end, or None if nothing tells it."""
     server, repository = os.environ.get("GITHUB_SERVER_URL"), os.environ.get("GITHUB_REPOSITORY")
-    of_workflow = Path(os.environ.get("GITHUB_WORKSPACE") or os.devnull).resolve() == root.resolve()
-    if of_workflow and server and repository:
+    workspace = os.environ.get("GITHUB_WORKSPACE")
+    if server and repository and workspace and Path(workspace).resolve() == root.resolve():
         return f"{server.rstrip('/')}/{repository}"
     if not (root / ".git").exists():  # an unpacked archive inside somebody else's checkout is not that checkout
         return None
