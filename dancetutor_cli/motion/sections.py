@@ -65,6 +65,7 @@ class ArmSettings:
     stream_up: float
     stream_forward: float
     stream_out: float
+    stream_wander: float
     unlike: float
     step: float
     step_effort: float

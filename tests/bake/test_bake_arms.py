@@ -39,6 +39,14 @@ def test_hands_are_up_in_streams_and_hang_in_waits(danced: Motion) -> None:
         assert waiting[side, :, 1].mean() < -0.38
 
 
+def test_hands_in_streams_are_aside_and_each_at_its_own_height(danced: Motion) -> None:
+    """Not both before the belly, as at a keyboard."""
+    busy, waiting = hands(danced, STREAM), hands(danced, WAIT)
+    more = busy.mean(axis=(0, 1)) - waiting.mean(axis=(0, 1))
+    assert more[0] > 0.04 and more[2] < 0.025
+    assert np.abs(busy[0] - busy[1])[:, 1].mean() > 0.06
+
+
 def test_hands_are_never_quite_still_nor_mirror_images(danced: Motion) -> None:
     waiting = hands(danced, WAIT)
     assert np.ptp(waiting, axis=1).max(axis=1).min() > 0.015

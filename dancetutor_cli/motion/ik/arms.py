@@ -120,7 +120,7 @@ def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, 
     pumped = context.settings.groove.hands * body.sway[:, None] * (1.0 + effort)
     hang[..., 1] += 0.5 * np.abs(pumped)
     hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
-    hang += arms.wander * wander
+    hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander
     hang += waiting_at(plan, body.times, context).hands
     free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)
     hang += free[..., None] * (_behind_the_chest(hang, body.chest_yaw, rate, arms) - hang)
