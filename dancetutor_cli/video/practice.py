@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; songs of gimmicks are at 19 beats a minute
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,16 +50,27 @@ def parse_rates(text: str) -> tuple[float, ...]:
 def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
     """The runs through a section, slower ones first as asked for, each with its count-in.
 
-    A count-in leads to steps: measures without any at the section's beginning are left out.
+    A count-in leads to steps: measures without any at the section's beginning are left out. It counts beats, or halves
+    or doubles of them where nobody counts so slowly or so fast.
     """
     lead = 0.0
     if practice.count_in:
         start = _first_measure(chart, start, end)
         beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
-        lead = practice.count_in * beat
+        lead = practice.count_in * _counted(beat, min(practice.rates))
     count = practice.loop or len(practice.rates)
     rates = (practice.rates[i % len(practice.rates)] for i in range(count))
     return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
+
+
+def _counted(beat: float, rate: float) -> float:
+    """Seconds of the music from one number to the next: a beat, halved or doubled until it can be counted at `rate`."""
+    least, most = (second * rate for second in COUNTABLE)
+    while beat > most:
+        beat /= 2
+    while 0 < beat < least:
+        beat *= 2
+    return beat
 
 
 def _first_measure(chart: Chart, start: float, end: float) -> float:

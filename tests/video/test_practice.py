@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.video.media.clicks import clicks_of
 from dancetutor_cli.video.practice import Practice, passes_of
 
 BPM = 120.0
@@ -15,11 +17,11 @@ MEASURE = 4 * 60 / BPM  # seconds
 COUNTED = Practice((0.5, 1.0), count_in=4)
 
 
-def _chart(first: int, tick: str = "1000") -> Chart:
+def _chart(first: int, tick: str = "1000", bpm: float = BPM) -> Chart:
     """Steps on each beat from measure `first` on, before it only mines."""
     empty, full = "0M00\n0000\n0000\n0000\n", f"0000\n{tick}\n0100\n0010\n"
     measures = ",\n".join([empty] * first + [full] * 4)
-    text = f"#TITLE:t;\n#OFFSET:0;\n#BPMS:0={BPM};\n#NOTES:\ndance-single:\n:\nEasy:\n3:\n:\n{measures};\n"
+    text = f"#TITLE:t;\n#OFFSET:0;\n#BPMS:0={bpm};\n#NOTES:\ndance-single:\n:\nEasy:\n3:\n:\n{measures};\n"
     return parse(text.encode(), Path("t.sm")).charts[0]
 
 
@@ -42,3 +44,15 @@ def test_without_a_count_in_the_section_is_as_asked_for(practice: Practice) -> N
 
 def test_a_section_without_steps_is_as_asked_for() -> None:
     assert passes_of(_chart(3), COUNTED, 1.0, 4.0)[0].sound_from == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("bpm", "rate", "heard"), [(120, 0.5, 1.0), (19, 0.5, 60 / 19 / 0.5 / 4), (19, 1.0, 60 / 19 / 2), (960, 1.0, 0.5)]
+)
+def test_a_count_in_counts_as_fast_as_people_do(bpm: float, rate: float, heard: float) -> None:
+    """Beats at 120 a minute; at 19 halves or quarters of them, at 960 every eighth."""
+    chart, practice = _chart(0, bpm=bpm), Practice((rate,), count_in=4)
+    (one,) = passes_of(chart, practice, 0.0, 12.0)
+    assert (one.sound_from - one.start) / 4 / rate == pytest.approx(heard)
+    ticks = [click.second for click in clicks_of(practice, one, chart.timing, np.array([]))]
+    assert ticks == pytest.approx([one.start + n * heard * rate for n in range(4)])

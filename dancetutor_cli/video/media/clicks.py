@@ -23,9 +23,12 @@ def clicks_of(practice: Practice, one: Pass, timing: Timing, steps: NDArray[np.f
     out: list[Click] = []
     if practice.claps:
         out += [Click(float(second), CLAP, 0.55) for second in np.unique(steps)]
-    until = one.end if practice.metronome else one.sound_from
-    if practice.metronome or practice.count_in:
-        span = timing.beats(np.array([one.start, max(one.start, until)]))
+    if one.count:
+        pulse = (one.sound_from - one.start) / one.count
+        counted = range(one.count, 0, -1)
+        out += [Click(one.sound_from - n * pulse, ACCENT if n % 4 == 0 else TICK, 0.4) for n in counted]
+    if practice.metronome:
+        span = timing.beats(np.array([max(one.start, one.sound_from), one.end]))
         beats = np.arange(math.ceil(span[0] - 1e-6), math.ceil(span[1] - 1e-6))
         seconds = timing.seconds_of_beats(beats.astype(np.float64))
         out += [Click(float(s), ACCENT if b % 4 == 0 else TICK, 0.4) for b, s in zip(beats, seconds, strict=True)]
