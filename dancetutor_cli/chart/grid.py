@@ -118,7 +118,7 @@ class Grid:
         columns = np.array([part.columns for part in self._parts])
         irregular = self._of_row[self.last - self.first != columns[self._of_row]]
         escaped = (number for number, part in enumerate(self._parts) if len(self._escapes_in(part)))
-        alone = {*np.unique(irregular).tolist(), *escaped}
+        alone = {*irregular.tolist(), *escaped}
         found = []
         for width in sorted({*columns.tolist()}):
             mine = columns == width
