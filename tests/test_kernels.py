@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import ast
 import errno
-import importlib.util
 import os
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from module_file import loaded
 
 from dancetutor_cli import kernel_folder, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
@@ -67,14 +66,6 @@ def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
     (tmp_path / "tmp").mkdir()
     return tmp_path / "tmp"
-
-
-def loaded(path: Path) -> Any:
-    spec = importlib.util.spec_from_file_location("some_kernels", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_a_read_only_installation_and_home_leave_a_temporary_folder(

@@ -1,11 +1,11 @@
 """The metadata's URLs: the checkout's own home, told by the workflow or by git, and nothing made up."""
 
-import importlib.util
 import subprocess
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from module_file import loaded
 
 pytest.importorskip("hatchling", reason="hatchling builds the package; pip install -e .[dev] brings it")
 
@@ -16,11 +16,7 @@ def tool(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.delenv("GITHUB_SERVER_URL", raising=False)
     monkeypatch.delenv("GITHUB_REPOSITORY", raising=False)
     path = Path(__file__).parents[1] / "tools" / "project_urls.py"
-    spec = importlib.util.spec_from_file_location("project_urls", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return loaded(path)
 
 
 @pytest.mark.parametrize(

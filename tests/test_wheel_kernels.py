@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import shutil
 import subprocess
@@ -17,6 +16,7 @@ from typing import Any
 
 import pytest
 from hatchling.builders.wheel import WheelBuilder
+from module_file import loaded
 
 from dancetutor_cli import kernel_folder, kernel_target, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
@@ -34,14 +34,6 @@ def double(x):
 able = pytest.mark.skipif(
     not kernel_target.fits_shipped(), reason="this processor, or a setting of numba's, has kernels of its own"
 )
-
-
-def loaded(path: Path) -> Any:
-    spec = importlib.util.spec_from_file_location("some_kernels", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def hits(path: Path) -> bool:
