@@ -187,7 +187,7 @@ def stamp_of(source: Path) -> str:
 
 
 def made_of(source: Path, package: Path = PACKAGE) -> list[Path]:
-    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has."""
+    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
     found, new = {source.resolve()}, [source.resolve()]
     while new:
         for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
@@ -196,11 +196,9 @@ def made_of(source: Path, package: Path = PACKAGE) -> list[Path]:
             for path in modules:
                 if path in found or name == "kernels" or not path.is_file():
                     continue
-                if _KERNEL.search(path.read_text("utf-8")):
+                if _CONSTANT.search(names) or _KERNEL.search(path.read_text("utf-8")):
+                    found.add(path)
                     new.append(path)
-                elif not _CONSTANT.search(names):
-                    continue
-                found.add(path)
     return sorted(found)
 
 

@@ -181,7 +181,8 @@ def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Pa
     for source, others in (
         ("video/scene/cpu/floor.py", ["video/scene/cpu/standing.py", "video/scene/cpu/uncounted.py"]),
         ("physics/hair.py", ["rig/limb.py", "rig/kinematics.py"]),
-        ("motion/ik/ik_kernels.py", ["rig/limb.py", "rig/dimensions.py"]),
+        ("motion/ik/ik_kernels.py", ["rig/limb.py", "rig/dimensions.py", "rig/soles.py"]),
+        ("video/scene/cpu/shade.py", ["video/scene/textures.py", "colours.py"]),
         ("numerics/qp.py", ["numerics/banded.py"]),
     ):
         found = {
