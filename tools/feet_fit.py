@@ -8,7 +8,7 @@ perceptron : weights move from the terms of the labelled play to those of the pl
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,9 +48,6 @@ SMALL, SMOOTH = 3e-6, 3e-5  # what the square of a weight costs, and of the diff
 
 # what a foot cannot do is no label's business
 _GIVEN = {"teleport": np.where(KNOTS <= 80, FORBIDDEN, 0.0)}
-_LOW = np.concatenate(
-    [np.zeros(len(WEIGHTS)), *(_GIVEN.get(name, np.zeros(len(KNOTS))) for name in CURVES)]
-)  # fmt: skip
 _HIGH = np.concatenate(
     [np.full(len(WEIGHTS), MOST), *(_GIVEN.get(name, np.full(len(KNOTS), MOST)) for name in CURVES)]
 )  # fmt: skip
@@ -121,6 +118,15 @@ def _by_parameter(share: Share, moves: Floats, timed: Floats) -> Floats:
     return np.concatenate([np.where(_FREE, rows @ b.counts, 0.0), (_HAT.T @ (timed @ flags(b))).T.ravel()])
 
 
+def least(floors: Mapping[str, Floats]) -> Floats:
+    """The least that each parameter may be: 0, what is given, and floors of some curves at `KNOTS`."""
+    given = {**floors, **_GIVEN}
+    return np.concatenate([np.zeros(len(WEIGHTS)), *(given.get(name, np.zeros(len(KNOTS))) for name in CURVES)])
+
+
+NONE_LESS_THAN_0 = least({})
+
+
 def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats | None = None) -> tuple[float, Floats]:
     """Minus the mean log-likelihood of a labelled row, and its gradient.
 
@@ -151,9 +157,10 @@ def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats |
 
 
 def likelihood(
-    start: Floats, data: Sequence[Share], rounds: int = 120, pull: float = 1.0, home: Floats | None = None
-) -> Floats:
-    """The weights, none below 0, under which the labels are likeliest; see `loss`."""
+    start: Floats, data: Sequence[Share], low: Floats = NONE_LESS_THAN_0, rounds: int = 120, pull: float = 1.0,
+    home: Floats | None = None,
+) -> Floats:  # fmt: skip
+    """The weights, none below `low`, under which the labels are likeliest; see `loss`."""
     scale = np.sqrt(_frequency(data, len(start)) + 1e-4)  # what seldom happens has a flat slope
 
     def scaled(z: Floats) -> tuple[float, Floats]:
@@ -161,8 +168,8 @@ def likelihood(
         return value, gradient / scale
 
     found = minimize(
-        scaled, start.clip(_LOW, _HIGH) * scale, jac=True, method="L-BFGS-B",
-        bounds=[(low * s, high * s) for low, high, s in zip(_LOW, _HIGH, scale, strict=True)],
+        scaled, start.clip(low, _HIGH) * scale, jac=True, method="L-BFGS-B",
+        bounds=list(zip(low * scale, _HIGH * scale, strict=True)),
         options={"maxiter": rounds, "maxcor": 30},
     )  # fmt: skip
     return np.asarray(found.x / scale)
@@ -185,7 +192,9 @@ def _frequency(data: Sequence[Share], size: int) -> Floats:
     return out / max(rows, 1.0)
 
 
-def perceptron(start: Floats, data: Sequence[Share], rounds: int = 6, rate: float = 2e-3) -> Floats:
+def perceptron(
+    start: Floats, data: Sequence[Share], low: Floats = NONE_LESS_THAN_0, rounds: int = 6, rate: float = 2e-3
+) -> Floats:
     """The averaged weights after passes over all charts, some at once, in an order of chance."""
     found, mean, count = start.copy(), np.zeros_like(start), 0
     order = np.random.default_rng(1)
@@ -196,7 +205,7 @@ def perceptron(start: Floats, data: Sequence[Share], rounds: int = 6, rate: floa
     ]
     for _ in range(rounds):
         for number in order.permutation(len(some)):
-            found = np.clip(found - rate * _mistakes(some[number], found), _LOW, _HIGH)
+            found = np.clip(found - rate * _mistakes(some[number], found), low, _HIGH)
             mean += found
             count += 1
     return mean / count

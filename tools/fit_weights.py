@@ -20,7 +20,7 @@ import feet_data
 import numpy as np
 from feet_confidence import calibrated, chart_of_calibration, reliability
 from feet_data import Labelled
-from feet_fit import Floats, Share, fitted, likelihood, part, perceptron, shares, vector
+from feet_fit import KNOTS, Floats, Share, fitted, least, likelihood, part, perceptron, shares, vector
 from feet_lattice import CURVES, WEIGHTS
 from numpy.typing import NDArray
 
@@ -33,6 +33,8 @@ DOCS = HERE.parent / "docs"
 LABEL, CONSENSUS = 20.0, 0.05  # what a row of a label counts beside one that two programs agree on
 EVERY = 3  # of so many charts of the consensus one is looked at: they are many, and much alike
 FOLDS = {"itg": 4, "pump": 5}
+# no label on dance pads is a bracket after more than 0.4 s, and the consensus has programs' brackets there: people jump
+AT_LEISURE = {"bracket": np.interp(KNOTS, [370, 500, 700], [0.0, 2.2, 3.0])}
 ROUNDS = 200  # of a fit from nothing; a fold begins where the fit of all ended
 ROUNDS_OF_A_FOLD = 50
 OWN_PULL = 300.0  # an author's pins are few: weights stay where they are unless many pins say otherwise
@@ -40,18 +42,22 @@ OWN_PULL = 300.0  # an author's pins are few: weights stay where they are unless
 
 @dataclass(frozen=True)
 class Task:
-    """What one preset is fitted to. judged : what it is scored on; guard : rows that only keep it from drifting."""
+    """What one preset is fitted to. judged : what it is scored on; guard : rows that only keep it from drifting;
+
+    low : the least that its parameters may be
+    """
 
     preset: str
     judged: list[Labelled]
     guard: list[Labelled]
+    low: Floats
 
 
 def tasks() -> list[Task]:
     """Both presets and their labels."""
     return [
-        Task("itg", feet_data.load_dance(), feet_data.load_consensus(EVERY)),
-        Task("pump", feet_data.load_pump(), []),
+        Task("itg", feet_data.load_dance(), feet_data.load_consensus(EVERY), least(AT_LEISURE)),
+        Task("pump", feet_data.load_pump(), [], least({})),
     ]
 
 
@@ -85,7 +91,7 @@ def cross_validated(task: Task, method: str, home: Preset) -> Outcome:
     whole = shares([*task.judged, *task.guard], home)
     fold, found = feet_data.folds(task.judged, FOLDS[task.preset]), start_of(home)
     if method == "likelihood":  # one fit of all, from which those of the folds are near
-        found = likelihood(found, mixed(whole, task, {label.name for label in task.judged}), ROUNDS)
+        found = likelihood(found, mixed(whole, task, {label.name for label in task.judged}), task.low, ROUNDS)
     out: Outcome = []
     for number in range(FOLDS[task.preset]):
         seen = {label.name for label, own in zip(task.judged, fold, strict=True) if own != number}
@@ -93,7 +99,9 @@ def cross_validated(task: Task, method: str, home: Preset) -> Outcome:
         begun = start_of(home)
         preset = fitted(
             home,
-            perceptron(begun, data) if method == "perceptron" else likelihood(found, data, ROUNDS_OF_A_FOLD),
+            perceptron(begun, data, task.low)
+            if method == "perceptron"
+            else likelihood(found, data, task.low, ROUNDS_OF_A_FOLD),
         )
         out += outcome([x for x, own in zip(task.judged, fold, strict=True) if own == number], preset)
     return out
@@ -156,7 +164,7 @@ def fit_all(write: bool, only: str | None) -> None:
         told("likelihood, songs not seen", held_out)
         whole = shares([*task.judged, *task.guard], home)
         names = {label.name for label in task.judged}
-        preset = fitted(home, likelihood(start_of(home), mixed(whole, task, names), ROUNDS))
+        preset = fitted(home, likelihood(start_of(home), mixed(whole, task, names), task.low, ROUNDS))
         told("likelihood, fitted to all of it", outcome(task.judged, preset))
         if task.guard:
             told("the same, on the consensus", outcome(task.guard, preset))
