@@ -137,7 +137,13 @@ class _Reader:
         return text.decode(msd.plain(self.data[a:b]), self.encoding).strip()
 
     def values(self, tags: Iterable[Tag]) -> dict[str, str]:
-        return {tag.name: self.text(tag) for tag in tags if tag.name not in ("NOTES", "NOTEDATA")}
+        """Their first values; of #DISPLAYBPM both, as they are written, "90:180"."""
+        return {tag.name: self._value(tag) for tag in tags if tag.name not in ("NOTES", "NOTEDATA")}
+
+    def _value(self, tag: Tag) -> str:
+        if tag.name == "DISPLAYBPM" and len(tag.spans) > 1:
+            return ":".join(self.text(tag, k) for k in range(min(3, len(tag.spans))))
+        return self.text(tag)
 
     def timing_texts(self, tags: Iterable[Tag]) -> dict[str, timing_tags.Text]:
         """The timing tags, each character a byte; of several of one name the last."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.model import Chart, Song
+
+MOST_SHOWN = 9999  # beats a minute: what is more says nothing to a reader
 
 
 def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
@@ -27,8 +29,18 @@ def fastest_bpm(chart: Chart) -> float:
     return 120.0
 
 
-def bpm_text(chart: Chart) -> str:
-    """ "128", or "90-180" where the song changes."""
-    lasting = [bpm for bpm, length in bpm_shares(chart) if length > 0.5] or [fastest_bpm(chart)]
+def bpm_text(song: Song, chart: Chart) -> str:
+    """ "128", or "90-180" where the song changes: as the author has it shown (#DISPLAYBPM), else as it is."""
+    lasting = _displayed(chart.tags.get("DISPLAYBPM") or song.tags.get("DISPLAYBPM", ""))
+    lasting = lasting or [bpm for bpm, length in bpm_shares(chart) if length > 0.5] or [fastest_bpm(chart)]
     low, high = f"{min(lasting):.0f}", f"{max(lasting):.0f}"
     return low if low == high else f"{low}-{high}"
+
+
+def _displayed(text: str) -> list[float]:
+    """The tempos of a #DISPLAYBPM, "128" or "90:180"; none of "*", which hides them, or of what is no tempo."""
+    try:
+        found = [float(part) for part in text.split(":")]
+    except ValueError:
+        return []
+    return found if len(found) <= 2 and all(1 <= bpm <= MOST_SHOWN for bpm in found) else []

@@ -22,16 +22,17 @@ from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.titles import title_warnings, words_of
 from dancetutor_cli.video.practice import whole_song
-from dancetutor_cli.video.scroll import segments_of, speeds_of
+from dancetutor_cli.video.scroll import SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.jobs.danced import Danced
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.notes import Cue
+    from dancetutor_cli.video.notes import Cue, NoteTrack
 
 
 HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
@@ -54,7 +55,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = danced(request, subject)
     solved, play, pad = dance.solved, dance.play, dance.pad
-    scrolls = segments_of(song, chart)
+    scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
     track = note_track(chart, play, scrolls)
     presses = presses_of(track)
     start, end = clock.passes[0].start, clock.passes[-1].end
@@ -73,8 +74,8 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         presses=presses,
         lines=beat_lines(chart, scrolls, end),
         beats=scrolls.shown(chart.timing.beats(seconds)),
-        speeds=speeds_of(song, chart).at(seconds),
-        fastest_bpm=fastest_bpm(chart),
+        speeds=speeds.at(seconds),
+        scroll_bpm=_scroll_bpm(chart, track, speeds),
         directions=pad.directions,
         motions=motions,
         pad=pad,
@@ -90,6 +91,12 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
     return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+
+
+def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
+    """The tempo of which M mods make their speed."""
+    seconds, first = np.unique(track.second[track.judged], return_index=True)
+    return reading_bpm(seconds, track.beat[track.judged][first], speeds.at(seconds)) or fastest_bpm(chart)
 
 
 def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:

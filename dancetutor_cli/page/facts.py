@@ -19,7 +19,7 @@ def words_of(song: Song, chart: Chart, preset: str) -> dict[str, str]:
         "badge": clean(f"{chart.difficulty} {chart.meter}"),
         "difficulty": chart.difficulty,
         "steps": chart.steps_type,
-        "bpm": bpm_text(chart),
+        "bpm": bpm_text(song, chart),
         "credit": clean(chart.tags.get("CREDIT", "") or song.tags.get("CREDIT", "")),
         "file": clean(song.path.name),
         "music": clean(song.music),

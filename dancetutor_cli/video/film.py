@@ -51,6 +51,7 @@ class FilmPlan:
     directions : per column, degrees clockwise from up, None for a middle panel
     character : who dances, the motion is for its skeleton; None for the project's own dancer
     partners : of a chart for two the motions of the second one; empty for one
+    scroll_bpm : the tempo of which M mods make their speed
     speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
     motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
         the layout has no dancer; rows : the play's, for the next rows' pads
@@ -65,7 +66,7 @@ class FilmPlan:
     presses: Presses
     lines: BeatLines
     beats: NDArray[np.float64]
-    fastest_bpm: float
+    scroll_bpm: float
     directions: tuple[float | None, ...]
     motions: Mapping[float, Motion]
     pad: PadLike | None
@@ -119,7 +120,7 @@ class Film:
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
-        return Highway(score, geometry, scroll, plan.fastest_bpm, self.face)
+        return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)
 
     @cached_property
     def turned(self) -> bool:

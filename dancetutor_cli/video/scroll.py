@@ -23,17 +23,43 @@ Beats = NDArray[np.float64]
 @dataclass(frozen=True, slots=True)
 class Scroll:
     """Speed of the notes. `mode` "C": `value` beats a minute whatever the song does; "X": times the song's own beats;
-    "M": like X, so that the fastest part of the song scrolls like C at `value`. One beat is one arrow's spacing at 1.
+    "M": like X, so that the fastest part of the chart that matters (`reading_bpm`) scrolls like C at `value`. One beat
+    is one arrow's spacing at 1.
     """
 
     mode: str
     value: float
 
-    def factor(self, fastest_bpm: float) -> float:
-        """Arrow spacings per second (C) or per beat (X and M)."""
+    def factor(self, scroll_bpm: float) -> float:
+        """Arrow spacings per second (C) or per beat (X and M); scroll_bpm : for M."""
         if self.mode == "C":
             return self.value / 60
-        return self.value if self.mode == "X" else self.value / max(fastest_bpm, 1.0)
+        return self.value if self.mode == "X" else self.value / max(scroll_bpm, 1.0)
+
+
+READ = 0.9  # of the time in which notes come: so much of it is at most as fast as what an M mod takes for the fastest
+REST = 1.0  # seconds until the next note that count at most
+
+
+def reading_bpm(seconds: Seconds, beats: Beats, speeds: NDArray[np.float64]) -> float | None:
+    """Beats a minute, as drawn, that a chart's notes come at, but for its fastest tenth; None where there is no tempo.
+
+    The games take the song's displayed or highest tempo. A burst of a gimmick, which may be sixteen times as fast, or
+    tempos written at an eighth with #SCROLLS of 8, would have the notes lie over each other, or fly past.
+
+    seconds, beats : of the rows, float64 (r,), ascending, beats as drawn; speeds : factor of the speed segments there
+    """
+    length = np.diff(seconds)
+    here = length > 1e-4
+    moved = np.abs(np.diff(beats)) * speeds[1:]
+    tempo, weight = 60 * moved[here] / length[here], np.minimum(length[here], REST)
+    weight = weight[tempo > 1.0]
+    tempo = tempo[tempo > 1.0]
+    if len(tempo) == 0:
+        return None
+    order = np.argsort(tempo, kind="stable")
+    heard = np.cumsum(weight[order])
+    return float(tempo[order][np.searchsorted(heard, READ * heard[-1])])
 
 
 def parse_scroll(text: str) -> Scroll:

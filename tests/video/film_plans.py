@@ -53,7 +53,7 @@ def film_plan(
         presses=presses,
         lines=BeatLines(beats * 60 / BPM, beats),
         beats=shown,
-        fastest_bpm=BPM,
+        scroll_bpm=BPM,
         directions=DIRECTIONS,
         motions={},
         pad=None,

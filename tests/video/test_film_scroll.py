@@ -10,7 +10,7 @@ from film_plans import film_plan
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.film import Film
-from dancetutor_cli.video.scroll import Scroll, parse_scroll, parse_segments, parse_speeds
+from dancetutor_cli.video.scroll import Scroll, parse_scroll, parse_segments, parse_speeds, reading_bpm
 
 
 @pytest.mark.parametrize(
@@ -31,6 +31,27 @@ def test_m_is_c_at_the_fastest_part() -> None:
     fastest = 180.0
     per_second = parse_scroll("M600").factor(fastest) * fastest / 60
     assert per_second == pytest.approx(parse_scroll("C600").factor(fastest))
+
+
+def test_the_tempo_of_m_is_that_of_the_notes() -> None:
+    """Not that of a burst, nor of tempos written at an eighth and scrolled eight times as far."""
+    eighths = np.arange(0.0, 60.0, 0.25)  # of 120 BPM
+    ones = np.ones(len(eighths))
+    assert reading_bpm(eighths, 2 * eighths, ones) == pytest.approx(120)
+    slow = parse_segments("0=8").shown(eighths / 4)  # 15 BPM
+    assert reading_bpm(eighths, slow, ones) == pytest.approx(120)
+    assert reading_bpm(eighths, 2 * eighths, 3 * ones) == pytest.approx(360), "speed segments spread the notes"
+    burst = np.interp(eighths, [0, 57, 60], [0, 114, 114 + 96])  # three seconds at 1920 BPM
+    assert reading_bpm(eighths, burst, ones) == pytest.approx(120)
+    faster = np.interp(eighths, [0, 45, 60], [0, 90, 90 + 60])  # a quarter of it at 240 BPM
+    assert reading_bpm(eighths, faster, ones) == pytest.approx(240)
+    assert reading_bpm(np.array([1.0, 90.0]), np.array([2.0, 180.0]), np.ones(2)) == pytest.approx(120)
+
+
+def test_what_stands_still_has_no_tempo() -> None:
+    for beats in (np.zeros(3), np.array([])):
+        assert reading_bpm(np.arange(len(beats), dtype=float), beats, np.ones(len(beats))) is None
+    assert reading_bpm(np.zeros(3), np.arange(3.0), np.ones(3)) is None
 
 
 def test_scroll_segments_integrate_their_ratios() -> None:

@@ -74,11 +74,12 @@ vec3 pad_colour(vec2 at, float footprint, out int column, out float glow, out fl
 }
 
 vec3 wall_colour(float u, float v) {
-    float core = u / 0.045, halo = u / 0.30;
+    float core = u / (0.03 + 0.5 * v), beam = u / (0.16 + 1.1 * v), near = v / 0.035;
     core = 1.0 / (1.0 + core * core);
-    halo = 1.0 / (1.0 + halo * halo);
-    float fade = smoothstep(0.02, 0.10, v) * (1.0 - smoothstep(0.25, 0.75, v));
-    return mix(palette[3], palette[4], smoothstep(0.0, 0.6, v)) + palette[5] * fade * (0.75 * core * core + 0.16 * halo);
+    beam = 1.0 / (1.0 + beam * beam);
+    float lamp = smoothstep(0.012, 0.03, v) / (1.0 + near * near);
+    float high = smoothstep(0.012, 0.06, v) * (1.0 - smoothstep(0.05, 0.5, v));
+    return mix(palette[3], palette[4], smoothstep(0.0, 0.6, v)) + palette[5] * (0.9 * core * core * lamp + 0.34 * beam * high);
 }
 
 float shadowed(vec3 at) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from dancetutor_cli.video.layout import PixelBox
@@ -12,12 +13,20 @@ from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted, in_line
 from dancetutor_cli.video.picture import Frame
 
 BESIDE = 0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+SUBTITLE = 0.68  # size of a subtitle that stands below its title, in the title's
+TIGHT = 0.2  # of a line's size that the next one of a title is nearer than the font has it
+_BRACKETED = re.compile(r"(.*?\S)(?:\s+(?=[(\[~～〜])|\s*(?=[（【「]))(.*[)\]~～〜）】」])")
 TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))  # least size and number of lines of a title, the first that fits
+SUBTITLE_FITS = ((0.78, 1), (0.75, 2))  # likewise of a subtitle
+ARTIST_FITS = ((0.85, 1), (0.675, 2))
 
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it."""
+    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it.
+
+    subtitle : stands behind the title if both fit in a line, else below it, smaller
+    """
 
     title: str
     artist: str
@@ -25,6 +34,7 @@ class Words:
     difficulty: str
     detail: str
     credit: str = ""
+    subtitle: str = ""
 
 
 class Header:
@@ -42,12 +52,9 @@ class Header:
         self._scale, self._face = scale, face
         self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
         title_size, small = 33 * scale, 19 * scale
-        title, title_size = _title(words.title, title_size, 0.97 * (self._right - box[0]), face)
         self.bottom = float(box[1])
-        for number, line in enumerate(title):
-            ink = face.sprite(line, title_size, WHITE, weight=title_size / 60, shadow=2 * scale)
-            self._add(ink, box[0], -0.12 * title_size if number else 0)
-        self._always = 1 if len(title) == 1 else 0  # a title of one line is above her head, even as she walks on
+        self._title(words, title_size, 0.97 * (self._right - box[0]))
+        self._always = 1 if len(self.lines) == 1 else 0  # a title of one line is above her head, even as she walks on
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._artist(words.artist, small)
@@ -69,17 +76,28 @@ class Header:
         self.lines.append((sprite, x, self.bottom + gap))
         self.bottom += gap + sprite.shape[0]
 
+    def _title(self, words: Words, size: float, width: float) -> None:
+        """All in one line; or the title, and below it, smaller, the subtitle or what stands in brackets at its end."""
+        face, name, rest = self._face, words.title, words.subtitle
+        lines, fits = _fits(f"{name} {rest}".strip(), size, width, face, TITLE_FITS)
+        if len(lines) > 1 and (found := _BRACKETED.fullmatch(name[:LONGEST])) and not rest:
+            name, rest = found[1], found[2]
+        if len(lines) > 1 and rest:
+            lines, fits = _fits(name, size, width, face, TITLE_FITS)
+        else:
+            rest = ""
+        for number, line in enumerate(lines):
+            ink = face.sprite(line, fits, WHITE, weight=fits / 60, shadow=2 * self._scale)
+            self._add(ink, self._left, -TIGHT * fits if number else 0)
+        if rest:
+            lines, fits = _fits(rest, SUBTITLE * size, width, face, SUBTITLE_FITS)
+            for line in lines:
+                ink = face.sprite(line, fits, WHITE, weight=fits / 80, shadow=1.5 * self._scale)
+                self._add(ink, self._left, -TIGHT * fits)
+
     def _artist(self, text: str, size: float) -> None:
         """In one line, a little smaller, or in two."""
-        room = self._right - self._left
-        if 0.85 * self._face.width(text[:LONGEST], size) <= room:
-            self._line(text, size, self._scale, weight=0.25)
-            return
-        lines, fits = fitted(text, 0.9 * size, room, self._face, 2)
-        if fits < 0.75 * size:
-            fits = 0.75 * size
-            lines = in_lines(text, fits, room, self._face, 2)
-        size = fits
+        lines, size = _fits(text, size, self._right - self._left, self._face, ARTIST_FITS)
         for number, line in enumerate(lines):
             self._line(line, size, -0.1 * size if number else self._scale, weight=0.25)
 
@@ -109,15 +127,17 @@ class Header:
             blit(frame, sprite, x, round(y), opacity if number >= self._always else 1.0)
 
 
-def _title(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """A title in one line or several of a size that is read from afar; only what would fill more is cut off."""
+def _fits(
+    text: str, size: float, width: float, face: Typeface, ways: tuple[tuple[float, int], ...]
+) -> tuple[list[str], float]:
+    """Words in one line or several of a size that is read from afar; only what would fill more is cut off."""
     text = text[:LONGEST]
     whole = face.width(text, size)
-    for least, most in TITLE_FITS:
+    for least, most in ways:
         if least * whole > most * width:  # it cannot fit, and trying would take long with 1000 letters
             continue
         lines, fits = fitted(text, size, width, face, most)
         if fits >= least * size:
             return lines, fits
-    least, most = TITLE_FITS[-1]
+    least, most = ways[-1]
     return in_lines(text, least * size, width, face, most), least * size

@@ -76,14 +76,14 @@ class Highway:
     """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
 
     def __init__(
-        self, score: Score, geometry: HighwayGeometry, scroll: Scroll, fastest_bpm: float, face: Typeface
+        self, score: Score, geometry: HighwayGeometry, scroll: Scroll, scroll_bpm: float, face: Typeface
     ) -> None:
         self.notes, self.presses, self.lines, self.callouts = score
         self.geometry, self.face = geometry, face
         self._callout_seconds = np.array([c.second for c in self.callouts])
         self._callout_beats = np.array([c.beat for c in self.callouts])
         self.by_time = scroll.mode == "C"
-        self.spacing = scroll.factor(fastest_bpm) * geometry.lane * (-1 if geometry.down else 1)
+        self.spacing = scroll.factor(scroll_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
         self.size = max(8, round(geometry.lane * self.style.arrow))
         # Which colour a note has: that of its quantisation, or of a chart for two of whose it is.

@@ -21,6 +21,7 @@ FINE = 4  # text is drawn so many times larger and made smaller: letters need no
 LEAST = 4.0  # pixels of letters; nobody reads them, but hostile words end there
 _NOT_FIRST = frozenset("、。，．・：；？！ー～〜）］｝」』】〉》ぁぃぅぇぉっゃゅょァィゥェォッャュョ)]}!?,.:;…々")
 _NOT_LAST = frozenset("（［｛「『【〈《([{")
+EVEN = 4  # lines at most that are made as long as each other
 LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
 _FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
          "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
@@ -214,11 +215,24 @@ def _after(text: str, lines: list[str]) -> str:
 def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
     """A text in at most `most` lines of at most `width` pixels, and the size that makes it fit: nothing is cut off.
 
-    It is wrapped before it is made smaller.
+    It is wrapped before it is made smaller, and its lines are about as long as each other.
     """
     parts = parts_of(text)
     while True:
         lines = _laid(parts, size, width, face, most + 1)
         if size <= LEAST or (len(lines) <= most and max(face.width(line, size) for line in lines) <= width):
-            return lines, size
+            return _even(parts, lines, (size, width), face), size
         size = max(LEAST, 0.96 * size)
+
+
+def _even(parts: list[str], lines: list[str], room: tuple[float, float], face: Typeface) -> list[str]:
+    """As many lines, the longest as short as can be: no last line of one word. room : size and width, pixels"""
+    if not 1 < len(lines) <= EVEN:
+        return lines
+    (size, width), count = room, len(lines)
+    for share in np.arange(0.95, 1 / count, -0.05):
+        other = _laid(parts, size, float(share) * width, face, count + 1)
+        if len(other) > count or max(face.width(line, size) for line in other) > share * width:
+            break
+        lines = other
+    return lines

@@ -17,14 +17,15 @@ def words_of(song: Song, chart: Chart, font: Path | None) -> Words:
     subtitle = _readable(face, song, song.subtitle, "SUBTITLETRANSLIT")
     artist = _readable(face, song, song.artist, "ARTISTTRANSLIT")
     credit = clean(chart.tags.get("CREDIT", ""))
-    detail = f"{chart.steps_type} · {bpm_text(chart)} BPM"
+    detail = f"{chart.steps_type} · {bpm_text(song, chart)} BPM"
     return Words(
-        title=" ".join(part for part in (title, subtitle) if part),
+        title=title or subtitle,
         artist=artist,
         badge=face.drawable(f"{chart.difficulty} {chart.meter}"),
         difficulty=chart.difficulty,
         detail=face.drawable(detail),
         credit=face.drawable(f"steps by {credit}") if credit else "",
+        subtitle=subtitle if title else "",
     )
 
 

@@ -122,6 +122,34 @@ def test_titles_and_artists_are_not_cut(name: str, title: str, artist: str, colu
     assert header.top == box[1]
 
 
+@pytest.mark.parametrize(
+    ("title", "subtitle", "lines"),
+    [
+        ("Adore", "(Mix)", ["Adore (Mix)"]),
+        ("A Title of Words", "Simple Crossovers Edition", ["A Title of Words", "Simple Crossovers Edition"]),
+        ("THAT'S THE WAY (I LIKE IT)", "", ["THAT'S THE WAY", "(I LIKE IT)"]),
+        ("[x] Words of a Title (a) (b)", "", ["[x] Words of a Title", "(a) (b)"]),
+        ("Many Words of a Title (a)", "of Mine", ["Many Words", "of a Title (a)", "of Mine"]),
+        ("(all of it stands in brackets)", "", ["(all of it stands", "in brackets)"]),
+    ],
+)
+def test_a_subtitle_stands_below_its_title_and_smaller(
+    title: str, subtitle: str, lines: list[str], written: list[str]
+) -> None:
+    words = Words(title, "x", "Hard 8", "Hard", "", subtitle=subtitle)
+    header = Header(words, (0, 0, 270, 200), 1.0, Typeface(), highway_style())
+    assert written[: len(lines)] == lines and written[len(lines)] == "x"
+    if len(lines) > 1 and title != "(all of it stands in brackets)":
+        assert header.lines[len(lines) - 1][0].shape[0] < header.lines[0][0].shape[0]
+
+
+def test_lines_are_about_as_long_as_each_other() -> None:
+    face = Typeface()
+    text = "La Troupe de Mozart, L'Opéra Rock"
+    width = face.width("La Troupe de Mozart, L'Opéra", 20) + 1
+    assert fitted(text, 20, width, face, 2) == (["La Troupe de Mozart,", "L'Opéra Rock"], 20)
+
+
 def test_what_does_not_fit_ends_at_a_word(written: list[str]) -> None:
     face, style = Typeface(), highway_style()
     words = Words("Many Long Words of a Song " * 12, "Very Many Artists, " * 9, "Hard 8", "Hard", "", "steps by x")

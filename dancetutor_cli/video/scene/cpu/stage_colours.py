@@ -136,11 +136,13 @@ def _pad(place: Place, paints: Paints) -> Painted:
 
 
 def _wall(place: Place, palette: Array) -> Painted:
+    """A lamp at the foot of each part, whose light is wide and has no edge farther up: the song's words stand there."""
     u, v = place.u, place.v
-    core, halo = u / 0.045, u / 0.30
-    core, halo = 1.0 / (1.0 + core * core), 1.0 / (1.0 + halo * halo)
-    fade = _smooth(0.02, 0.10, v) * (1.0 - _smooth(0.25, 0.75, v))
-    light = fade * (0.75 * core * core + 0.16 * halo)
+    core, beam = u / (0.03 + 0.5 * v), u / (0.16 + 1.1 * v)
+    core, beam = 1.0 / (1.0 + core * core), 1.0 / (1.0 + beam * beam)
+    lamp = _smooth(0.012, 0.03, v) / (1.0 + (v / 0.035) ** 2)
+    high = _smooth(0.012, 0.06, v) * (1.0 - _smooth(0.05, 0.5, v))
+    light = 0.9 * core * core * lamp + 0.34 * beam * high
     colour = _mix(palette, 3, 4, _smooth(0.0, 0.6, v)) + palette[5, :3] * light[:, None]
     return Painted(colour, 0.0, *_unlit(len(u)))
 
