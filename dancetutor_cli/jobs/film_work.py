@@ -208,7 +208,9 @@ def common_to_workers(kind: RendererKind) -> str:
     from dancetutor_cli.video.scene.cpu.shade import resolve
 
     if renderer.chosen(kind) != "cpu":
-        return "dancetutor_cli.video.film"
+        from dancetutor_cli.video.scene.gl.available import gpu_device
+
+        return "dancetutor_cli.video.film" if gpu_device() is not None else "dancetutor_cli.jobs.film_common_gl"
     return "dancetutor_cli.jobs.film_common" if is_kept(resolve) else ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import stat
 import subprocess
 import sys
@@ -202,3 +203,11 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
 def test_one_worker_compiles_for_all(monkeypatch, kept):
     monkeypatch.setattr("dancetutor_cli.kernels.is_kept", lambda kernel: kept)
     assert bool(film_work.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
+
+
+@pytest.mark.parametrize("device", [None, 0])
+def test_what_workers_that_draw_by_opengl_share_is_there(monkeypatch, device):
+    monkeypatch.setattr("dancetutor_cli.video.scene.gl.available.gpu_device", lambda: device)
+    name = film_work.common_to_workers("gl")
+    assert importlib.util.find_spec(name) is not None
+    assert name.endswith("_gl") == (device is None)  # what a card's driver loads would not survive a fork

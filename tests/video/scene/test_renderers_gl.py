@@ -17,7 +17,10 @@ from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.video.choices import QUALITIES
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import with_pan_range
+from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.gl import available
+from dancetutor_cli.video.scene.gl.matrices import held_by, places_of
+from dancetutor_cli.video.scene.prepare import skin_matrices
 from dancetutor_cli.video.scene.scene import Scene
 
 SIZE = (640, 360)
@@ -169,6 +172,21 @@ def test_arguments_by_reference_are_known_to_pyopengl(needs_gl):
     assert FormatHandler.match(kind).load().__name__ == "CtypesParameterHandler"
 
 
+@pytest.mark.parametrize("kind", ["stand", "step", "leap"])
+def test_boxes_on_her_joints_hold_her_closely_in_any_pose(kind):
+    scene = Scene(load_dancer(), rs.scene().pad)
+    mesh = pack(scene.character)
+    matrices = skin_matrices(scene, rs.pose(scene.character, kind))
+    places = places_of(held_by(mesh.positions, mesh.joints, mesh.weights), matrices)
+    corners = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
+    skinned = np.einsum("vk,vkrc,vc->vr", mesh.weights, matrices[mesh.joints], corners)
+    ways = np.random.default_rng(5).normal(size=(50, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    beyond = (places @ ways.T).max(axis=0) - (skinned @ ways.T).max(axis=0)
+    assert beyond.min() > -1e-5
+    assert beyond.max() < 0.2  # metres
+
+
 @pytest.mark.gl
 @pytest.mark.parametrize("quality", ["draft", "good"])
 @pytest.mark.parametrize(("kind", "camera"), [("step", "back"), ("jump", "three-quarter")])
@@ -182,6 +200,6 @@ def test_only_floor_that_nothing_falls_on_is_left_alone(needs_gl, monkeypatch, q
         some, rectangles = [], gl.rectangles
         monkeypatch.setattr(gl, "rectangles", lambda touched: some.append(touched) or rectangles(touched | True))
         assert drawing.frame(state).tobytes() == frame.tobytes()
-        assert 0.02 < some[0].mean() < 0.5  # of the picture's tiles
+        assert 0.02 < (some[0] | some[1]).mean() < 0.5  # of the picture's tiles, without feet and with
     finally:
         drawing.close()

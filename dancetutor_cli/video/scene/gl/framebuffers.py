@@ -55,6 +55,12 @@ def refill(number: int, image: NDArray[Any], level: int = 0) -> None:
     )
 
 
+def smooth(number: int) -> None:
+    """Let a texture be read between its texels."""
+    GL.glBindTexture(GL.GL_TEXTURE_2D, number)
+    _parameters(GL.GL_LINEAR, GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)
+
+
 def _parameters(small: int, large: int, wrap: int, levels: int = 0) -> None:
     for name, value in (
         (GL.GL_TEXTURE_MIN_FILTER, small),
@@ -105,17 +111,16 @@ class Target:
         GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, self.framebuffer)
         GL.glViewport(0, 0, *self.size)
 
-    def copy_from(self, other: Target, box: tuple[int, int, int, int], to: tuple[int, int], fine: int = 1) -> None:
+    def copy_from(self, other: Target, box: tuple[int, int, int, int], to: tuple[int, int]) -> None:
         """Copy the pixels of `box` (x0, y0, x1, y1) of another target so that its first corner lies at `to`.
 
-        fine : 1, or 2 where each pixel becomes the mean of two by two
+        Samples of a pixel become their mean.
         """
         GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, other.framebuffer)
         GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, self.framebuffer)
         x0, y0, x1, y1 = box
-        end = to[0] + (x1 - x0) // fine, to[1] + (y1 - y0) // fine
-        smooth = GL.GL_NEAREST if fine == 1 else GL.GL_LINEAR
-        GL.glBlitFramebuffer(x0, y0, x1, y1, *to, *end, GL.GL_COLOR_BUFFER_BIT, smooth)
+        end = to[0] + x1 - x0, to[1] + y1 - y0
+        GL.glBlitFramebuffer(x0, y0, x1, y1, *to, *end, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
 
     def delete(self) -> None:
         """Give its memory back."""

@@ -1,15 +1,14 @@
-"""Matrices of the OpenGL renderer, and the box that holds the dancer."""
+"""Matrices of the OpenGL renderer, and boxes that hold the dancer."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.video.scene.camera import NEAR, Camera
 from dancetutor_cli.video.scene.prepare import SHADOW_REACH, Cast
-from dancetutor_cli.video.scene.scene import Scene
 
 Array = NDArray[np.float64]
 FAR = 100.0  # metres; nothing farther is drawn
@@ -41,30 +40,39 @@ def light_matrix(cast: Cast) -> Array:
     return out
 
 
-def reach(scene: Scene, positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> Array:
-    """How far from each joint (j,) the skin that hangs on it lies: bounds of any pose, without skinning it here."""
-    places = np.linalg.inv(scene.character.inverse_bind)[:, :3, 3]
-    out = np.zeros(len(places))
-    for k in range(joints.shape[1]):
-        held = weights[:, k] > 0
-        distance = np.linalg.norm(positions[held] - places[joints[held, k]], axis=1)
-        np.maximum.at(out, joints[held, k], distance)
-    return out
+class Held(NamedTuple):
+    """What hangs on each joint: any pose of the skin lies within these boxes, without skinning it here.
+
+    joint : int (k,), the joints that hold any; corners : (k, 8, 3), of the box around what one holds, binding pose
+    """
+
+    joint: NDArray[np.intp]
+    corners: Array
 
 
-def bounds_of(joints: Array, reach: Array) -> tuple[Array, Array]:
-    """Least and greatest corner (3,) of a box that holds the dancer."""
-    held = reach > 0
-    places, reach = joints[held, :3, 3], reach[held, None]
-    return (places - reach).min(0), (places + reach).max(0)
+def held_by(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> Held:
+    """The boxes of a mesh (v, 3), whose vertices hang on joints (v, 4) by weights (v, 4) that sum to 1."""
+    held = weights > 0
+    owner, vertex = joints[held], np.nonzero(held)[0]
+    ends = np.empty((2, int(joints.max()) + 1, 3))
+    ends[0], ends[1] = np.inf, -np.inf
+    np.minimum.at(ends[0], owner, positions[vertex])
+    np.maximum.at(ends[1], owner, positions[vertex])
+    joint = np.unique(owner)
+    corner = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    return Held(joint, np.stack([ends[corner[:, k], joint[:, None], k] for k in range(3)], axis=-1))
 
 
-def within(light: Array, joints: Array, reach: Array) -> Array:
+def places_of(held: Held, matrices: Array) -> Array:
+    """World points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), binding pose to world"""
+    turn = matrices[held.joint]
+    return np.asarray(held.corners @ turn[:, :, :3].transpose(0, 2, 1) + turn[:, None, :, 3]).reshape(-1, 3)
+
+
+def within(light: Array, places: Array) -> Array:
     """The part of the shadow map (4,), left, top, right and bottom from 0 to 1, beyond which nothing of her is.
 
-    light : `light_matrix`; joints (j, 4, 4), reach (j,) as for `bounds_of`
+    light : `light_matrix`; places : `places_of`
     """
-    held = reach > 0
-    places = (joints[held, :3, 3] @ light[:2, :3].T + light[:2, 3]) * 0.5 + 0.5
-    around = reach[held, None] / SHADOW_REACH
-    return np.concatenate([(places - around).min(0), (places + around).max(0)])
+    there = (places @ light[:2, :3].T + light[:2, 3]) * 0.5 + 0.5
+    return np.concatenate([there.min(0), there.max(0)])

@@ -5,8 +5,9 @@ Import only after `compat.load_pyrender`. Made in the process that uses it, afte
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +20,13 @@ from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import Camera
 from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.gl.available import gpu_device
-from dancetutor_cli.video.scene.gl.framebuffers import Target, pyramid, refill, texture
-from dancetutor_cli.video.scene.gl.matrices import bounds_of, camera_matrix, light_matrix, reach, within
+from dancetutor_cli.video.scene.gl.framebuffers import Target, pyramid, refill, smooth, texture
+from dancetutor_cli.video.scene.gl.matrices import camera_matrix, held_by, light_matrix, places_of, within
 from dancetutor_cli.video.scene.gl.patches import Patches, is_lit, rectangles, shaded, trodden
 from dancetutor_cli.video.scene.gl.primitive import SkinnedPrimitive
 from dancetutor_cli.video.scene.gl.programs import Program, ProgramCache
 from dancetutor_cli.video.scene.gl.standing import Standing
+from dancetutor_cli.video.scene.gl.state import bind_texture, cover, scissor, set_state
 from dancetutor_cli.video.scene.look import LightLook
 from dancetutor_cli.video.scene.prepare import (
     SAMPLES,
@@ -47,6 +49,19 @@ Array = NDArray[np.float64]
 _OFF_SURFACE = (0.012, 0.006)
 _RING = 0.032  # metres from a sole: no ring of ground.frag is farther out
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
+
+
+class _Her(NamedTuple):
+    """The dancer in one frame. part : what of her is shown; joints : (j, 4, 4); places : `matrices.places_of`
+
+    cast, light : where her shadow map is, and its matrix (4, 4)
+    """
+
+    part: Shown
+    joints: Array
+    places: Array
+    cast: Cast
+    light: Array
 
 
 class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
@@ -81,12 +96,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
             self._primitives.append((primitive, self._skins[skin], tint, limbs if limb else 0.0))
-        self._reach = reach(scene, mesh.positions, mesh.joints, mesh.weights)
+        self._held = held_by(mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
         fine = (self._fine * self._size[0], self._fine * self._size[1])
         self._drawn = Target(fine, self._samples, depth=True)
         self._whole = Target(fine) if self._samples else self._drawn
-        self._resolved = Target(self._size)
+        smooth(self._whole.texture)
         self._picture = Target(self._size)
         self._standing: tuple[Camera, Standing] | None = None
         self._patches = Patches()
@@ -103,20 +118,20 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         camera = state.camera
         standing = self._stage(camera)
         shift = standing.left - camera.pan_pixels(self._size[0])
-        joints, part = joints_of(self._scene, state), shown(state)
+        joints = joints_of(self._scene, state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
-        bounds = bounds_of(joints, self._reach)
+        skin = skin_matrices(self._scene, joints)
+        her = _Her(shown(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
         matrices = np.zeros((MOST_JOINTS, 3, 4), np.float32)
-        matrices[: len(joints)] = skin_matrices(self._scene, joints)
+        matrices[: len(joints)] = skin
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
         GL.glBufferSubData(GL.GL_UNIFORM_BUFFER, 0, matrices.nbytes, matrices)
         GL.glBindBufferBase(GL.GL_UNIFORM_BUFFER, 0, self._joints)
-        _set_state()
-        light = light_matrix(cast)
-        self._draw_shadow(light, cast, part)
+        set_state()
+        self._draw_shadow(her)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
-        self._draw_ground(state, standing, shift, cast, light)
-        self._draw_dancer(part, joints, camera, cast, light, bounds)
+        self._draw_ground(state, standing, shift, her)
+        self._draw_dancer(camera, her)
         return self._read()
 
     def close(self) -> None:
@@ -138,38 +153,40 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._standing = (key, Standing(self._scene, key, self._size, max(2, SAMPLES[self._quality])))
         return self._standing[1]
 
-    def _draw_shadow(self, light: Array, cast: Cast, part: Shown) -> None:
+    def _draw_shadow(self, her: _Her) -> None:
         self._map.bind()
         GL.glDisable(GL.GL_SCISSOR_TEST)
         GL.glClear(GL.GL_DEPTH_BUFFER_BIT)
-        if cast.scale:
-            self._use_skinned("depth.frag", light, cast, to_map=1.0)
+        if her.cast.scale:
+            self._use_skinned("depth.frag", her, to_map=1.0)
             GL.glCullFace(GL.GL_BACK)
             for primitive, *_ in self._primitives:
-                primitive.draw(part)
+                primitive.draw(her.part)
 
-    def _use_skinned(self, fragment: str, light: Array, cast: Cast, **more: Any) -> Program:
+    def _use_skinned(self, fragment: str, her: _Her, **more: Any) -> Program:
         program: Program = self._program_cache.program("skinned.vert", fragment)
-        program.use(light=light, sun=cast.axes[2], off_surface=np.array(_OFF_SURFACE), **{"to_map": 0.0, **more})
+        sun = {"light": her.light, "sun": her.cast.axes[2], "off_surface": np.array(_OFF_SURFACE)}
+        program.use(**{**sun, "to_map": 0.0, "outline": 0.0, **more})
         GL.glUniformBlockBinding(program.number, GL.glGetUniformBlockIndex(program.number, "Joints"), 0)
         return program
 
-    def _draw_ground(self, state: FrameState, standing: Standing, shift: int, cast: Cast, light: Array) -> None:
+    def _draw_ground(self, state: FrameState, standing: Standing, shift: int, her: _Her) -> None:
         look = self._scene.look
         lit, colour = panel_lights(self._scene, state)
         refill(self._lights, np.column_stack([colour / 255.0, lit]).astype(np.float32)[None])
         feet = feet_on_floor(self._scene, state)
-        part = within(light, joints_of(self._scene, state), self._reach)
+        cast, part = her.cast, within(her.light, her.places)
         spread = float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0])
-        touched = is_lit(standing.tiles, lit) | trodden(standing.tiles, feet, _foot_reach(look.light))
+        under = trodden(standing.tiles, feet, _foot_reach(look.light)) & standing.has_ground
+        touched = is_lit(standing.tiles, lit)
         if cast.scale:
-            touched |= shaded(standing.tiles, light, part, spread)
+            touched |= shaded(standing.tiles, her.light, part, spread)
         program: Program = self._program_cache.program("patches.vert", "ground.frag")
         units = {"standing": standing.colour, "ground": standing.ground, "panels": standing.panels}
         units |= {"lights": self._lights}
         program.use(
             shift=shift,
-            light=light,
+            light=her.light,
             dark=float(look.light.shadow if cast.scale else 0.0),
             within=part,
             spread=spread,
@@ -182,73 +199,76 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             **{name: unit for unit, name in enumerate(units)},
         )
         for unit, number in enumerate(units.values()):
-            _bind_texture(unit, number)
-        _bind_texture(_SHADOW_UNIT, self._map.texture)
+            bind_texture(unit, number)
+        bind_texture(_SHADOW_UNIT, self._map.texture)
         self._picture.bind()
         GL.glDisable(GL.GL_DEPTH_TEST)
         GL.glDisable(GL.GL_SCISSOR_TEST)
-        touched &= standing.has_ground
-        self._patches.draw(rectangles(touched) - [shift, 0, shift, 0], self._size)
+        for tiles, count in ((touched & standing.has_ground & ~under, 0), (under, len(feet))):
+            program.set_uniform("feet", count)
+            self._patches.draw(rectangles(tiles) - [shift, 0, shift, 0], self._size)
 
-    def _draw_dancer(
-        self, part: Shown, joints: Array, camera: Camera, cast: Cast, light: Array, bounds: tuple[Array, Array]
-    ) -> None:
-        corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-        box = pixel_box(camera, bounds[0] + corners * (bounds[1] - bounds[0]), self._size)
+    def _draw_dancer(self, camera: Camera, her: _Her) -> None:
+        look, (width, height) = self._scene.look.toon, self._size
+        wide = look.outline_width * pixels_per_metre(camera, her.joints, self._size)
+        box = pixel_box(camera, her.places, self._size)
+        around = math.ceil(wide)  # her outline stands out so far
+        box = np.clip(box + np.array([-around, -around, around, around]), 0, [width, height, width, height])
         if box[0] >= box[2] or box[1] >= box[3]:
             return
-        look, (width, height) = self._scene.look.toon, self._size
         self._drawn.bind()
         GL.glDisable(GL.GL_SCISSOR_TEST)  # to clear all of it is quicker than a part where a processor draws
         GL.glClear(GL.GL_COLOR_BUFFER_BIT | GL.GL_DEPTH_BUFFER_BIT)
-        _scissor(self._fine * box)
+        scissor(self._fine * box)
         GL.glEnable(GL.GL_DEPTH_TEST)
+        view = {
+            "camera": camera_matrix(camera, self._size),
+            "eye": np.array(camera.position),
+            "pixels": np.array([width / 2, height / 2]),
+            "focal": float(camera.focal * height),
+        }
         program = self._use_skinned(
             "dancer.frag",
-            light,
-            cast,
-            camera=camera_matrix(camera, self._size),
-            eye=np.array(camera.position),
-            pixels=np.array([width / 2, height / 2]),
-            focal=float(camera.focal * height),
+            her,
             bands=np.array([*look.bands, look.soft]),
             levels=np.array(look.levels),
             rim=np.array([look.rim, look.rim_from]),
             shade=np.array(look.shade) / 255.0,
-            outline_colour=np.array(look.outline) / 255.0,
-            has_shadow=1.0 if cast.scale else 0.0,
+            has_shadow=1.0 if her.cast.scale else 0.0,
             shadow=_SHADOW_UNIT,
             skin=_SKIN_UNIT,
+            **view,
         )
-        _bind_texture(_SHADOW_UNIT, self._map.texture)
-        wide = look.outline_width * pixels_per_metre(camera, joints, self._size)
-        for outline, culled in ((0.0, GL.GL_BACK), (wide, GL.GL_FRONT)):
-            program.set_uniform("outline", float(outline))
-            GL.glCullFace(culled)
-            for primitive, skin, tint, least in self._primitives:
-                _bind_texture(_SKIN_UNIT, skin)
-                program.set_uniform("tint", tint)
-                program.set_uniform("least", least)
-                primitive.draw(part)
-        self._resolve(box)
+        bind_texture(_SHADOW_UNIT, self._map.texture)
+        GL.glCullFace(GL.GL_BACK)
+        for primitive, skin, tint, least in self._primitives:
+            bind_texture(_SKIN_UNIT, skin)
+            program.set_uniform("tint", tint)
+            program.set_uniform("least", least)
+            primitive.draw(her.part)
+        # with a shader of its own: a processor would work out her light, too, wherever it tries the outline
+        self._use_skinned("outline.frag", her, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
+        GL.glCullFace(GL.GL_FRONT)
+        for primitive, *_ in self._primitives:
+            primitive.draw(her.part)
+        self._lay_over(box)
+
+    def _lay_over(self, box: NDArray[Any]) -> None:
+        """Put what is drawn of her on the picture: each pixel the mean of all that was drawn for it."""
+        if self._samples:
+            GL.glDisable(GL.GL_SCISSOR_TEST)
+            x0, y0, x1, y1 = (int(v) for v in self._fine * box)
+            self._whole.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))
         self._picture.bind()
+        scissor(box)
         GL.glDisable(GL.GL_DEPTH_TEST)
         GL.glEnable(GL.GL_BLEND)
         GL.glBlendFunc(GL.GL_ONE, GL.GL_ONE_MINUS_SRC_ALPHA)
-        copy: Program = self._program_cache.program("screen.vert", "copy.frag")
-        copy.use(picture=_FIRST_UNIT)
-        _bind_texture(_FIRST_UNIT, self._resolved.texture)
-        _cover(copy)
+        over: Program = self._program_cache.program("screen.vert", "over.frag")
+        over.use(drawn=_FIRST_UNIT, size=np.array(self._size))
+        bind_texture(_FIRST_UNIT, self._whole.texture)
+        cover(over)
         GL.glDisable(GL.GL_BLEND)
-
-    def _resolve(self, box: NDArray[Any]) -> None:
-        """The dancer's pixels from all that was drawn for each of them."""
-        GL.glDisable(GL.GL_SCISSOR_TEST)
-        x0, y0, x1, y1 = (int(v) for v in self._fine * box)
-        if self._samples:
-            self._whole.copy_from(self._drawn, (x0, y0, x1, y1), (x0, y0))
-        self._resolved.copy_from(self._whole, (x0, y0, x1, y1), (int(box[0]), int(box[1])), self._fine)
-        _scissor(box)
 
     def _read(self) -> NDArray[np.uint8]:
         GL.glDisable(GL.GL_SCISSOR_TEST)
@@ -279,36 +299,3 @@ def _start(size: tuple[int, int]) -> EGLPlatform:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise UnavailableError(f"OpenGL does not start ({reason}); use --renderer cpu") from error
     return platform
-
-
-def _set_state() -> None:
-    """What the passes rely on. The picture's first row is y = 0, upside down for OpenGL: triangles turn clockwise."""
-    GL.glEnable(GL.GL_CULL_FACE)
-    GL.glFrontFace(GL.GL_CW)
-    GL.glEnable(GL.GL_DEPTH_TEST)
-    GL.glDepthMask(GL.GL_TRUE)
-    GL.glDepthFunc(GL.GL_LESS)
-    GL.glDisable(GL.GL_BLEND)
-    GL.glEnable(GL.GL_MULTISAMPLE)
-    GL.glClearColor(0.0, 0.0, 0.0, 0.0)
-    GL.glClearDepth(1.0)
-    GL.glPolygonMode(GL.GL_FRONT_AND_BACK, GL.GL_FILL)
-
-
-def _bind_texture(unit: int, number: int) -> None:
-    GL.glActiveTexture(GL.GL_TEXTURE0 + unit)
-    GL.glBindTexture(GL.GL_TEXTURE_2D, number)
-
-
-def _scissor(box: NDArray[Any]) -> None:
-    x0, y0, x1, y1 = (int(v) for v in box)
-    GL.glEnable(GL.GL_SCISSOR_TEST)
-    GL.glScissor(x0, y0, max(x1 - x0, 0), max(y1 - y0, 0))
-
-
-def _cover(program: Program) -> None:
-    """Run the program's fragment shader for every pixel that the scissor leaves."""
-    GL.glBindVertexArray(program.empty_array)
-    GL.glDisable(GL.GL_CULL_FACE)
-    GL.glDrawArrays(GL.GL_TRIANGLES, 0, 3)
-    GL.glEnable(GL.GL_CULL_FACE)

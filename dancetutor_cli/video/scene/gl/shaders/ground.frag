@@ -12,6 +12,7 @@ uniform float spread;         // distance of the shadow's taps, part of the map
 uniform vec4 within;          // the part of the map beyond which there is no shadow
 uniform vec3 contact;         // darkness, softness, strength of lit panels
 uniform float radius;
+uniform int feet;             // how many can reach what is drawn
 uniform vec4 foot[4];         // heel x, z, toe x, z
 uniform vec3 foot_state[4];   // ground, nearness to it (< 0: no foot), strength of the mark
 uniform vec3 foot_colour[4];
@@ -54,7 +55,7 @@ void main() {
     float keep = dark > 0.0 ? 1.0 - dark * shadowed(at.xyz) : 1.0;
     float ring = 0.0;
     vec3 ring_colour = vec3(0.0);
-    for (int f = 0; f < 4; ++f) {
+    for (int f = 0; f < feet; ++f) {
         float near = foot_state[f].y;
         if (near < 0.0 || abs(at.y - foot_state[f].x) > 0.03) {
             continue;
