@@ -10,15 +10,18 @@ import hashlib
 import os
 import stat
 import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from threading import get_ident
 
 from dancetutor_cli.kernel_target import fits_shipped, maker
 from dancetutor_cli.resources import PACKAGE
 
 CHECKSUM = 32  # bytes of SHA-256
+SUFFIX = ".door"  # of what `kernel_door` keeps; the rest is numba's: .nbi and .nbc
 MADE_BY = "made_by.txt"  # beside the kernels that came with the package: by what, for people
 VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choice
 
@@ -62,6 +65,17 @@ def _kernel_folder(named: str | None) -> KernelFolder:
     return KernelFolder(temporary, temporary is not None, f"{' and '.join(refused)} cannot be written")
 
 
+def places_of(source: Path) -> Iterator[Path]:
+    """Where kernels of a module may have been kept, the likeliest first. Only the last is tried by writing there."""
+    named, users = os.environ.get(VARIABLE), users_folder("dancetutor")
+    if named:
+        yield KernelFolder(Path(named)).of_module(source)
+    yield source.parent / "__pycache__"
+    if users is not None:
+        yield KernelFolder(users / "kernels").of_module(source)
+    yield kernel_folder().of_module(source)
+
+
 def shipped_folder(source: Path) -> Path | None:
     """Where kernels of a module lie that came compiled with the package; None if none fits here.
 
@@ -80,7 +94,13 @@ def shipped_root() -> Path:
 
 def came_compiled() -> bool:
     """Whether the package brought kernels that are used here."""
-    return shipped_folder(PACKAGE / "kernels.py") is not None and any(map(_is_readable, shipped_root().rglob("*.nbi")))
+    return shipped_folder(PACKAGE / "kernels.py") is not None and any(map(_is_readable, kernels_in(shipped_root())))
+
+
+def kernels_in(folder: Path) -> Iterator[Path]:
+    """One file for each kernel that is kept in a folder and below it."""
+    yield from folder.rglob("*.nbi")
+    yield from folder.rglob(f"*{SUFFIX}")
 
 
 def head(stamp: str) -> bytes:
@@ -113,13 +133,13 @@ def users_folder(name: str) -> Path | None:
 
 
 def _usable(folder: Path) -> bool:
-    """Whether files can be put there; makes the folder."""
-    import tempfile  # which takes as long as a small chart
-
+    """Whether files can be put there; makes the folder. Without `tempfile`, whose import takes as long as a chart."""
+    probe = folder / f".dancetutor-{os.getpid()}-{get_ident()}.tmp"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
+        probe.touch()
+        probe.unlink(missing_ok=True)
+        return True
     except OSError:
         return False
 

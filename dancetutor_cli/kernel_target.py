@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import Any
 
 COMPILERS = ("numba", "llvmlite")
-_FORM = 4  # of what `kernels` writes, and of the options by which it compiles; count it up with either
+_FORM = 5  # of what `kernels` writes, and of the options by which it compiles; count it up with either
 LEVEL = "x86-64-v3"  # LLVM's name of the processor
 _ABILITIES = (
     *("avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf"),
@@ -52,6 +52,18 @@ def fits_shipped() -> bool:
     return named == _PORTABLE or (not named and _is_able())
 
 
+def target() -> str:
+    """The processor that this process compiles for: what was compiled for another is none of its business."""
+    named = [os.environ.get(name, "") for name in _PORTABLE]
+    if any(named):
+        return " ".join(named)
+    if _is_able():
+        return " ".join(_PORTABLE.values())
+    from llvmlite import binding
+
+    return f"{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}"
+
+
 @cache
 def maker() -> bytes:
     """A digest of what makes machine code of a kernel's source; 32 bytes. What another has made is not even read."""
@@ -64,6 +76,15 @@ def maker_in_words() -> str:
 
 
 def _version(name: str) -> str:
+    """The version of a compiler; by the name of what pip leaves beside it, if that is clear: to ask takes longer."""
+    import importlib.util
+
+    spec = importlib.util.find_spec(name)
+    if spec is not None and spec.origin is not None:
+        beside = os.listdir(os.path.dirname(os.path.dirname(spec.origin)))  # noqa: PTH120, PTH208
+        found = [one for one in beside if one.startswith(f"{name}-") and one.endswith(".dist-info")]
+        if len(found) == 1:
+            return found[0].removeprefix(f"{name}-").removesuffix(".dist-info")
     from importlib import metadata
 
     try:

@@ -46,7 +46,7 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
 def compile_into(out: Path, root: Path) -> None:
     """Compile the kernels of the checkout `root` into folders below `out` that are named as their modules' folders."""
     sys.path.insert(0, str(root))  # of this checkout, whatever is installed
-    from dancetutor_cli.kernel_folder import MADE_BY
+    from dancetutor_cli.kernel_folder import MADE_BY, SUFFIX
     from dancetutor_cli.kernel_target import LEVEL, fits_shipped, maker_in_words
 
     if not fits_shipped():
@@ -62,8 +62,9 @@ def compile_into(out: Path, root: Path) -> None:
         subprocess.run(command, env=kept | own, cwd=source, check=True)
         for made, where in _folders(cache, source / "dancetutor_cli"):
             (out / where).mkdir(parents=True)
-            for file in sorted(made.glob("*.nb[ic]")):
-                shutil.copyfile(file, out / where / file.name)
+            for file in sorted(made.iterdir()):
+                if file.suffix in (SUFFIX, ".nbi", ".nbc"):
+                    shutil.copyfile(file, out / where / file.name)
     (out / MADE_BY).write_text(f"{maker_in_words()}, {LEVEL}\n", "utf-8")
 
 

@@ -261,10 +261,13 @@ def _is_brief(options: dict[str, Any]) -> bool:
 def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     """Decide whether kernels have to be compiled for these files, and say so."""
     solves_often = any(task.suggest or task.alternatives for task in tasks)
-    from dancetutor_cli.library.selection import note_bytes
 
-    size = None if solves_often else sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
-    tell_of_compiling(tasks[0].presets, size)
+    def size() -> int:
+        from dancetutor_cli.library.selection import note_bytes
+
+        return sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
+
+    tell_of_compiling(tasks[0].presets, None if solves_often else size)
 
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:

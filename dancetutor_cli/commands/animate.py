@@ -142,7 +142,7 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     task = replace(task, style=style_for(task.style, task.push, task.trip))
     from dancetutor_cli.library.selection import note_bytes
 
-    tell_of_compiling(choice_for(task.path, task.preset), note_bytes(task.path, task.selection))
+    tell_of_compiling(choice_for(task.path, task.preset), lambda: note_bytes(task.path, task.selection))
     tasks = tasks_of(task)
     dancers = (dances, partner_of(dances)) if len(tasks) > 1 else (dances,)
     both = [ask(each) for each in tasks]

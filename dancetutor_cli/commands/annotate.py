@@ -116,7 +116,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         from dancetutor_cli.library.selection import note_bytes
 
         tell_of_compiling(
-            choice_of(wish.preset), sum(note_bytes(item.source, Selection()) for song in songs for item in song)
+            choice_of(wish.preset), lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song)
         )
     for outcome in _outcomes(songs, order, wish.jobs):
         talk.tell(outcome)

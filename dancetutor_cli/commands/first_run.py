@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import click
@@ -13,10 +14,10 @@ if TYPE_CHECKING:
 _NOT_KEPT = "nothing compiled is kept, and each run compiles again; set NUMBA_CACHE_DIR to a folder that can be written"
 
 
-def tell_of_compiling(choice: PresetChoice, size: int | None = None, *, quiet: bool = False) -> None:
+def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
     """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
 
-    size : bytes of the note data to be solved; little is solved without compiling. None: compile in any case
+    size : tells the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """

@@ -174,7 +174,7 @@ def _render_one(
     request = film_request(path, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
-    tell_of_compiling(choice_for(path, request.preset), end - start, quiet=quiet)
+    tell_of_compiling(choice_for(path, request.preset), lambda: end - start, quiet=quiet)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     if folder is None:
         check_file(target)

@@ -111,12 +111,12 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
-    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder, shipped_root
+    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder, kernels_in, shipped_root
     from dancetutor_cli.resources import PACKAGE
 
     folder, came = kernel_folder(), shipped_root()
-    shipped = set(came.rglob("*.nbi"))
-    count = len({path for root in (PACKAGE, folder.root or PACKAGE) for path in root.rglob("*.nbi")} - shipped)
+    shipped = set(kernels_in(came))
+    count = len({path for root in (PACKAGE, folder.root or PACKAGE) for path in kernels_in(root)} - shipped)
     used = len(shipped) if came_compiled() else 0
     found = [f"{used} kernels came compiled"] if used else []
     found += [f"{count} kernels compiled here"] if count else [] if used else [_NOTHING]

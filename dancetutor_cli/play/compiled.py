@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
-from dancetutor_cli.kernel_folder import is_current, kernel_folder, shipped_folder
+from dancetutor_cli.kernel_folder import SUFFIX, is_current, kernel_folder, places_of, shipped_folder
 from dancetutor_cli.play.preset import Preset
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
@@ -21,7 +22,7 @@ _HERE = Path(__file__).parent
 _SOURCES = (
     "explore", "happens", "itg_costs", "itg_moves", "kernel", "state", "store", "tables", "thesis_moves", "vocabulary",
 )  # fmt: skip
-_TINY = 12_000  # bytes of chart files that Python solves in less time than it takes to load what is compiled
+_TINY = 12_000  # bytes of chart files that Python solves at once: nothing is ever compiled for these
 _SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
 _OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid
 
@@ -34,16 +35,18 @@ def source_stamp() -> str:
 
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    written, shipped = kernel_folder(), shipped_folder(_HERE / "kernel.py")
-    folders = [written.of_module(_HERE / "kernel.py"), _HERE / "__pycache__"] if written.kept else []
-    folders += [shipped] if shipped else []
+    source = _HERE / "kernel.py"
+    shipped = shipped_folder(source)
+    folders = [shipped] if shipped else []
+    wanted = [f"kernel.run.*{SUFFIX}", f"explore.explore_{preset.model}.*{SUFFIX}"]
     try:
-        return all(
-            any(is_current(index, source_stamp()) for folder in folders for index in folder.glob(pattern))
-            for pattern in ("kernel.*.nbi", f"explore.explore_{preset.model}-*.nbi")
-        )
+        for folder in chain(folders, places_of(source)):
+            wanted = [one for one in wanted if not any(is_current(path, source_stamp()) for path in folder.glob(one))]
+            if not wanted:
+                return True
     except OSError:
         return True
+    return False
 
 
 def is_interpreted() -> bool:
@@ -51,16 +54,16 @@ def is_interpreted() -> bool:
     return os.environ.get(VARIABLE) == "python"
 
 
-def interpret(presets: Iterable[Preset], size: int) -> bool:
+def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
     """Decide whether this process and its workers run kernels as Python; to be asked before one is imported.
 
-    size : bytes of the note data to be solved
+    size : tells the bytes of the note data to be solved; only asked for where nothing is compiled yet
     """
     if VARIABLE in os.environ:
         return is_interpreted()
-    if size > _SMALL or (size > _TINY and all(is_compiled(preset) for preset in presets)):
+    if all(is_compiled(preset) for preset in presets) or (much := size()) > _SMALL:
         return False
-    if size <= _TINY:
+    if much <= _TINY:
         os.environ[VARIABLE] = "python"
         return True
     note = kernel_folder().of_module(_HERE / "kernel.py") / "interpreted"
@@ -72,6 +75,6 @@ def interpret(presets: Iterable[Preset], size: int) -> bool:
         return False
     with suppress(OSError):
         note.parent.mkdir(parents=True, exist_ok=True)
-        note.write_text(str(before + size))
+        note.write_text(str(before + much))
     os.environ[VARIABLE] = "python"
     return True

@@ -167,7 +167,8 @@ class Engine:
 
     def _call(self, arrays: RowArrays, row: int, nodes: RowStates, found: Found) -> tuple[int, int]:
         with _wrapping():
-            return run(arrays, row, self.tables, nodes, self.rules, found)
+            reached: tuple[int, int] = run(arrays, row, self.tables, nodes, self.rules, found)
+        return reached
 
     def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, RowStates]:
         self._start_anew_if_full()

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.play import tables as columns
-from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.itg_moves import expand_itg
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import door, uncounted
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -196,22 +195,17 @@ def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-expand: Any = None  # a global of each explorer's own; see `_compile`
+expand: Any = None  # a global of each explorer's own; see `_explorer`
 
 
-def _compile(name: str, rules: Any, stamp: str) -> Any:
-    """An explorer for the rules of one model.
-
-    `expand` is a global and no variable of this function: numba's cache takes those for a part of the key, and a
-    kernel looks different in every process, so that nothing would ever be found again.
-    """
+def _explorer(name: str, rules: Any) -> Any:
+    """An explorer for the rules of one model, whose `expand` is a global: what is compiled finds kernels there."""
 
     def explore(row, pattern, chosen, t, rules, out):  # type: ignore[no-untyped-def]
         """From `row` to the last row: meet every state, keep all moves. Returns what has no room.
 
         chosen : the number of each row's transition, known up to `row`, is written here
         """
-        assert len(stamp)
         counts, pairs, keys, met, moves, states = t.counts, t.pair, t.state_key, t.met, t.move, t.layer_state
         packed, reached = out.packed, out.reached
         layer = np.int64(t.transition[chosen[row - 1], TO_LAYER]) if row else np.int64(START)
@@ -260,11 +254,11 @@ def _compile(name: str, rules: Any, stamp: str) -> Any:
             layer = np.int64(t.transition[chosen[r], TO_LAYER])
         return DONE
 
-    own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name, None, explore.__closure__)
-    own.__qualname__ = name  # the name of the cache's files, too
-    return uncounted(cache=True)(own)
+    own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name)
+    own.__qualname__ = name
+    return door(3, 4, 5)(own)
 
 
 Explorer = Callable[..., int]
-explore_thesis: Explorer = _compile("explore_thesis", expand_thesis, source_stamp())
-explore_itg: Explorer = _compile("explore_itg", expand_itg, source_stamp())
+explore_thesis: Explorer = _explorer("explore_thesis", expand_thesis)
+explore_itg: Explorer = _explorer("explore_itg", expand_itg)

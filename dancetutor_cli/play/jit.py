@@ -1,29 +1,30 @@
 """How the solver's kernels run: compiled, or as the Python that they are, where compiling would take longer than work.
 
 `compiled.interpret` decides it, before this module is imported. It is the same code, so the plays are the same.
+Compiled ones are called by `kernel_door`, so that what is kept runs without numba.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from dancetutor_cli.play.compiled import is_interpreted
+from dancetutor_cli.kernel_door import Door, inner
+from dancetutor_cli.play.compiled import is_interpreted, source_stamp
 
-INTERPRETED = is_interpreted()
-
-
-def _as_it_is(function: Callable[..., Any] | None = None, **options: Any) -> Any:
-    """A kernel that is not compiled."""
-    return (lambda later: later) if function is None else function
+INTERPRETED = is_interpreted() or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
-if TYPE_CHECKING:
-    from numba import njit as njit
+def uncounted(function: Any = None, **options: Any) -> Any:
+    """A kernel that kernels call. Python may, too: for it the function stays what it is."""
+    return inner(function, **options) if function else lambda later: inner(later, **options)
 
-    uncounted = njit
-elif INTERPRETED:
-    njit = uncounted = _as_it_is
-else:
-    from dancetutor_cli.kernels import njit as njit
-    from dancetutor_cli.kernels import uncounted as uncounted
+
+def door(*lasting: int) -> Callable[[Any], Callable[..., Any]]:
+    """A kernel that Python calls; lasting : see `kernel_door.Door`."""
+
+    def made(function: Any) -> Callable[..., Any]:
+        return function if INTERPRETED else Door(function, lasting, source_stamp)
+
+    return made

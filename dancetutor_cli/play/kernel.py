@@ -6,17 +6,13 @@ of a row are kept relative to the row's cheapest state. Of several ways as cheap
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from dancetutor_cli.play import tables as columns
-from dancetutor_cli.play.compiled import source_stamp
 from dancetutor_cli.play.happens import name_neighbours
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import door, uncounted
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -314,40 +310,33 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     return DONE
 
 
-def _compile(stamp: str) -> Any:
-    @uncounted(cache=True)
-    def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
-        """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
+@door(0, 2, 4, 5)
+def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
+    """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
 
-        From TELL on: write what the rows of `found.move` cost, and what happens in them, into `found`.
-        """
-        assert len(stamp)
-        if start_row == TELL:
-            _wait(rows)
-            _tell(t, rows, rules, found)
-            return start_row, DONE
-        if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
-            key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
-            t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
-            nodes.node[0] = START
-            number_of_layer(nodes.node, 1, t)
-            t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
-        if start_row == 0:
-            if not _number_rows(rows, rules.model > 0, t):
-                return 0, MORE_PATTERNS
-            _wait(rows)
-            nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
-            nodes.node[0] = 0
-        if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
-            return start_row, MORE_TIMED
-        row, wanted = _advance(start_row, rows, t, nodes, rules, found.cost[0])
-        if wanted == DONE:
-            _trace(t, nodes, found)
-            if len(found.margin):
-                wanted = _margins(rows, t, nodes, found)
-        return row, wanted
-
-    return run
-
-
-run: Callable[..., tuple[int, int]] = _compile(source_stamp())
+    From TELL on: write what the rows of `found.move` cost, and what happens in them, into `found`.
+    """
+    if start_row == TELL:
+        _wait(rows)
+        _tell(t, rows, rules, found)
+        return start_row, DONE
+    if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
+        key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
+        t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
+        nodes.node[0] = START
+        number_of_layer(nodes.node, 1, t)
+        t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
+    if start_row == 0:
+        if not _number_rows(rows, rules.model > 0, t):
+            return 0, MORE_PATTERNS
+        _wait(rows)
+        nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
+        nodes.node[0] = 0
+    if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
+        return start_row, MORE_TIMED
+    row, wanted = _advance(start_row, rows, t, nodes, rules, found.cost[0])
+    if wanted == DONE:
+        _trace(t, nodes, found)
+        if len(found.margin):
+            wanted = _margins(rows, t, nodes, found)
+    return row, wanted

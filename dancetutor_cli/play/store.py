@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.play.jit import njit, uncounted
+from dancetutor_cli.play.jit import door, uncounted
 from dancetutor_cli.play.vocabulary import MOST_MS as MOST_MS
 
 # places in `counts`
@@ -253,7 +253,7 @@ def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
     return np.int64(number)
 
 
-@njit(cache=True)
+@door()
 def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
     """Enter the first `count` keys into an empty hash table of their numbers."""
     for number in range(count):
@@ -263,7 +263,7 @@ def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@njit(cache=True)
+@door()
 def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
     """The same for row patterns."""
     for number in range(count):
@@ -273,7 +273,7 @@ def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@njit(cache=True)
+@door()
 def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
     """The same for costs by term."""
     for number in range(count):
@@ -283,7 +283,7 @@ def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@njit(cache=True)
+@door()
 def fill_pairs(old, new):  # type: ignore[no-untyped-def]
     """Move all pairs into a larger empty table."""
     for i in range(len(old)):

@@ -39,14 +39,14 @@ def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:
     itg, thesis = load_preset("itg"), load_preset("thesis")
     assert not compiled.is_compiled(itg)
-    fill(cache, "kernel._compile.locals.run-1.py311.nbi")
+    fill(cache, "kernel.run.1.door")
     assert not compiled.is_compiled(itg)
-    fill(cache, "explore.explore_itg-1.py311.nbi")
+    fill(cache, "explore.explore_itg.1.door")
     assert compiled.is_compiled(itg) and not compiled.is_compiled(thesis)
 
 
 def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
-    fill(cache, "kernel.run-1.py311.nbi", "explore.explore_itg-1.py311.nbi", stamp="ab" * 32)
+    fill(cache, "kernel.run.1.door", "explore.explore_itg.1.door", stamp="ab" * 32)
     assert not compiled.is_compiled(load_preset("itg"))
 
 
@@ -65,22 +65,22 @@ def test_little_is_solved_without_compiling_and_much_is_not(cache: Path, monkeyp
     presets = [load_preset("itg")]
     monkeypatch.setattr(os, "environ", {**os.environ})
     del os.environ[compiled.VARIABLE]
-    assert not compiled.interpret(presets, 10_000_000) and not compiled.is_interpreted()
-    assert compiled.interpret(presets, 100_000) and compiled.is_interpreted()
+    assert not compiled.interpret(presets, lambda: 10_000_000) and not compiled.is_interpreted()
+    assert compiled.interpret(presets, lambda: 100_000) and compiled.is_interpreted()
     del os.environ[compiled.VARIABLE]
     for _ in range(9):
-        assert compiled.interpret(presets, 100_000)
+        assert compiled.interpret(presets, lambda: 100_000)
         del os.environ[compiled.VARIABLE]
     (cache / "interpreted").write_text("1000001")  # by now it would have paid
-    assert not compiled.interpret(presets, 100_000)
-    assert compiled.interpret(presets, 1_000)  # which takes less than to load what is compiled
+    assert not compiled.interpret(presets, lambda: 100_000)
+    assert compiled.interpret(presets, lambda: 1_000)  # which never pays
 
 
-def test_what_is_compiled_is_used_for_all_but_the_smallest(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_compiled_is_used(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "environ", {**os.environ})
     del os.environ[compiled.VARIABLE]
-    fill(cache, "kernel.run-1.py311.nbi", "explore.explore_itg-1.py311.nbi")
-    assert not compiled.interpret([load_preset("itg")], 100_000)
+    fill(cache, "kernel.run.1.door", "explore.explore_itg.1.door")
+    assert not compiled.interpret([load_preset("itg")], lambda: pytest.fail("no file need be read for this"))
 
 
 @pytest.mark.parametrize("preset", ["itg", "thesis"])
@@ -122,7 +122,6 @@ def test_little_work_imports_no_numba(tmp_path: Path) -> None:
 
 
 def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The names are numba's own."""
     from dancetutor_cli.chart import parse
     from dancetutor_cli.play import solve_chart
 
@@ -133,11 +132,24 @@ def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.Monkey
     assert compiled.is_compiled(preset)
 
 
+def test_kept_kernels_need_no_numba(tmp_path: Path) -> None:
+    song = Path(__file__).parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.ssc"
+    code = (
+        "import sys; from dancetutor_cli.__main__ import main\n"
+        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
+        "except SystemExit: print('numba' in sys.modules, 'llvmlite.binding' in sys.modules, file=sys.stderr)"
+    )
+    environment = {**os.environ, compiled.VARIABLE: "compiled"}
+    for _ in range(2):  # the first compiles what is not there
+        run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert run.stderr.split()[-2:] == ["False", "True"] and "6 charts" in run.stdout
+
+
 def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> None:
     """A kernel module that is forgotten would leave old machine code in use after an edit."""
     room = Path(compiled.__file__).parent
     imports = re.compile(r"^from dancetutor_cli\.play(?:\.(\w+))? import (\w+)", re.MULTILINE)
-    uses_njit = re.compile(r"^from dancetutor_cli\.play\.jit import .*\b(?:njit|uncounted)\b", re.MULTILINE)
+    uses_njit = re.compile(r"^from dancetutor_cli\.play\.jit import .*\b(?:door|uncounted)\b", re.MULTILINE)
     wanted = {path.stem for path in room.glob("*.py") if uses_njit.search(path.read_text())}
     assert {"kernel", "explore"} <= wanted
     for name in list(wanted):
