@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, moments
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
@@ -19,7 +20,13 @@ from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Press
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
-from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, FeetDiagram, NextRows, PadMap, PadView
+from dancetutor_cli.video.overlay.diagram import (
+    DiagramRows,
+    FeetDiagram,
+    NextRows,
+    PadMap,
+    PadView,
+)
 from dancetutor_cli.video.overlay.header import Header, Words
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
@@ -38,7 +45,7 @@ if TYPE_CHECKING:
 
 BACKGROUND = (11, 12, 22)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
-LANES = 0.74  # of the highway's width that lanes may take; measure numbers and words stand beside them
+LANES, WIDE_LANES = 0.74, 0.8  # of the highway's width that lanes may take, of wide pads; words stand beside them
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 BLOCK = 64  # frames whose joints are made at once
 
@@ -113,7 +120,8 @@ class Film:
         assert part is not None
         box = self._box("highway")
         scale = 1.0 if self.layout.screen else self.scale
-        lane = min(part.lane * scale, LANES * (box[2] - box[0]) / max(1, self.columns))
+        share = LANES if self._breadth <= WIDE_PAD else WIDE_LANES
+        lane = min(part.lane * scale, share * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
@@ -190,23 +198,25 @@ class Film:
 
     @cached_property
     def _calls(self) -> Calls | None:
-        """What is called out shortly before it comes, in its box, else at the top right of the dancer's."""
+        """What is called out shortly before it comes, in its box, else at the top right of the dancer's.
+
+        There it keeps clear of the song's words, and of her head and feet, wherever she goes meanwhile.
+        """
         if not self.layout.dancer or not self.plan.callouts:
             return None
-        if (part := self.layout.calls) is not None:
-            left, top, right, bottom = self._box("calls")
-            if self._header is not None and self._header.title_end[0] > left:  # a title of two lines: below it
-                top = min(max(top, round(self._header.title_end[1])), bottom)
-            box = (left, top, right, bottom)
-            return Calls(self.plan.callouts, box, self.scale * part.text, self.face, self.style)
-        left, top, right, bottom = self._box("dancer")
-        scale = self.scale * (self.layout.header.text if self.layout.header is not None else 1.0)
-        gap = round(22 * scale)
-        begins = left + round(0.55 * (right - left))
-        if self._header is not None and self._header.title_end[0] > begins:  # a long title: below it
-            top = max(top, round(self._header.title_end[1]) - gap // 2)
-        box = (begins, top + gap, right - gap, bottom)
-        return Calls(self.plan.callouts, box, scale, self.face, self.style)
+        end = None if self._header is None else self._header.title_end
+        room = calls_room(self.layout, self._box, self.scale, end)
+        box = clear(room.box, self._heads_and_feet(), CALLS_WIDE * room.scale)
+        return Calls(self.plan.callouts, box, room.scale, self.face, self.style)
+
+    def _heads_and_feet(self) -> NDArray[np.float64]:
+        """Where these are in the picture while moves are called out, (n, 4), a little larger."""
+        if not self.plan.motions:
+            return np.zeros((0, 4))
+        left, top, _, _ = self._box("dancer")
+        edge = CALLS_OFF * self.scale
+        seen = self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes))
+        return np.asarray(seen + np.array([left - edge, top - edge, left + edge, top + edge]))
 
     @cached_property
     def _dancer(self) -> Dancer:
@@ -240,8 +250,7 @@ class Film:
             large = FeetDiagram(pads, self.lights, self.face)
         if after and plan.rows is not None:
             box = self._box("next")
-            least = NEXT_LEAST * self.scale
-            small = NextRows(plan.rows, view, box, after.count, self.face, least)
+            small = NextRows(plan.rows, view, box, after.count, self.face, self.scale)
         return large, small
 
     def frame(self, number: int) -> Frame:

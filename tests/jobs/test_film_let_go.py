@@ -61,7 +61,7 @@ def test_a_small_pad_has_a_cross_where_no_foot_comes(film: Prepared) -> None:
     assert pad is not None
     frame = np.zeros((120, 120, 3), np.uint8)
     view = PadView(pad, pad.directions)
-    small = NextRows(rows, view, (0, 0, 120, 120), 1, face)
+    small = NextRows(rows, view, (0, 0, 120, 120), 1, face, 1.0)
     small.draw(frame, float(rows.second[row]) - 0.01)
     x, y = small.pads[0].place(*pad.panels[1])
     grey = frame[round(y) - 8 : round(y) + 8, round(x) - 8 : round(x) + 8].astype(int)

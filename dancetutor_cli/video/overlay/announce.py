@@ -11,11 +11,12 @@ from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
-from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of, pill, plate
-from dancetutor_cli.video.overlay.sprites import HighwayStyle
+from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of
+from dancetutor_cli.video.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, flag_height
 from dancetutor_cli.video.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.video.picture import Frame
 
+CALL_LEAST = 0.75  # size of a call's letters that is preferred to another line
 CALL_STAYS = 0.2  # seconds that a call stays after its note
 COUNTED = "starts in"  # said above the numbers of the count-in
 
@@ -31,7 +32,7 @@ class Runs:
         self.clock, self.box, self.count = clock, box, count
         several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
         texts = [self._text(number) for number in range(len(clock.passes))] if several else []
-        self.labels = [pill(text, 20 * scale, WHITE, face) for text in texts]
+        self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
         room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
         (said,), small = fitted(COUNTED, small, 0.9 * (count[2] - count[0]), face, most=1)
@@ -74,13 +75,23 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
     return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
 
 
-def _phrases(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """Words of a call in one line, or broken where there is a comma, or anywhere; nothing is cut off."""
+def _phrases(text: str, size: float, room: tuple[float, float], face: Typeface) -> tuple[list[str], float]:
+    """Words of a call in one line, or broken where there is a comma, or anywhere; nothing is cut off.
+
+    room : width and height of the words, pixels
+    """
+    width, height = room
     parts = text.replace(", ", ",\n").split("\n")
-    lines = wrapped(parts, size, width, face)
-    if len(lines) <= 3 and max(face.width(line, size) for line in lines) <= width:
-        return lines, size
-    return fitted(text, size, width, face, most=2)
+    for share in np.arange(1.0, CALL_LEAST - 0.01, -0.05):
+        lines = wrapped(parts, share * size, width, face)
+        low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
+        if low and max(face.width(line, share * size) for line in lines) <= width:
+            return lines, float(share * size)
+    for most in (2, 3):
+        lines, fits = fitted(text, size, width, face, most)
+        if fits >= CALL_LEAST * size:
+            break
+    return lines, fits
 
 
 class Calls:
@@ -101,9 +112,9 @@ class Calls:
 
     def _plate(self, text: str, severity: str) -> Sprite:
         size = 24 * self.scale
-        room = self.box[2] - self.box[0] - 0.8 * size
-        lines, size = _phrases(text, size, room, self.face)
-        return plate(lines, size, self.style.callout[severity], self.face)
+        width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
+        lines, size = _phrases(text, size, (width, height), self.face)
+        return flag(lines, size, self.style.callout[severity], self.face)
 
     def _shown(self, second: float) -> list[Callout]:
         shown = np.flatnonzero((self._begins <= second) & (second < self._ends))

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.picture import PadLike
 
+NAMES = (170, 177, 203)  # colour of a small pad's name
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
 NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
+NEXT_TEXT = 16.0  # of their names' letters
 STEPPED, RESTING = 0.94, 0.6  # size of the marks on those, in panels: who steps one, and who stands on one
 
 
@@ -76,6 +78,13 @@ class PadMap:
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Pixels of a place in panel widths."""
         return self.origin[0] + self._way * x * self.unit, self.origin[1] - self._way * y * self.unit
+
+    @property
+    def edges(self) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom of the pad, pixels."""
+        places = np.array([self.place(x, y) for x, y in self.panels])
+        (left, top), (right, bottom) = places.min(0) - self.unit / 2, places.max(0) + self.unit / 2
+        return float(left), float(top), float(right), float(bottom)
 
     @property
     def smaller(self) -> float:
@@ -172,8 +181,10 @@ def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
 class NextRows:
     """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
 
-    They lie beside or below each other, whichever makes them larger. least : pixels of a pad's shorter side; where so
-    many rows would be smaller, there are fewer
+    They lie beside or below each other, whichever makes them larger, each with its name, "next" or "then".
+
+    scale : pixels of one at the layout's default size; where the pads of so many rows would be too small, there are
+    fewer
     """
 
     def __init__(
@@ -183,13 +194,18 @@ class NextRows:
         box: PixelBox,
         count: int,
         face: Typeface,
-        least: float = 0.0,
+        scale: float,
     ) -> None:
         self.rows, self.face = rows, face
+        least, text = NEXT_LEAST * scale, NEXT_TEXT * scale
+        self.names = [face.sprite(name, text, NAMES, weight=text / 90) for name in ("next", "then")]
+        wide, high = (max(name.shape[axis] for name in self.names) for axis in (1, 0))
         while True:
-            beside = [PadMap(view, one) for one in cut(box, count, 0)]
-            below = [PadMap(view, one) for one in cut(box, count, 1)]
-            self.pads = max(beside, below, key=lambda pads: pads[0].unit)
+            beside, below = cut(box, count, 0), cut(box, count, 1)
+            above = [PadMap(view, (a, b + high, c, d)) for a, b, c, d in beside]
+            left = [PadMap(view, (a + wide + 2, b, c, d)) for a, b, c, d in below]
+            self.pads = max(above, left, key=lambda pads: pads[0].unit)
+            self._above = self.pads is above
             if count == 1 or self.pads[0].smaller >= least:
                 return
             count -= 1
@@ -208,6 +224,14 @@ class NextRows:
             for foot, column in enumerate(self.rows.feet[row]):
                 if column >= 0 and limbs[column] < 0:
                     self._mark(frame, pads, int(column), foot, RESTING)
+            blit(frame, self.names[min(place, 1)], *self._corner(pads, self.names[min(place, 1)]))
+
+    def _corner(self, pads: PadMap, name: Sprite) -> tuple[float, float]:
+        """Where the name of a pad stands: in the middle above it, or on its left."""
+        left, top, right, bottom = pads.edges
+        if self._above:
+            return (left + right - name.shape[1]) / 2, round(top - name.shape[0])
+        return left - name.shape[1] - 2, round((top + bottom - name.shape[0]) / 2)
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:
         """The notes' own mark on a panel; a foot that only stands there is small and faded."""

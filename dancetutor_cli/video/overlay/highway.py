@@ -24,7 +24,7 @@ from dancetutor_cli.video.scroll import Scroll
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
 TURNED = "she faces you: arrows turned with her"
-MARK_SHARE, MARK_MOST = 0.04, 0.54  # an L or R is at least so many heights of the box, but at most so many lanes
+MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
 
 

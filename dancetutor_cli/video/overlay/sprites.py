@@ -27,6 +27,7 @@ _SQUARE = np.array([(-0.86, -0.86), (0.86, -0.86), (0.86, 0.86), (-0.86, 0.86)])
 _WIDTH = 0.94  # of an arrow, in its size, whichever way it points
 
 
+FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
 FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
 NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
 
@@ -204,11 +205,16 @@ def centre(target: Sprite, ink: Sprite) -> None:
     place[...] = (place * keep + 127) // 255 + ink
 
 
+def flag_height(lines: int, size: float) -> int:
+    """Pixels that a label of so many lines of this size is high."""
+    return max(6, round(1.5 * size)) + round(FLAG_STEP * size) * (lines - 1)
+
+
 def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface) -> Sprite:
     """Lines of words on a dark label that stands beside the row they are about."""
     words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
-    one, step = max(6, round(1.5 * size)), round(1.15 * size)
-    height = one + step * (len(lines) - 1)
+    step, height = round(FLAG_STEP * size), flag_height(len(lines), size)
+    one = height - step * (len(lines) - 1)
     width = max(line.shape[1] for line in words) + round(FLAG_EDGE * size)
     p = shapes.Painter(height, width)
     d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)

@@ -141,6 +141,15 @@ class Dancer:
         ]
         return np.array(found)
 
+    def heads_and_feet(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        """Where her head and her feet are in her picture at some moments, (n, 4): left, top, right, bottom, pixels."""
+        outline = Silhouette(self.scene.character)
+        joints = self.joints(moments)
+        seen = [
+            outline.heads_and_feet(j, self.view(moment), self._size) for j, moment in zip(joints, moments, strict=True)
+        ]
+        return np.concatenate([np.zeros((0, 4)), *seen])
+
     def still(self) -> Frame:
         """The room without the dancer."""
         joints = self.joints([Moment(0.0, next(iter(self.motions)))])[0]

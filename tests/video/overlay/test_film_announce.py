@@ -10,7 +10,7 @@ import pytest
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.layout import PixelBox, layout_names, load_layout
 from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay.announce import CALL_STAYS, Calls, Runs
+from dancetutor_cli.video.overlay.announce import CALL_STAYS, Calls, Runs, _phrases
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
@@ -68,6 +68,24 @@ def test_numbers_are_counted_down_inside_their_box() -> None:
     frame = black()
     runs.draw(frame, 10.0, 0)
     assert not frame.any(), "counted in"
+
+
+def test_the_label_of_a_run_is_quieter_than_the_feet() -> None:
+    """It was the brightest thing of the picture, dark words on white."""
+    clock = Clock((Pass(0.0, 4.0, 0.5), Pass(0.0, 4.0)), 30)
+    runs = Runs(clock, (0, 0, 640, 40), (400, 20, 520, 100), 1.0, FACE)
+    for run in (0, 1):
+        frame = black()
+        runs.draw(frame, 1.0, run)
+        left, top, right, bottom = drawn(frame)
+        assert frame[top:bottom, left:right].mean() < 90 < frame.max()
+
+
+def test_a_call_breaks_where_there_is_a_comma() -> None:
+    said = "left foot: heel centre, toe up-left ×3, left foot: heel down-left, toe centre ×2"
+    lines, size = _phrases(said, 20, (230.0, 94.0), FACE)
+    assert " ".join(lines) == said and size >= 15
+    assert all(line.endswith(",") for line in lines[:-1])
 
 
 def calls(*passages: tuple[float, float, str]) -> Calls:

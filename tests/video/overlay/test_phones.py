@@ -16,7 +16,7 @@ from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.film_formats import FORMATS
 from dancetutor_cli.video.overlay import sprites
-from dancetutor_cli.video.overlay.diagram import NEXT_LEAST, DiagramRows, NextRows, PadView
+from dancetutor_cli.video.overlay.diagram import DiagramRows, NextRows, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.scene.scene import Scene
@@ -45,9 +45,31 @@ def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
     assert pad is not None and layout.next is not None
     rows = DiagramRows(np.zeros(0), np.zeros((0, len(pad)), np.int8), np.zeros((0, 2), np.int16))
     box = layout.box("next", layout.size, len(pad))
-    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
     assert len(small.pads) >= 2
     assert min(one.smaller for one in small.pads) >= 90
+
+
+@pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single", "pump-double"])
+def test_small_pads_say_which_rows_they_are(steps: str) -> None:
+    """ "next" and "then" stand beside or above the pads, in their box, and cover none of them."""
+    pad, layout = load_pad(steps), load_layout("practice")
+    assert pad is not None and layout.next is not None
+    rows = DiagramRows(np.arange(1.0, 4.0), np.full((3, len(pad)), -1, np.int8), np.full((3, 2), -1, np.int16))
+    box = layout.box("next", layout.size, len(pad))
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
+    frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
+    small.draw(frame, 0.0)
+    for place, one in enumerate(small.pads):
+        name = small.names[min(place, 1)]
+        x, y = small._corner(one, name)
+        assert box[0] <= x and box[1] <= y and x + name.shape[1] <= box[2] and y + name.shape[0] <= box[3] + 2
+        assert frame[round(y) : round(y) + name.shape[0], round(x) : round(x) + name.shape[1]].max() > 150
+        left, top, *_ = one.edges
+        assert x + name.shape[1] <= left or y + name.shape[0] <= top
+    last = np.zeros_like(frame)
+    small.draw(last, 3.0)
+    assert not last.any(), "no row comes any more"
 
 
 @pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single", "pump-double"])
@@ -59,7 +81,7 @@ def test_marks_of_the_next_rows_are_as_large_as_their_panels(steps: str) -> None
     limb[0, 0] = 0
     rows = DiagramRows(np.array([1.0]), limb, np.array([[0, len(pad) - 1]], np.int16))
     box = layout.box("next", layout.size, len(pad))
-    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, NEXT_LEAST)
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
     frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
     small.draw(frame, 0.0)
     found = {}
