@@ -74,7 +74,7 @@ def joined(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
         (lone_tail, "unmatched-tail", "the end of a hold or roll has no head and is dropped"),
     ):
         found = cells[acting[which]]
-        for part in np.unique(found.part).tolist():
+        for part in np.flatnonzero(np.bincount(found.part)).tolist():  # `np.unique` imports np.ma, for long
             report(warnings[part], code, text, np.sort(found.line[found.part == part]))
     keep = (cells.kind != TAIL) & (cells.kind != OTHERS_HEAD)
     keep[acting[open_head]] = False

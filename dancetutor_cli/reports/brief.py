@@ -9,13 +9,12 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import IO
 
-from rich.style import Style
-
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.text_report import STYLES, colours, make_console
+from dancetutor_cli.reports.terminal import terminal_of
+from dancetutor_cli.reports.text_report import STYLES
 
 _COLOUR = re.compile("\x1b\\[[0-9;]*m")
 _RANK = {"error": 0, "warning": 1, "info": 2}
@@ -54,8 +53,8 @@ class BriefReport:
     def __init__(self, stream: IO[str], errors: IO[str], files: int, *, known: bool, statistics: bool) -> None:
         self._stream, self._errors = stream, errors
         self._is_song, self._known, self._statistics = files <= _SONG, known, statistics
-        console = make_console(stream)
-        self._colours, self._width = colours(console), console.width
+        terminal = terminal_of(stream)
+        self._paint, self._width = terminal.paint, terminal.width
         self._entries: list[_Entry] = []
         self._charts: list[tuple[FileResult, ChartResult]] = []
         self._unreadable: list[str] = []
@@ -163,9 +162,6 @@ class BriefReport:
         """As much of a line as the terminal is wide; colours take no room."""
         plain = len(_COLOUR.sub("", line))
         return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
-
-    def _paint(self, text: str, style: str) -> str:
-        return Style.parse(style).render(text, color_system=self._colours) if self._colours and text else text
 
 
 _HOW = "--full tells every finding with its rows, --format json all there is, --statistics only counts"

@@ -1,8 +1,4 @@
-"""The table of a chart: rows, cost and how often each move happens.
-
-Rich draws the table once; every further chart fills its numbers into that drawing, so that a pack with thousands of
-charts is not slowed down by its layout.
-"""
+"""The table of a chart: rows, cost and how often each move happens."""
 
 from __future__ import annotations
 
@@ -10,11 +6,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-
 from dancetutor_cli.jobs.result import ChartResult
+from dancetutor_cli.reports.terminal import Terminal
 
 
 class Column(NamedTuple):
@@ -45,20 +38,17 @@ MOVE_COLUMNS = (
 _ROWS, _COST = Column("rows", 5, ()), Column("cost", 6, ())
 
 
-def chart_table(chart: ChartResult, console: Console) -> str:
-    """The table as text for this console, with a final newline."""
+def chart_table(chart: ChartResult, terminal: Terminal) -> str:
+    """The table as text for this terminal, with a final newline."""
     counts = {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
     shown = tuple(column for column in MOVE_COLUMNS if column.always or counts[column])
     columns = (_ROWS, _COST, *shown)
-    if sum(column.width + 1 for column in columns) > console.width:
+    if sum(column.width + 1 for column in columns) > terminal.width:
         return _listed(chart, counts, shown)
     cells = [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
-    if any(len(cell) > column.width for cell, column in zip(cells, columns, strict=True)):
-        return _draw(console, columns, cells)
-    drawing = _template(console, console.width, columns)
-    for number, (cell, column) in enumerate(zip(cells, columns, strict=True)):
-        drawing = drawing.replace(_placeholder(number, column.width), cell.rjust(column.width))
-    return drawing
+    widths = tuple(max(column.width, len(cell)) for column, cell in zip(columns, cells, strict=True))
+    numbers = " ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
+    return f"{_header(terminal, columns, widths)}{numbers}\n"
 
 
 def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Column]) -> str:
@@ -69,20 +59,17 @@ def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Colum
     return "".join(f"{number!s:>{width}} {name}\n" for name, number in numbers.items())
 
 
-def _placeholder(number: int, width: int) -> str:
-    return chr(0xE000 + number) * width  # private use: stands nowhere else
-
-
 @lru_cache(maxsize=64)
-def _template(console: Console, width: int, columns: tuple[Column, ...]) -> str:
-    return _draw(console, columns, [_placeholder(number, column.width) for number, column in enumerate(columns)])
-
-
-def _draw(console: Console, columns: Sequence[Column], cells: Sequence[str]) -> str:
-    table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False, header_style="dim")
-    for column in columns:
-        table.add_column(column.header, justify="right", min_width=column.width, vertical="bottom", no_wrap=True)
-    table.add_row(*cells)
-    with console.capture() as capture:
-        console.print(table)
-    return capture.get()
+def _header(terminal: Terminal, columns: Sequence[Column], widths: Sequence[int]) -> str:
+    """The names of the columns, each above its numbers' ends, and a line below."""
+    names = [column.header.split("\n") for column in columns]
+    height = max(map(len, names))
+    lines = zip(*([""] * (height - len(name)) + name for name in names), strict=True)
+    rule = ("-" if terminal.plain else "─") * (sum(widths) + len(widths) - 1)
+    return (
+        "".join(
+            " ".join(terminal.paint(word.rjust(width), "dim") for word, width in zip(line, widths, strict=True)) + "\n"
+            for line in lines
+        )
+        + f"{rule}\n"
+    )

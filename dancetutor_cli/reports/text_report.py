@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from typing import IO
-
-from rich.color import ColorSystem
-from rich.console import Console
-from rich.style import Style
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.finding import Finding
@@ -15,9 +10,9 @@ from dancetutor_cli.reports.drawing import draw
 from dancetutor_cli.reports.safe import safe, safe_path
 from dancetutor_cli.reports.table import chart_table
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.terminal import can_encode, terminal_of
 
 STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
-_WIDTH_WITHOUT_TERMINAL = 100
 _MOST_LETTERS = 16  # rows of another play that are written out
 _MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
 
@@ -28,10 +23,9 @@ class TextReport:
     def __init__(self, stream: IO[str], errors: IO[str]) -> None:
         self._stream = stream
         self._errors = errors
-        self._console = make_console(stream)
-        self._colours = colours(self._console)
-
-        self._plain = not _can_encode(stream, "←↙■●│·")
+        self._terminal = terminal_of(stream)
+        self._paint = self._terminal.paint
+        self._plain = not can_encode(stream, "←↙■●│·")
 
     def begin(self) -> None:
         """Nothing comes before the first file."""
@@ -63,7 +57,7 @@ class TextReport:
         preset = f"  {safe(chart.mismatch or f'preset {chart.preset}')}" if chart.preset else ""
         self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset, "dim"))
         if chart.playable:
-            self._stream.write(chart_table(chart, self._console))
+            self._stream.write(chart_table(chart, self._terminal))
             if chart.estimate is not None:
                 self._line(f"plays like {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
             self._alternatives(chart)
@@ -117,9 +111,6 @@ class TextReport:
     def _line(self, *parts: str) -> None:
         self._stream.write("".join(parts) + "\n")
 
-    def _paint(self, text: str, style: str) -> str:
-        return Style.parse(style).render(text, color_system=self._colours) if self._colours and text else text
-
 
 def _cut(letters: str) -> str:
     rows = letters.split(" ")
@@ -143,29 +134,3 @@ def clock(second: float) -> str:
     milliseconds = round(abs(second) * 1000)
     minutes, rest = divmod(milliseconds, 60_000)
     return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
-
-
-def colours(console: Console) -> ColorSystem | None:
-    systems = {
-        "standard": ColorSystem.STANDARD,
-        "256": ColorSystem.EIGHT_BIT,
-        "truecolor": ColorSystem.TRUECOLOR,
-    }
-    return systems.get(console.color_system or "") if not console.legacy_windows else None
-
-
-def _can_encode(stream: IO[str], text: str) -> bool:
-    try:
-        text.encode(getattr(stream, "encoding", None) or "utf-8")
-    except UnicodeEncodeError:
-        return False
-    return True
-
-
-def make_console(stream: IO[str]) -> Console:
-    """A console without colours when `stream` is no terminal or NO_COLOR is set, and then of a width of its own."""
-    console = Console(file=stream, markup=False, emoji=False, highlight=False)
-    if console.is_terminal and not os.environ.get("NO_COLOR"):
-        return console
-    width = None if console.is_terminal or os.environ.get("COLUMNS") else _WIDTH_WITHOUT_TERMINAL
-    return Console(file=stream, markup=False, emoji=False, highlight=False, color_system=None, width=width)

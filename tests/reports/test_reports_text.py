@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import io
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
+from rich import box
+from rich.color import ColorSystem
 from rich.console import Console
+from rich.table import Table
 
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.reports import table
 from dancetutor_cli.reports.table import chart_table
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.terminal import Terminal, terminal_of
 from dancetutor_cli.reports.text_report import TextReport, clock
 
 FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
@@ -22,7 +29,7 @@ CHART = ChartResult(
 FILE = FileResult("charts/x.ssc", "Title", "Artist", None, (), (), (CHART,))
 
 
-class Terminal(io.StringIO):
+class Screen(io.StringIO):
     def isatty(self) -> bool:
         return True
 
@@ -64,15 +71,38 @@ def test_numbers_of_the_table_stand_under_their_names() -> None:
     assert max(map(len, lines)) < 80 or "DT201" in max(lines, key=len)
 
 
-def test_filling_the_drawn_table_equals_drawing_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    console = Console(file=io.StringIO(), width=100, color_system=None)
-    filled = chart_table(CHART, console)
-    monkeypatch.setattr(table, "_template", lambda *_: pytest.fail("not drawn"))
-    monkeypatch.setattr(table, "_ROWS", table._ROWS._replace(width=2))  # 540 does not fit: it is drawn
-    drawn = chart_table(CHART, console)
-    assert [line.split() for line in filled.splitlines() if "540" in line] == [
-        line.split() for line in drawn.splitlines() if "540" in line
-    ]
+def test_the_table_is_as_rich_draws_it() -> None:
+    for colours in (None, ColorSystem.STANDARD):
+        drawing = io.StringIO()
+        console = Console(file=drawing, width=100, color_system="standard" if colours else None, force_terminal=True)
+        drawn = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False, header_style="dim")
+        columns = [column for column in table.MOVE_COLUMNS if column.always or CHART.counts.get(column.moves[0])]
+        for column in (table._ROWS, table._COST, *columns):
+            options = {"min_width": column.width, "vertical": "bottom", "no_wrap": True}
+            drawn.add_column(column.header, justify="right", **options)
+        counts = [sum(CHART.counts.get(move, 0) for move in column.moves) for column in columns]
+        drawn.add_row(str(CHART.row_count), str(CHART.cost), *(str(count or "·") for count in counts))
+        console.print(drawn)
+        assert chart_table(CHART, Terminal(100, colours)) == drawing.getvalue()
+
+
+def test_without_a_terminal_nobody_asks_rich() -> None:
+    code = (
+        "import io, sys; from dancetutor_cli.reports.terminal import terminal_of\n"
+        "print(terminal_of(io.StringIO()).width, 'rich' in sys.modules)"
+    )
+    environment = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "COLUMNS")}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert run.stdout == "100 False\n"
+    environment["COLUMNS"] = "77"
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert run.stdout == "77 True\n"
+
+
+def test_letters_that_a_stream_lacks_make_a_plain_line() -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    assert terminal_of(stream).plain
+    assert "-----" in chart_table(CHART, Terminal(plain=True)) and "─" not in chart_table(CHART, Terminal(plain=True))
 
 
 def test_a_number_wider_than_its_column_is_not_cut() -> None:
@@ -87,9 +117,9 @@ def test_no_colours_without_a_terminal() -> None:
 def test_colours_on_a_terminal_unless_no_color(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert "\x1b[1;33mDT201" in printed(FILE, stream=Terminal())[0]
+    assert "\x1b[1;33mDT201" in printed(FILE, stream=Screen())[0]
     monkeypatch.setenv("NO_COLOR", "1")
-    assert "\x1b" not in printed(FILE, stream=Terminal())[0]
+    assert "\x1b" not in printed(FILE, stream=Screen())[0]
 
 
 def test_titles_cannot_steer_the_terminal_nor_rich() -> None:
