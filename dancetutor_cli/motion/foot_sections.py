@@ -24,6 +24,8 @@ class StepSettings:
     jack_height: float
     edge: float
     edge_margin: float
+    middle_over: float
+    middle_over_most: float
     on_the_way: float
     lift_pitch: float
     swing_pitch: float
@@ -43,6 +45,10 @@ class StepSettings:
     apart: float
     leap: float
     leap_beside: float
+    wide: float
+    wide_most: float
+    wide_inward: float
+    wide_turn: float
     pivot_from: float
     pivot_to: float
     pivot_pitch: float
@@ -85,6 +91,8 @@ class StepSettings:
     crossover_to: float
     bracket_late: float
     bracket_between: float
+    bracket_turn: float
+    bracket_askew: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,6 +97,7 @@ class ArmSettings:
     hips_half: float
     hips_high: float
     hips_ease: float
+    legs_room: float
     twist_slowest: float
     twist_fastest: float
     wander_slow: float

@@ -7,11 +7,14 @@ import pytest
 from bake_plays import L, R, chart, pad, play
 
 from dancetutor_cli.bake import bake, report
+from dancetutor_cli.bake.bake import plan_of
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.bake.quality.smoothness import in_fast_jumps, jerk
 from dancetutor_cli.motion.baked import Contact, Motion
+from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.play.played import Part
 
+SETTINGS = default_settings()
 ALL_GOALS = ("contacts missed", "foot in foot", "frames past joint limits", "ground force, largest", "penetration")
 
 
@@ -32,6 +35,26 @@ def test_a_step_across_both_pads_is_a_leap() -> None:
     landed = np.argmin(np.abs(body.times - 2.52))
     middles = body.soles[landed].mean(axis=1)
     assert np.linalg.norm(middles[0] - middles[1]) < 0.7  # and the left one came along
+
+
+def test_a_foot_that_taps_three_panels_away_steps_inward() -> None:
+    """The other one holds; stepped on in the middle she squats between the two, on ankles bent too far aside."""
+    events = [(1.0, {3: L}), *((1.5 + 0.18 * k, {7: R}) for k in range(9))]
+    motion = bake(chart(), play(events, double=True, holds={(0, 3): 4.0}), pad(True))
+    check(motion)
+    body = body_of(motion)
+    assert body.joints[(body.times > 1.5) & (body.times < 3.0), 0, 1].min() > 0.66  # 0.55 on the panel's middle
+
+
+def test_a_bracket_across_her_lies_askew() -> None:
+    """Heel to the right and toes to the left while she faces the screen: as far as hips and ankles turn."""
+    parts = {(1, 3): Part.TOE, (1, 4): Part.HEEL}
+    danced = play([(1.0, {5: R}), (1.6, {3: L, 4: L}), (2.2, {5: R})], double=True, brackets=parts)
+    plan = plan_of(chart(), danced, pad(True))
+    toes = [move.yaw for move in plan.feet[0].moves if move.land == pytest.approx(1.6)]
+    assert np.degrees(toes) == pytest.approx([90.0 - SETTINGS.step.bracket_askew])
+    measured = report(bake(chart(), danced, pad(True)))
+    assert np.abs(measured.contact_errors).max() < 1.0 and measured["frames past joint limits"].value == 0.0
 
 
 @pytest.mark.parametrize("column", [1, 2, 3])

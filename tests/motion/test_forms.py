@@ -136,7 +136,8 @@ def passings(motion: Motion) -> list[str]:
         stands = other[-1].panel[0]
         if (own[-1].panel[0] - stands) * (press.panel[0] - stands) >= 0:
             continue
-        rotations, root = sample(motion, np.linspace(own[-1].start, press.start, 80))
+        since = max(own[-1].start, other[-1].start)  # before, the other foot was under way and passed this one
+        rotations, root = sample(motion, np.linspace(since, press.start, 80))
         places, _ = world_transforms(motion.skeleton, rotations, root)
         balls = [places[:, motion.skeleton.index(f"{'lr'[side]}_metatarsal")] for side in (press.limb, 1 - press.limb)]
         beside = int(np.argmin(np.abs(balls[0][:, 0] - balls[1][:, 0])))

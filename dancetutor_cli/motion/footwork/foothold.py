@@ -12,7 +12,7 @@ from dancetutor_cli.motion.footwork.footing import Footing, FootState
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
-from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of, room_on
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
 from dancetutor_cli.play.played import Part
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, SHOE_OUTLINE
 
@@ -24,6 +24,7 @@ PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
 CROSSED_PRICE = 3e3  # of a radian that legs cross too far
+MIDDLE_PRICE = 1e2  # of a metre that the middle of a shoe is off its panel
 EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
 
 
@@ -52,6 +53,7 @@ class Goal:
     columns : those that it presses; parts : (c,) which part of a foot presses each column
     yaw : wanted, without toe-out; cut : 0 for the panel's centre to 1 for its inner edge
     following : (2,) the panel that this foot steps on next, None if that is far off
+    haste : 0 to 1, how much faster than fast it is
     """
 
     columns: list[int]
@@ -59,6 +61,7 @@ class Goal:
     yaw: float
     cut: float
     following: Array | None
+    haste: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,14 +80,6 @@ def heel_of_step(step: StepSettings) -> Heel:
     return Heel((step.lift_pitch, step.swing_pitch, step.land_pitch), (step.lift_flat, step.swing_flat))
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """Where a ball may be: a centre (2,), and how far (2,) from it along x and z."""
-
-    centre: Array
-    room: Array
-
-
 def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
     """Where the ball lands and how the foot is turned (without toe-out). other : the other foot then"""
     step = footing.settings.step
@@ -93,14 +88,21 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     panels, following = footing.context.panels, goal.following
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
     hurry = goal.cut * (step.resting if following is None else 1.0)  # who stays a while stands on the panel's middle
-    cut = max(hurry, step.edge)
-    ball = landing_ball(Spot(panel, room), footing.toes(foot, goal.yaw), other.middle, cut, step.edge_margin)
+    far = float(np.linalg.norm(panel - other.middle))
+    wide = float(np.clip((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0, 1.0))
+    wide *= far < step.leap + HALF_PANEL  # beyond, the other foot comes along
+    cut = max(hurry, step.edge, wide * step.wide_inward)
+    yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
+    toes = footing.toes(foot, yaw)
+    over_edge = step.middle_over + goal.haste * (step.middle_over_most - step.middle_over)
+    spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL + over_edge - room)))
+    ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
-    ball = ball + step.on_the_way * hurry * (np.clip(way, panel - room, panel + room) - ball)
+    ball = ball + step.on_the_way * hurry * (on_panel(way, toes, spot) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
-        ball = ball + step.staying * (foot.ball - ball)
-    return beside(footing, foot, Spot(panel, room), ball, goal.yaw, other)
+        ball = on_panel(ball + max(step.staying, wide) * (foot.ball - ball), toes, spot)
+    return beside(footing, foot, spot, ball, yaw, other)
 
 
 def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
@@ -111,7 +113,7 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
     spot : the panel; yaw : of the toes; other : (2,) middle of the other foot
     cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
     """
-    panel, room = spot.centre, spot.room
+    panel = spot.centre
     middle = panel.copy()
     away = other - panel
     distance = float(np.linalg.norm(away))
@@ -119,7 +121,7 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
         direction = away / distance
         to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
         middle = panel + direction * min(cut * to_edge, distance)
-    return np.asarray(np.clip(ball_of(middle, yaw), panel - room, panel + room))
+    return on_panel(ball_of(middle, yaw), yaw, spot)
 
 
 def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
@@ -144,6 +146,7 @@ def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: floa
     price += CROSSED_PRICE * legs_crossed(
         foot.outward, grid, toes, other, body, step
     )  # whichever way the foot is turned
+    price += MIDDLE_PRICE * off_the_middle(spot, grid, yaws + foot.outward * footing.toe_out)
     price += EDGE_PRICE * beyond_the_edge(footing.context.ground, grid)
     price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out, air) * 1e4
     best = int(np.argmin(price))
@@ -155,6 +158,12 @@ def beyond_the_edge(ground: Ground, balls: Array) -> Array:
     nothing."""
     near = np.maximum(np.array(ground.low) + HALF_BALL - balls, balls - np.array(ground.high) + HALF_BALL)
     return np.asarray(np.maximum(near, 0.0).sum(axis=1))
+
+
+def off_the_middle(spot: Spot, balls: Array, toes: Array) -> Array:
+    """How far (k,) the middles of shoes, balls (k, 2) and toes (k,), are out of where they may be, metres."""
+    middles = balls - BALL_AHEAD * headings(toes)
+    return np.asarray(np.maximum(np.abs(middles - spot.centre) - spot.middle_room, 0.0).sum(axis=1))
 
 
 def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float, step: StepSettings) -> Array:
@@ -170,7 +179,8 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
 
 
 def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
-    """Heel on one panel, toes on the other."""
+    """Heel on one panel, toes on the other; a foot that lies across her turns a little back to where hips allow."""
+    step, body = footing.settings.step, footing.body_yaw()
     panels, parts, columns = footing.context.panels, goal.parts, goal.columns
     toe = next((c for c in columns if parts[c] == Part.TOE), None)
     heel = next((c for c in columns if parts[c] == Part.HEEL and c != toe), None)
@@ -180,8 +190,10 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
     along = panels[toe] - panels[heel]
     toes = float(np.arctan2(along[0], along[1]))
     toes += 2 * np.pi * round((goal.yaw - toes) / (2 * np.pi))
-    middle = (panels[toe] + panels[heel]) / 2
-    return ball_of(middle, toes), toes - foot.outward * footing.toe_out
+    yaw, most = toes - foot.outward * footing.toe_out, np.radians(step.bracket_turn)
+    askew = np.radians(step.bracket_askew)
+    yaw += float(np.clip(np.clip(yaw, body - most, body + most) - yaw, -askew, askew))
+    return ball_of((panels[toe] + panels[heel]) / 2, footing.toes(foot, yaw)), yaw
 
 
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import hop, take_off_for
-from dancetutor_cli.motion.footwork.foothold import Pose, Spot, beside, pose, shoes_apart
+from dancetutor_cli.motion.footwork.foothold import Pose, beside, pose, shoes_apart
 from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal
+from dancetutor_cli.motion.swing.panels import Spot
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]

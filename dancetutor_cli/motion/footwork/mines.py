@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.foot_moves import Hover, Jump
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import Flight, flown
-from dancetutor_cli.motion.footwork.foothold import Pitches, Spot, around, beside, landing_ball, pose
+from dancetutor_cli.motion.footwork.foothold import Pitches, around, beside, landing_ball, pose
 from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, SHORTEST, Evading, Footing, FootState, Proposal, pair
 from dancetutor_cli.motion.settings import MineSettings, MotionSettings
 from dancetutor_cli.motion.swing.clearance import over
-from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, room_on
+from dancetutor_cli.motion.swing.panels import HALF_PANEL, Spot, ball_of, room_on
 
 Array = NDArray[np.float64]
 

@@ -32,7 +32,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     body = footing.body_yaw()
     wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
     columns = under_the_foot(row, foot)
-    goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side))
+    goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side), row.haste)
     target, yaw = landing(footing, foot, goal, pose(footing, other))
     gallop = _gallop(row, side, footing)
     if gallop is not None:

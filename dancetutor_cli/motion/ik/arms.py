@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +11,11 @@ from dancetutor_cli.motion.bar import hold_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking
 from dancetutor_cli.motion.ik.beside_hips import Hips, beside_hips
+from dancetutor_cli.motion.ik.beside_legs import beside_legs
 from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
+from dancetutor_cli.motion.ik.knees import Legs
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold, kept_clear
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
@@ -41,8 +45,16 @@ GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which i
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
-def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, hips: Hips, context: Context) -> HandTargets:
-    """Targets at times `at` (f,); torso, hips : at the same times, as the IK will be asked for them."""
+@dataclass(frozen=True, slots=True)
+class Below:
+    """What hands that hang must not meet, at the times that are asked for."""
+
+    hips: Hips
+    legs: Legs
+
+
+def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Below, context: Context) -> HandTargets:
+    """Targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
     lean, upright = quat.swing_twist(torso.chest, UP)
     hang, lag, held = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
     arms = context.settings.arms
@@ -57,14 +69,15 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, hips: Hip
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
     wrists += held[..., None] * kept_clear(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
-    wrists += beside_hips(wrists, hips, arms)
+    wrists += beside_hips(wrists, below.hips, arms)
+    out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
+    elbows = quat.rotate(upright[:, None], out)
+    wrists += beside_legs(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
     inward = _on_her_own_pad(wrists[..., 0], context)
     ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
     wrists += np.abs(inward)[..., None] * ahead[:, None]
     wrists[..., 0] += _on_her_own_pad(wrists[..., 0], context)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
-    out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
-    elbows = quat.rotate(upright[:, None], out)
     elbows[..., 0] += np.clip(inward / GIVEN_WAY, -1.0, 1.0)
     free = np.tile(quat.IDENTITY, (len(at), 2, 1))
     hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)

@@ -30,6 +30,13 @@ class Hung:
     rotation: Array
     ankles: Array
 
+    def legs(self, skeleton: Skeleton, poles: Array) -> Legs:
+        """The legs, knees pointing as poles (f, 2, 3) say."""
+        hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
+        hips = self.pelvis[:, None] + quat.rotate(self.rotation[:, None], hips)
+        bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
+        return Legs(hips, self.ankles, poles, (bones[0], bones[1]))
+
 
 def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSettings) -> Array:
     """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
@@ -59,13 +66,11 @@ def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSetting
 
     Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
     """
-    hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
-    hips = hung.pelvis[:, None] + quat.rotate(hung.rotation[:, None], hips)
-    bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
+    both = hung.legs(skeleton, poles)
     near, most = np.arange(len(poles)), np.radians(knees.give)
     given = np.zeros((len(poles), 2))
     for _ in range(ROUNDS):
-        legs = _Legs(hips[near], hung.ankles[near], poles[near], (bones[0], bones[1]))
+        legs = both.some(near)
         deep = legs.depth(given[near])
         close = deep > -LOOKED
         near, legs, deep = near[close], legs.some(close), deep[close]
@@ -76,12 +81,12 @@ def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSetting
         given[near] = np.clip(given[near] - need[:, None] * slope, -most, most)
     out = poles.copy()
     moved = np.abs(given).max(axis=1) > 0.0
-    out[moved] = _swivelled(hung.ankles[moved] - hips[moved], poles[moved], given[moved])
+    out[moved] = _swivelled((both.ankles - both.hips)[moved], poles[moved], given[moved])
     return out
 
 
 @dataclass(frozen=True, slots=True)
-class _Legs:
+class Legs:
     """Legs in f frames: hips, ankles, poles (f, 2, 3), lengths of thigh and shank."""
 
     hips: Array
@@ -89,26 +94,44 @@ class _Legs:
     poles: Array
     bones: tuple[float, float]
 
-    def some(self, keep: NDArray[np.bool_]) -> _Legs:
-        return _Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
+    def some(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> Legs:
+        """Those of some frames."""
+        return Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
+
+    def knees(self, given: Array | None = None) -> Array:
+        """Where knees are, (f, 2, 3), turned by (f, 2) radians."""
+        reach = self.ankles - self.hips
+        poles = square_to(reach, self.poles) if given is None else _swivelled(reach, self.poles, given)
+        return np.asarray(self.hips + middle_joint(reach, poles, self.bones))
 
     def depth(self, given: Array) -> Array:
         """How deep (f,) the legs are in each other with knees turned by (f, 2) radians."""
-        thigh, shank = self.bones
-        reach = self.ankles - self.hips
-        far = np.clip(np.linalg.norm(reach, axis=2, keepdims=True), 0.1, thigh + shank - 1e-4)
-        along = (thigh**2 - shank**2 + far**2) / (2.0 * far)
-        out = np.sqrt(np.maximum(thigh**2 - along**2, 0.0))
-        line = reach / np.linalg.norm(reach, axis=2, keepdims=True)
-        knees = self.hips + along * line + out * _swivelled(reach, self.poles, given)
+        knees = self.knees(given)
         legs = [leg_capsules(self.hips[:, s], knees[:, s], self.ankles[:, s]) for s in (0, 1)]
         return depth(legs[0], legs[1], STEPS)
 
 
+def middle_joint(reach: Array, poles: Array, bones: tuple[float, float]) -> Array:
+    """Where (..., 3) the joint between two bones of these lengths is, from the first one's root.
+
+    reach : (..., 3) from there to the end of the second one; poles : (..., 3) unit vectors square to it
+    """
+    first, second = bones
+    far = np.linalg.norm(reach, axis=-1, keepdims=True)
+    long = np.clip(far, 0.1, first + second - 1e-4)
+    along = (first**2 - second**2 + long**2) / (2.0 * long)
+    return np.asarray(along / far * reach + np.sqrt(np.maximum(first**2 - along**2, 0.0)) * poles)
+
+
+def square_to(reach: Array, poles: Array) -> Array:
+    """Unit vectors (..., 3) square to `reach` that point most as poles (..., 3) do."""
+    line = reach / np.linalg.norm(reach, axis=-1, keepdims=True)
+    ahead = poles - np.sum(poles * line, axis=-1, keepdims=True) * line
+    return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
+
+
 def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
     """Unit vectors (f, 2, 3) square to hip-ankle lines, in the planes of the poles turned outward by (f, 2) radians."""
-    line = reach / np.linalg.norm(reach, axis=2, keepdims=True)
-    ahead = poles - np.sum(poles * line, axis=2, keepdims=True) * line
-    ahead = ahead / np.linalg.norm(ahead, axis=2, keepdims=True)
+    line, ahead = reach / np.linalg.norm(reach, axis=2, keepdims=True), square_to(reach, poles)
     aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
     return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.gait import walking, with_gait
-from dancetutor_cli.motion.ik.arms import arm_targets
+from dancetutor_cli.motion.ik.arms import Below, arm_targets
 from dancetutor_cli.motion.ik.beside_hips import Hips
 from dancetutor_cli.motion.ik.full_body import Targets
 from dancetutor_cli.motion.ik.hands import Torso
@@ -39,7 +39,6 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     if gait is not None:
         pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
-    hands = arm_targets(plan, body, at, Torso(shoulders, chest), Hips(pelvis, pelvis_rotation), context)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
     soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
@@ -49,7 +48,10 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
         for t, f in zip(straight, feet, strict=True)
     ]
     poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
-    poles = knees_apart(skeleton, Hung(pelvis, pelvis_rotation, ankles), poles, context.settings.knees)
+    hung = Hung(pelvis, pelvis_rotation, ankles)
+    poles = knees_apart(skeleton, hung, poles, context.settings.knees)
+    below = Below(Hips(pelvis, pelvis_rotation), hung.legs(skeleton, poles))
+    hands = arm_targets(plan, body, at, Torso(shoulders, chest), below, context)
     return Targets(
         pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
         np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,8 +46,24 @@ def middle_of(ball: Array, yaw: float) -> Array:
     return np.asarray(ball - BALL_AHEAD * heading(yaw))
 
 
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a foot may be: a centre (2,), and how far (2,) along x and z its ball and its sole's middle may be off."""
+
+    centre: Array
+    room: Array
+    middle_room: Array | float = np.inf
+
+
 def room_on(panels: Array, column: int, step: StepSettings) -> Array:
     """How far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
     away = np.abs(panels - panels[column])
     beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
     return HALF_PANEL - np.where(beside, step.neighbour_margin, step.ball_margin)
+
+
+def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
+    """The place of a ball (2,) near this one from which it and the middle of the sole are where they may be."""
+    ball = np.clip(ball, spot.centre - spot.room, spot.centre + spot.room)
+    middle = np.clip(middle_of(ball, toes), spot.centre - spot.middle_room, spot.centre + spot.middle_room)
+    return ball_of(middle, toes)
