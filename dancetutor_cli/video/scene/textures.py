@@ -28,16 +28,18 @@ class Skins:
     tint: NDArray[np.float32]
     limb: NDArray[np.bool_]
 
-    def flat(self) -> tuple[Image, NDArray[np.int32], NDArray[np.float32]]:
+    def flat(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
         """All texels in one array, for kernels.
 
-        texels uint8 (n, 4); table int32 (s * LEVELS, 3), first texel, width and height of each image; and float32
-        (m, 5), each mesh's tint divided by 255, the row of its texture in the table, and 1 for a limb's colour
+        texels int32 (n,), red in the lowest byte, then green and blue; table int32 (s * LEVELS, 3), first texel, width
+        and height of each image; and float32 (m, 5), each mesh's tint divided by 255, the row of its texture in the
+        table, and 1 for a limb's colour
         """
         images = [image for pyramid in self.pyramids for image in pyramid]
         first = np.cumsum([0, *(i.shape[0] * i.shape[1] for i in images)])
         table = np.array([(f, i.shape[1], i.shape[0]) for f, i in zip(first, images, strict=False)], dtype=np.int32)
-        texels = np.concatenate([image.reshape(-1, 4) for image in images])
+        colours = np.concatenate([image.reshape(-1, 4) for image in images]).astype(np.int32)
+        texels = colours[:, 0] | colours[:, 1] << 8 | colours[:, 2] << 16
         meshes = np.column_stack([self.tint / np.float32(255.0), self.of_mesh * LEVELS, self.limb])
         return texels, table, meshes.astype(np.float32)
 

@@ -1,7 +1,8 @@
 """Colours of places on the dancer, many at a time: toon light, self shadow, rim and texture.
 
-Each step goes over all places of a block before the next one begins: small loops without branches, of which a processor
-does several rounds at once. That takes a third of the time of one place after the other.
+Each step goes over all places of a block before the next one begins. Steps that fetch what lies here and there only do
+that; those that calculate are small loops without branches, of which the compiler makes vector code. That takes a third
+of the time of one place after the other.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import float32, uint64
+from numba import float32, int32, uint64
 from numpy.typing import NDArray
 
+from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.cpu.uncounted import inner_kernel
 from dancetutor_cli.video.scene.look import ToonLook
 from dancetutor_cli.video.scene.textures import LEVELS
@@ -21,7 +23,6 @@ BLOCK = 256  # places that are coloured together: what is known of them stays in
 
 # Places in the rows that `shade.light_vertices` writes, one row of 64 bytes for each vertex.
 X, Y, W, TO_LIGHT, FACING, UP, SU, SV, HEIGHT, U, V, MATERIAL = range(12)
-_ROW = 16
 # Places in the row of numbers `toon`; see `toon_numbers`.
 _BANDS, _STEEP, _LEVELS, _RIM, _SHADE, OUTLINE, _CAST, _LIMBS, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15, 16
 _RIM_WIDTH = 0.2
@@ -48,7 +49,7 @@ class Surface(NamedTuple):
     material: NDArray[np.int32]
     patch: NDArray[np.int32]
     density: F32
-    texels: NDArray[np.uint8]
+    texels: NDArray[np.int32]
     textures: NDArray[np.int32]
     meshes: F32
 
@@ -61,42 +62,57 @@ class Light(NamedTuple):
     toon: F32
 
 
+# What is known of the places of a block lies in rows of one flat array, so many numbers from each other: only then the
+# compiler sees that rows do not overlap, and makes vector code of the loops over them.
+(
+    _LIT, _FACE, _UPWARD, _LEFT, _TOP, _HIGH, _ACROSS, _ALONG,  # what the rows of the triangle's vertices come to there
+    _SUN,  # how much of the light is not taken by her own shadow
+    _LEAST, _TINT_RED, _TINT_GREEN, _TINT_BLUE,  # of the mesh
+    _LEVEL, _HALF_LIGHT, _EDGE,  # of the toon light
+    _UPPER_LEFT, _UPPER_RIGHT, _LOWER_LEFT, _LOWER_RIGHT,  # weights of four texels
+    RED, GREEN, BLUE,  # 0..1
+) = (np.uint64(row * BLOCK) for row in range(23))  # fmt: skip
+_FIRST, _WIDTH, _TALL, _A, _B, _C, _D = (np.uint64(row * BLOCK) for row in range(7))  # whole numbers: of the image
+
+
 class Fragments(NamedTuple):
     """A block of places on the dancer.
 
-    triangle : int32 (n,); spot : float32 (n, 2), where in samples; share : float32 (n,), of which pixel, int32 (n,)
-    mean : float32 (n, 16), what the rows of the triangle's vertices come to there
-    sun : float32 (n,), how much of the light is not taken by her own shadow; colour : float32 (n, 4), 0..1
+    triangle : int32 (n,); spot : float32 (n, 2), where in samples; share : float32 (n,), of a pixel
+    pixel : int32 (n,), as `shade` numbers them
+    rows : float32 (23 * n,) and places : int32 (7 * n,), what is known of each; three rows are the colours, 0..1
     """
 
     triangle: NDArray[np.int32]
     spot: F32
     share: F32
     pixel: NDArray[np.int32]
-    mean: F32
-    sun: F32
-    colour: F32
+    rows: F32
+    places: NDArray[np.int32]
 
 
 def empty_fragments() -> Fragments:
     """Room for a block."""
-    numbers = (np.zeros((BLOCK, n), np.float32) for n in (2, _ROW, 4))
-    spot, mean, colour = numbers
+    rows = np.zeros(23 * BLOCK, np.float32)
+    rows[int(_SUN) : int(_SUN) + BLOCK] = 1.0
     return Fragments(
         np.zeros(BLOCK, np.int32),
-        spot,
+        np.zeros((BLOCK, 2), np.float32),
         np.zeros(BLOCK, np.float32),
         np.zeros(BLOCK, np.int32),
-        mean,
-        np.ones(BLOCK, np.float32),
-        colour,
+        rows,
+        np.zeros(7 * BLOCK, np.int32),
     )
 
 
 @inner_kernel
-def _interpolate(count: int, some: Any, triangles: Any, vertex: Any) -> None:  # pragma: no cover
-    """Fill `mean`: weights on the picture, kept inside of the triangle (a pixel's middle may lie just outside)."""
-    mean = some.mean
+def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
+    """Gather what is needed of triangles and meshes.
+
+    Weights are those on the picture, kept inside of the triangle (a pixel's middle may lie just outside).
+    """
+    rows, places, vertex = some.rows, some.places, light.vertex
+    meshes, textures, near = surface.meshes, surface.textures, light.toon[PER_METRE]
     for n in range(count):
         i = uint64(n)
         t = uint64(some.triangle[i])
@@ -118,26 +134,36 @@ def _interpolate(count: int, some: Any, triangles: Any, vertex: Any) -> None:  #
         height = vertex[a, HEIGHT] * w0 + vertex[b, HEIGHT] * w1 + vertex[c, HEIGHT] * w2
         u = vertex[a, U] * w0 + vertex[b, U] * w1 + vertex[c, U] * w2
         v = vertex[a, V] * w0 + vertex[b, V] * w1 + vertex[c, V] * w2
-        material = vertex[a, MATERIAL]
-        mean[i, TO_LIGHT], mean[i, FACING], mean[i, UP], mean[i, SU] = to_light, facing, up, su
-        mean[i, SV], mean[i, HEIGHT], mean[i, U], mean[i, V] = sv, height, u, v
-        mean[i, MATERIAL] = material
+        m = uint64(int(vertex[a, MATERIAL] + _HALF))
+        # The image of the texture in which a texel is about a pixel.
+        dense, image = float32(0.7) * surface.density[t], uint64(int(meshes[m, 3]))
+        for _ in range(LEVELS - 1):
+            if dense > near:
+                image += uint64(1)
+                dense *= _HALF
+        least, red, green, blue = meshes[m, 4], meshes[m, 0], meshes[m, 1], meshes[m, 2]
+        first, width, tall = textures[image, 0], textures[image, 1], textures[image, 2]
+        rows[_LIT + i], rows[_FACE + i], rows[_UPWARD + i] = to_light, facing, up
+        rows[_LEFT + i], rows[_TOP + i], rows[_HIGH + i] = su, sv, height
+        rows[_ACROSS + i], rows[_ALONG + i], rows[_LEAST + i] = u, v, least
+        rows[_TINT_RED + i], rows[_TINT_GREEN + i], rows[_TINT_BLUE + i] = red, green, blue
+        places[_FIRST + i], places[_WIDTH + i], places[_TALL + i] = first, width, tall
 
 
 @inner_kernel
 def _shadowed(count: int, some: Any, light: Any) -> None:  # pragma: no cover
-    """Fill `sun`: nine comparisons, the mean over two by two texels; 1 outside of the map.
+    """Fill the row of the sun: nine comparisons, the mean over two by two texels; 1 outside of the map.
 
     The same as four taps of a graphics card, half a texel away from the place in both directions.
     """
-    shadow, toon, mean, sun = light.shadow, light.toon, some.mean, some.sun
+    shadow, toon, rows = light.shadow, light.toon, some.rows
     least = toon[_BANDS]
     for n in range(count):
         i = uint64(n)
-        sun[i] = _ONE
-        if mean[i, TO_LIGHT] <= least:
+        rows[_SUN + i] = _ONE
+        if rows[_LIT + i] <= least:
             continue
-        x, y, height = mean[i, SU] - _ONE, mean[i, SV] - _ONE, mean[i, HEIGHT] + float32(_BELOW)
+        x, y, height = rows[_LEFT + i] - _ONE, rows[_TOP + i] - _ONE, rows[_HIGH + i] + float32(_BELOW)
         left, top = np.floor(x), np.floor(y)
         c, r = int(left), int(top)
         if c < 0 or r < 0 or c >= shadow.shape[1] - 2 or r >= shadow.shape[0] - 2:
@@ -151,10 +177,10 @@ def _shadowed(count: int, some: Any, light: Any) -> None:  # pragma: no cover
             second = _ONE if shadow[j, column + uint64(1)] <= height else _NONE
             third = fx if shadow[j, column + uint64(2)] <= height else _NONE
             total += (first + second + third) * (_ONE - fy if k == 0 else (_ONE if k == 1 else fy))
-        sun[i] = float32(0.25) * total
+        rows[_SUN + i] = float32(0.25) * total
 
 
-@inner_kernel
+@njit(cache=True, inline="always")
 def _step(t: Any) -> Any:  # pragma: no cover
     """0 below 0, 1 above 1, a cubic between."""
     t = min(_ONE, max(_NONE, t))
@@ -162,59 +188,96 @@ def _step(t: Any) -> Any:  # pragma: no cover
 
 
 @inner_kernel
-def _coloured(count: int, some: Any, surface: Any, toon: Any) -> None:  # pragma: no cover
-    """Fill `colour`: the texture, bilinear and repeating, in toon light."""
-    mean, colour, density = some.mean, some.colour, surface.density
-    texels, textures, meshes = surface.texels, surface.textures, surface.meshes
+def _toon_light(count: int, rows: Any, toon: Any) -> None:  # pragma: no cover
+    """Fill the rows of the toon light."""
+    half_from, full_from, steep, limbs = toon[_BANDS], toon[_BANDS + 1], toon[_STEEP], toon[_LIMBS]
     low, middle, high = toon[_LEVELS], toon[_LEVELS + 1] - toon[_LEVELS], toon[_LEVELS + 2] - toon[_LEVELS + 1]
+    rim_strength, rim_from = toon[_RIM], toon[_RIM + 1]
     for n in range(count):
         i = uint64(n)
-        m, up = uint64(int(mean[i, MATERIAL] + _HALF)), mean[i, UP]
+        to_light, up, sun = rows[_LIT + i], rows[_UPWARD + i], rows[_SUN + i]
         # a cast shadow is lighter than shade
-        half = _step((mean[i, TO_LIGHT] - toon[_BANDS]) * toon[_STEEP]) * (_HALF + _HALF * some.sun[i])
-        full = _step((mean[i, TO_LIGHT] - toon[_BANDS + 1]) * toon[_STEEP]) * some.sun[i]
-        half = max(half, meshes[m, 4] * toon[_LIMBS])
+        half = _step((to_light - half_from) * steep) * (_HALF + _HALF * sun)
+        full = _step((to_light - full_from) * steep) * sun
+        half = max(half, rows[_LEAST + i] * limbs)
         level = (low + middle * half + high * full) * (float32(0.95) + float32(0.05) * up)
-        rim = _step((_ONE - mean[i, FACING] - toon[_RIM + 1]) * float32(1.0 / _RIM_WIDTH))
-        rim *= toon[_RIM] * (float32(0.6) + float32(0.4) * up)
-        # The image of the texture in which a texel is about a pixel.
-        dense, image = float32(0.7) * density[uint64(some.triangle[i])], uint64(int(meshes[m, 3]))
-        for _ in range(LEVELS - 1):
-            if dense > toon[PER_METRE]:
-                image += uint64(1)
-                dense *= _HALF
-        first, width, height = textures[image, 0], textures[image, 1], textures[image, 2]
-        u, v = mean[i, U], mean[i, V]
+        rim = _step((_ONE - rows[_FACE + i] - rim_from) * float32(1.0 / _RIM_WIDTH))
+        rim *= rim_strength * (float32(0.6) + float32(0.4) * up)
+        rows[_HALF_LIGHT + i], rows[_LEVEL + i], rows[_EDGE + i] = half, level, rim
+
+
+@inner_kernel
+def _texel_places(count: int, rows: Any, places: Any) -> None:  # pragma: no cover
+    """Fill the places of four texels, which repeat, and their weights."""
+    for n in range(count):
+        i = uint64(n)
+        u, v, first, width, tall = (
+            rows[_ACROSS + i],
+            rows[_ALONG + i],
+            places[_FIRST + i],
+            places[_WIDTH + i],
+            places[_TALL + i],
+        )
         x = (u - np.floor(u)) * float32(width) - _HALF
-        y = (v - np.floor(v)) * float32(height) - _HALF
+        y = (v - np.floor(v)) * float32(tall) - _HALF
         left, top = np.floor(x), np.floor(y)
         fx, fy = x - left, y - top
-        i0, j0 = int(left), int(top)
-        i1 = i0 + 1 if i0 + 1 < width else 0
-        j1 = j0 + 1 if j0 + 1 < height else 0
-        i0 = i0 if i0 >= 0 else width - 1
-        j0 = j0 if j0 >= 0 else height - 1
-        upper, lower = first + j0 * width, first + j1 * width
-        a, b, c, d = uint64(upper + i0), uint64(upper + i1), uint64(lower + i0), uint64(lower + i1)
-        wa, wb, wc, wd = (_ONE - fx) * (_ONE - fy), fx * (_ONE - fy), (_ONE - fx) * fy, fx * fy
-        red = float32(texels[a, 0]) * wa + float32(texels[b, 0]) * wb
-        green = float32(texels[a, 1]) * wa + float32(texels[b, 1]) * wb
-        blue = float32(texels[a, 2]) * wa + float32(texels[b, 2]) * wb
-        red += float32(texels[c, 0]) * wc + float32(texels[d, 0]) * wd
-        green += float32(texels[c, 1]) * wc + float32(texels[d, 1]) * wd
-        blue += float32(texels[c, 2]) * wc + float32(texels[d, 2]) * wd
-        red *= meshes[m, 0] * level * (toon[_SHADE] + (_ONE - toon[_SHADE]) * half)
-        green *= meshes[m, 1] * level * (toon[_SHADE + 1] + (_ONE - toon[_SHADE + 1]) * half)
-        blue *= meshes[m, 2] * level * (toon[_SHADE + 2] + (_ONE - toon[_SHADE + 2]) * half)
-        colour[i, 0] = min(red + (_ONE - red) * rim, _ONE)
-        colour[i, 1] = min(green + (_ONE - green) * rim, _ONE)
-        colour[i, 2] = min(blue + (_ONE - blue) * rim, _ONE)
+        i0, j0 = int32(left), int32(top)
+        i1 = int32(i0 + int32(1)) if i0 + int32(1) < width else int32(0)
+        j1 = int32(j0 + int32(1)) if j0 + int32(1) < tall else int32(0)
+        i0 = i0 if i0 >= int32(0) else int32(width - int32(1))
+        j0 = j0 if j0 >= int32(0) else int32(tall - int32(1))
+        upper, lower = int32(first + j0 * width), int32(first + j1 * width)
+        places[_A + i], places[_B + i], places[_C + i], places[_D + i] = upper + i0, upper + i1, lower + i0, lower + i1
+        rows[_UPPER_LEFT + i], rows[_UPPER_RIGHT + i] = (_ONE - fx) * (_ONE - fy), fx * (_ONE - fy)
+        rows[_LOWER_LEFT + i], rows[_LOWER_RIGHT + i] = (_ONE - fx) * fy, fx * fy
+
+
+@inner_kernel
+def _fetch(count: int, places: Any, texels: Any) -> None:  # pragma: no cover
+    """Put the four texels where their places were."""
+    for n in range(count):
+        i = uint64(n)
+        a, b = texels[uint64(places[_A + i])], texels[uint64(places[_B + i])]
+        c, d = texels[uint64(places[_C + i])], texels[uint64(places[_D + i])]
+        places[_A + i], places[_B + i], places[_C + i], places[_D + i] = a, b, c, d
+
+
+@njit(cache=True, inline="always")
+def _channel(texel: Any, shift: Any) -> Any:  # pragma: no cover
+    return float32((texel >> shift) & int32(255))
+
+
+@inner_kernel
+def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no cover
+    """Fill the colours: the texture, bilinear, in the light."""
+    shade_red, shade_green, shade_blue = toon[_SHADE], toon[_SHADE + 1], toon[_SHADE + 2]
+    for n in range(count):
+        i = uint64(n)
+        a, b, c, d = places[_A + i], places[_B + i], places[_C + i], places[_D + i]
+        wa, wb, wc, wd = rows[_UPPER_LEFT + i], rows[_UPPER_RIGHT + i], rows[_LOWER_LEFT + i], rows[_LOWER_RIGHT + i]
+        red = _channel(a, int32(0)) * wa + _channel(b, int32(0)) * wb
+        green = _channel(a, int32(8)) * wa + _channel(b, int32(8)) * wb
+        blue = _channel(a, int32(16)) * wa + _channel(b, int32(16)) * wb
+        red += _channel(c, int32(0)) * wc + _channel(d, int32(0)) * wd
+        green += _channel(c, int32(8)) * wc + _channel(d, int32(8)) * wd
+        blue += _channel(c, int32(16)) * wc + _channel(d, int32(16)) * wd
+        half, level, rim = rows[_HALF_LIGHT + i], rows[_LEVEL + i], rows[_EDGE + i]
+        red *= rows[_TINT_RED + i] * level * (shade_red + (_ONE - shade_red) * half)
+        green *= rows[_TINT_GREEN + i] * level * (shade_green + (_ONE - shade_green) * half)
+        blue *= rows[_TINT_BLUE + i] * level * (shade_blue + (_ONE - shade_blue) * half)
+        rows[RED + i] = min(red + (_ONE - red) * rim, _ONE)
+        rows[GREEN + i] = min(green + (_ONE - green) * rim, _ONE)
+        rows[BLUE + i] = min(blue + (_ONE - blue) * rim, _ONE)
 
 
 @inner_kernel
 def colour(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
     """Fill the colours of the first `count` of `Fragments`, whose triangles, places and shares are there."""
-    _interpolate(count, some, triangles, light.vertex)
+    _interpolate(count, some, triangles, surface, light)
     if light.toon[_CAST] > 0.0:
         _shadowed(count, some, light)
-    _coloured(count, some, surface, light.toon)
+    _toon_light(count, some.rows, light.toon)
+    _texel_places(count, some.rows, some.places)
+    _fetch(count, some.places, surface.texels)
+    _lit(count, some.rows, some.places, light.toon)

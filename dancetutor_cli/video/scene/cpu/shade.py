@@ -5,16 +5,19 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import float32
+from numba import float32, uint64
 from numpy.typing import NDArray
 
 from dancetutor_cli.kernels import njit
 from dancetutor_cli.video.scene.cpu.fragments import (
     BLOCK,
+    BLUE,
     FACING,
+    GREEN,
     HEIGHT,
     MATERIAL,
     OUTLINE,
+    RED,
     SU,
     SV,
     TO_LIGHT,
@@ -35,6 +38,7 @@ Array = NDArray[np.float64]
 
 
 _CLOSE = 0.006  # of its depth: samples farther from each other are coloured apart
+_ROW, _COLUMN = 16, 0xFFFF  # where a pixel's number has its row and its column: no picture is as large
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
@@ -117,21 +121,25 @@ def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -
 @inner_kernel
 def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no cover
     """Add the fragments' colours to their pixels, and those to the picture."""
-    some, total, width = room.fragments, room.sum, out.shape[1]
-    most = float32(255.0)
-    for i in range(count):
+    some, total = room.fragments, room.sum
+    rows, most, half = some.rows, float32(255.0), float32(0.5)
+    for n in range(count):
+        i = uint64(n)
         p, share = some.pixel[i], most * some.share[i]
+        red, green, blue = rows[RED + i], rows[GREEN + i], rows[BLUE + i]
         if some.share[i] == 1.0:
-            row, column = p // width, p % width
-            for k in range(3):
-                out[row, column, k] = int(most * some.colour[i, k] + float32(0.5))
+            row, column = uint64(p >> _ROW), uint64(p & _COLUMN)
+            out[row, column, 0] = int(most * red + half)
+            out[row, column, 1] = int(most * green + half)
+            out[row, column, 2] = int(most * blue + half)
         else:
-            for k in range(3):
-                total[p, k] += share * some.colour[i, k]
+            total[p, 0] += share * red
+            total[p, 1] += share * green
+            total[p, 2] += share * blue
     for p in range(pixels):
         row, column = room.pixels[p, 0], room.pixels[p, 1]
         for k in range(3):
-            out[row, column, k] = int(total[p, k] + float32(0.5))
+            out[row, column, k] = int(total[p, k] + half)
 
 
 @kernel
@@ -146,7 +154,7 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
     count = triangles.shape[0]
     total = samples * samples
     share = float32(1.0 / total)
-    pixels, n, width = 0, 0, out.shape[1]
+    pixels, n = 0, 0
     for row in range(out.shape[0]):
         top, band = row * samples, row * samples // BAND
         first, last = spans[band, 0] // samples, (spans[band, 1] + samples - 1) // samples
@@ -160,7 +168,7 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
             if samples == 1 or _one_piece(nearest, top, left, samples, (count, patch)):
                 t = (key & 0xFFFFFFFF) - 1
                 if 0 <= t < count:
-                    some.triangle[n], some.pixel[n], some.share[n] = t, row * width + column, 1.0
+                    some.triangle[n], some.pixel[n], some.share[n] = t, row << _ROW | column, 1.0
                     some.spot[n, 0] = (float32(column) + float32(0.5)) * float32(samples)
                     some.spot[n, 1] = (float32(row) + float32(0.5)) * float32(samples)
                     n += 1
