@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.danced import Danced
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
+    from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.notes import Cue, NoteTrack
 
@@ -79,7 +80,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         directions=pad.directions,
         motions=motions,
         pad=pad,
-        rows=step_rows(play),
+        rows=step_rows(play, _dancers(dance)),
         character=character,
         partners=partners,
         callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
@@ -91,6 +92,12 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
     return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+
+
+def _dancers(dance: Danced) -> list[tuple[Play, int]]:
+    """Of several who dance each one's play, and which column its first one is."""
+    plays = [(one.play, one.chart.first_column) for one in dance.solved if one.play is not None]
+    return plays if len(dance.solved) > 1 else []
 
 
 def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:

@@ -43,10 +43,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.picture import PadLike
     from dancetutor_cli.video.scene.dancer import Dancer
 
-BACKGROUND = (11, 12, 22)
+BACKGROUND = (12, 14, 26)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES, WIDE_LANES = 0.74, 0.8  # of the highway's width that lanes may take, of wide pads; words stand beside them
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
+LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 BLOCK = 64  # frames whose joints are made at once
 
 
@@ -108,6 +109,9 @@ class Film:
         self.lights = PanelLights(plan.presses, self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
         self.base[...] = BACKGROUND
+        if (strip := self.layout.progress) is not None:  # to the picture's edge, where its graph ends before that
+            left, top, _, bottom = self._box("progress")
+            captions.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
         self.highway = self._highway() if self.layout.highway else None
         if self.layout.screen:
             width, height = self.layout.screen.pixels
@@ -163,9 +167,10 @@ class Film:
             return None
         limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
         left, top, right, bottom = self._box("legend")
-        if self._header is not None and left < self._header.right and self._header.bottom > top > self._header.top:
-            bottom += round(self._header.bottom) - top  # many words: it stands below them
-            top = round(self._header.bottom)
+        if self._header is not None and left < self._header.right:
+            below = round(self._header.bottom + LEGEND_OFF * self.scale * part.text)
+            if below > top > self._header.top:  # many words: it stands below them
+                top, bottom = below, bottom + below - top
         return captions.Legend(
             limbs,
             (left, top, right, bottom),
@@ -247,7 +252,8 @@ class Film:
         view = PadView(plan.pad, self._directions, self.turned)
         if feet:
             pads = PadMap(view, self._box("feet"))
-            large = FeetDiagram(pads, self.lights, self.face)
+            rims = self.style.players if plan.partners else (captions.WHITE,)
+            large = FeetDiagram(pads, self.lights, self.face, rims)
         if after and plan.rows is not None:
             box = self._box("next")
             small = NextRows(plan.rows, view, box, after.count, self.face, self.scale)

@@ -13,13 +13,14 @@ from dancetutor_cli.character.partner import PREFIX, turned, with_partner
 from dancetutor_cli.colours import partner_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.danced import Danced, danced
-from dancetutor_cli.jobs.film_plan import prepare
+from dancetutor_cli.jobs.film_plan import _dancers, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.scene.prepare import feet_on_floor
 from dancetutor_cli.video.scene.scene import FrameState
 from dancetutor_cli.video.scene.stage import PANEL
@@ -69,6 +70,30 @@ def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: Da
             assert dance.play.limb[there, column + one.chart.first_column] == one.play.limb[row, column]
     steps = sum(int((one.play.rows.steps > 0).sum()) for one in dance.solved if one.play is not None)
     assert int((dance.play.limb >= 0).sum()) == steps
+
+
+def test_the_small_pads_know_where_all_four_feet_stand(dance: Danced) -> None:
+    rows = step_rows(dance.play, _dancers(dance))
+    assert rows.feet.shape == (len(rows.second), 4)
+    for limbs, feet in zip(rows.limb, rows.feet.tolist(), strict=True):
+        for column in np.flatnonzero(limbs >= 0):
+            assert column in feet[int(limbs[column]) :: 2], "who steps it stands on it then"
+    for player, one in enumerate(dance.solved):
+        assert one.play is not None
+        here = np.isin(dance.play.rows.tick, one.play.rows.tick)
+        expected = np.where(one.play.feet >= 0, one.play.feet + one.chart.first_column, -1)
+        assert (rows.feet[here, 2 * player : 2 * player + 2] == expected).all()
+
+
+def test_all_four_feet_are_in_the_diagram(tmp_path: Path) -> None:
+    wanted = request_for(tmp_path, "dance-couple")
+    look = replace(wanted.look, layout=load_layout("practice"), size=(640, 360))
+    film = Film(prepare(replace(wanted, look=look), look_up(wanted)).plan)
+    feet = film._dancer.feet(film._joints(8))
+    assert len(feet) == 4 and all(foot is not None for foot in feet)
+    first, second = ([foot.toe[0] for foot in pair if foot] for pair in (feet[:2], feet[2:]))
+    assert max(first) < min(second), "each on her own pad"
+    assert film._diagrams[0] is not None and len(set(film._diagrams[0].rims)) == 2
 
 
 @pytest.mark.parametrize("kind", list(CHARTS))

@@ -125,6 +125,12 @@ class SongShape:
     section: tuple[float, float]
 
 
+def strip_ground(picture: Frame, scale: float) -> None:
+    """What the strip stands on, with a line above it."""
+    picture[...] = (9, 10, 19)
+    picture[: max(1, round(1.2 * scale))] = (44, 48, 70)
+
+
 class ProgressStrip:
     """The strip with the density of the whole song, the position, and the time."""
 
@@ -142,8 +148,7 @@ class ProgressStrip:
     def _paint(self, style: HighwayStyle, bright: bool) -> Frame:
         left, top, right, bottom = self.box
         picture = np.empty((bottom - top, right - left, 3), dtype=np.uint8)
-        picture[...] = (9, 10, 19)
-        picture[: max(1, round(1.2 * self.scale))] = (44, 48, 70)
+        strip_ground(picture, self.scale)
         a, b = self.graph[0] - left, self.graph[1] - left
         if b <= a:
             return picture

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -34,7 +35,7 @@ class DiagramRows:
     """The rows with steps of a play; r rows, c columns.
 
     second : float64 (r,), of the music; limb : int8 (r, c), `play.played.Limb`, NONE where nothing is stepped
-    feet : int16 (r, 2), column that each foot stands on after the row, -1 at home
+    feet : int16 (r, 2 p), column that each foot of p dancers stands on after the row, left and right in turn, or -1
     """
 
     second: NDArray[np.float64]
@@ -42,13 +43,24 @@ class DiagramRows:
     feet: NDArray[np.int16]
 
 
-def step_rows(play: Play) -> DiagramRows:
-    """The rows with steps that a person sees; the virtual taps of rolls are not among them."""
+def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRows:
+    """The rows with steps that a person sees; the virtual taps of rolls are not among them.
+
+    dancers : where several dance, each one's own play, and the column of `play` that its first one is
+    """
     shown = play.rows.steps != StepKind.NONE
     shown &= play.rows.steps != StepKind.ROLL_TAP
     keep = shown.any(axis=1)
     limb = np.where(shown, play.limb, np.int8(-1))
-    return DiagramRows(play.rows.second[keep], limb[keep], play.feet[keep])
+    feet = [_feet_at(play.rows.tick[keep], own, first) for own, first in dancers]
+    return DiagramRows(play.rows.second[keep], limb[keep], np.hstack(feet) if feet else play.feet[keep])
+
+
+def _feet_at(ticks: NDArray[np.int64], own: Play, first: int) -> NDArray[np.int16]:
+    """Where the feet of one of several stand after the rows at `ticks`, int16 (r, 2)."""
+    row = np.searchsorted(own.rows.tick, ticks, side="right") - 1
+    feet = np.where(row[:, None] >= 0, own.feet[np.maximum(row, 0)], -1)
+    return np.where(feet >= 0, feet + first, -1).astype(np.int16)
 
 
 class PadView(NamedTuple):
@@ -122,7 +134,9 @@ def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite
 
 
 @lru_cache(maxsize=512)
-def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool) -> Sprite:
+def shoe_sprite(
+    size: int, degrees: int, limb: int, face: Typeface, ghost: bool, rim: tuple[int, int, int] = (255, 255, 255)
+) -> Sprite:
     """A sole from above, its toe turned `degrees` clockwise from the screen, with its letter."""
     p = shapes.Painter(size, size)
     a = np.radians(degrees)
@@ -135,7 +149,7 @@ def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool)
     d = capsule * size
     colour = np.array(limb_colours().by_limb[limb], dtype=np.float64)
     p.paint(shapes.cover(d - 0.012 * size), (8, 9, 16), 0.85 if not ghost else 0.4)
-    p.paint(shapes.cover(d + 0.005 * size), (255, 255, 255), 0.95 if not ghost else 0.5)
+    p.paint(shapes.cover(d + 0.005 * size), rim, 0.95 if not ghost else 0.5)
     p.paint(shapes.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
     out = p.sprite()
     sprites.centre(out, face.sprite("LR"[limb], 0.3 * size, (10, 11, 20), weight=0.012 * size))
@@ -143,21 +157,24 @@ def shoe_sprite(size: int, degrees: int, limb: int, face: Typeface, ghost: bool)
 
 
 class FeetDiagram:
-    """The large pad with both feet on it, at any second."""
+    """The large pad with all feet on it, at any second. rims : of each dancer's feet the colour around them"""
 
-    def __init__(self, pads: PadMap, lights: PanelLights, face: Typeface) -> None:
-        self.pads, self.lights, self.face = pads, lights, face
+    def __init__(
+        self, pads: PadMap, lights: PanelLights, face: Typeface, rims: tuple[tuple[int, int, int], ...] = ((255,) * 3,)
+    ) -> None:
+        self.pads, self.lights, self.face, self.rims = pads, lights, face, rims
 
-    def draw(self, frame: Frame, second: float, feet: tuple[FootFromAbove | None, FootFromAbove | None]) -> None:
-        """Draw pad and feet; a lifted foot is larger and lighter."""
+    def draw(self, frame: Frame, second: float, feet: Sequence[FootFromAbove | None]) -> None:
+        """Draw pad and feet, left and right in turn; a lifted foot is larger and lighter."""
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))])
-        for limb, foot in enumerate(feet):
+        for number, foot in enumerate(feet):
             if foot is None:
                 continue
+            limb, rim = number % 2, self.rims[min(number // 2, len(self.rims) - 1)]
             dx, dy = foot.toe[0] - foot.heel[0], foot.toe[1] - foot.heel[1]
             degrees = (round(np.degrees(np.arctan2(dx, dy)) / 3) * 3 + 180 * self.pads.turned) % 360
             size = max(8, 2 * round(0.5 * self.pads.unit * (1.12 + 0.6 * min(foot.height, 0.3))))
-            shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035)
+            shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035, rim)
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
             x, y = self.pads.place(*middle)
             if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
@@ -223,7 +240,7 @@ class NextRows:
                 self._mark(frame, pads, int(column), max(int(limbs[column]), -1), STEPPED)
             for foot, column in enumerate(self.rows.feet[row]):
                 if column >= 0 and limbs[column] < 0:
-                    self._mark(frame, pads, int(column), foot, RESTING)
+                    self._mark(frame, pads, int(column), foot % 2, RESTING)
             blit(frame, self.names[min(place, 1)], *self._corner(pads, self.names[min(place, 1)]))
 
     def _corner(self, pads: PadMap, name: Sprite) -> tuple[float, float]:

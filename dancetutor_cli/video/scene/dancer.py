@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.character.partner import with_partner
+from dancetutor_cli.character.partner import PREFIX, with_partner
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video.clock import Moment
@@ -157,10 +157,10 @@ class Dancer:
         nobody = np.zeros(self.scene.panels)
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
 
-    def feet(self, joints: NDArray[np.float64]) -> tuple[FootFromAbove | None, FootFromAbove | None]:
-        """Both feet from above, in panel widths of the pad."""
-        left, right = foot_marks(self.scene, joints)
-        return self._foot(left), self._foot(right)
+    def feet(self, joints: NDArray[np.float64]) -> list[FootFromAbove | None]:
+        """Both feet from above, in panel widths of the pad; of two who dance all four."""
+        whose = ("", PREFIX) if self.partners else ("",)
+        return [self._foot(mark) for one in whose for mark in foot_marks(self.scene, joints, one)]
 
     def _foot(self, mark: FootMark | None) -> FootFromAbove | None:
         if mark is None:
