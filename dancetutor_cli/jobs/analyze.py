@@ -16,6 +16,7 @@ from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.presets import PresetChoice, preset_for
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.meter.bill import AUTO
+from dancetutor_cli.startup import keep_what_is_there
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -75,6 +76,7 @@ def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
             raise
         if window.is_full:
             yield from window.results()
+            keep_what_is_there()  # everything that is needed is imported
     yield from window.results()
 
 

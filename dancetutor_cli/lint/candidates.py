@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.lint.plays import EPSILON, Plays
 from dancetutor_cli.lint.techniques import techniques
+from dancetutor_cli.meter.features import Feature, features_of
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Limb, Play
 
@@ -36,6 +37,14 @@ class Candidates:
 
     def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
         self.plays = Plays(plays, pad)
+        self._features: dict[tuple[tuple[Feature, ...], float], list[list[float]]] = {}
+
+    def features(self, number: int, wanted: Sequence[Feature], rate: float) -> list[float]:
+        """What the meter of one of the plays is estimated from, see `meter.features`."""
+        asked = tuple(wanted), rate
+        if asked not in self._features:
+            self._features[asked] = features_of(self.plays.plays, wanted, rate)
+        return self._features[asked][number]
 
     @cached_property
     def crossed_runs(self) -> list[list[tuple[int, int]]]:

@@ -14,7 +14,7 @@ from dancetutor_cli.lint.rule import Played, SongRule
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.meter.bill import AUTO, Estimate
-from dancetutor_cli.meter.estimate import Sized, on_scale, says_scale, scales_of, size
+from dancetutor_cli.meter.estimate import Sized, on_scale, says_scale, scales_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Meters:
         chart = subject.chart
         if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players
             return
-        found = size(subject.play, chart.steps_type, (chart.meter, chart.difficulty), rate)
+        found = subject.sized(rate)
         if found is not None:
             self._sized[chart.steps_type].append((chart.index, found))
 

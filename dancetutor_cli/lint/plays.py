@@ -63,17 +63,17 @@ class Travels(NamedTuple):
 class Plays:
     """k plays of c columns; n rows in all, and what is about rows counts them from the first of the first play.
 
-    first : for each play its first row; and n
+    plays : as they were given; first : for each its first row; and n
     """
 
     def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
-        self._plays = plays
+        self.plays = plays
         self.pad = pad
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
 
     def play(self, number: int) -> Play:
         """One of the plays."""
-        return self._plays[number]
+        return self.plays[number]
 
     def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
         """Those of some ascending rows that are of one play, counted from its first."""
@@ -83,13 +83,13 @@ class Plays:
 
     def least(self, rows: NDArray[np.int64], values: NDArray[np.float64]) -> list[float]:
         """For each play the least of the values that some rows have; endless where it has none."""
-        found = np.full(len(self._plays), np.inf)
+        found = np.full(len(self.plays), np.inf)
         np.minimum.at(found, self.number[rows], values)
         return found.tolist()
 
     def how_often(self, rows: NDArray[np.int64]) -> list[int]:
         """How many of some rows, which may come twice, each play has."""
-        counts: list[int] = np.bincount(self.number[rows], minlength=len(self._plays)).tolist()
+        counts: list[int] = np.bincount(self.number[rows], minlength=len(self.plays)).tolist()
         return counts
 
     def _joined(self, arrays: Iterator[NDArray[Any]]) -> NDArray[Any]:
@@ -99,7 +99,7 @@ class Plays:
     @cached_property
     def number(self) -> NDArray[np.int64]:
         """(n,) of which play a row is."""
-        return np.arange(len(self._plays)).repeat(np.diff(self.first))
+        return np.arange(len(self.plays)).repeat(np.diff(self.first))
 
     @cached_property
     def start(self) -> NDArray[np.int64]:
@@ -109,38 +109,38 @@ class Plays:
     @cached_property
     def second(self) -> NDArray[np.float64]:
         """(n,) seconds."""
-        return self._joined(play.rows.second for play in self._plays)
+        return self._joined(play.rows.second for play in self.plays)
 
     @cached_property
     def tick(self) -> NDArray[np.int64]:
         """(n,) ticks that ascend from play to play."""
-        return np.asarray(self._joined(play.rows.tick for play in self._plays) + (self.number << _PLAY))
+        return np.asarray(self._joined(play.rows.tick for play in self.plays) + (self.number << _PLAY))
 
     @cached_property
     def margin(self) -> NDArray[np.int64]:
         """(n,) margins, -1 where nobody asked."""
-        none = (np.full(len(play.rows), -1) if play.margin is None else play.margin for play in self._plays)
+        none = (np.full(len(play.rows), -1) if play.margin is None else play.margin for play in self.plays)
         return self._joined(none)
 
     @cached_property
     def facing(self) -> NDArray[np.float64]:
         """(n,) degrees."""
-        return self._joined(play.facing for play in self._plays)
+        return self._joined(play.facing for play in self.plays)
 
     @cached_property
     def limb(self) -> NDArray[np.int8]:
         """(n, c) limbs."""
-        return self._joined(play.limb for play in self._plays)
+        return self._joined(play.limb for play in self.plays)
 
     @cached_property
     def part(self) -> NDArray[np.uint8]:
         """(n, c) parts of feet."""
-        return self._joined(play.part for play in self._plays)
+        return self._joined(play.part for play in self.plays)
 
     @cached_property
     def steps(self) -> NDArray[np.uint8]:
         """(n, c) kinds of steps."""
-        return self._joined(play.rows.steps for play in self._plays)
+        return self._joined(play.rows.steps for play in self.plays)
 
     @cached_property
     def limb_by_column(self) -> NDArray[np.int8]:
@@ -159,7 +159,7 @@ class Plays:
     @cached_property
     def _heads(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
         """Row, column and end (as `tick`) of every hold."""
-        ends = self._joined(play.rows.hold_end for play in self._plays).ravel()
+        ends = self._joined(play.rows.hold_end for play in self.plays).ravel()
         cell = np.flatnonzero(ends >= 0)
         row, column = np.divmod(cell, len(self.pad))
         return row, column, ends[cell] + (self.number[row] << _PLAY)
@@ -167,7 +167,7 @@ class Plays:
     @cached_property
     def mined(self) -> NDArray[np.bool_]:
         """(n,) whether a row has a mine."""
-        mines = self._joined(play.rows.mines for play in self._plays)
+        mines = self._joined(play.rows.mines for play in self.plays)
         found = np.zeros(len(mines), dtype=bool)
         found[np.flatnonzero(mines.ravel()) // len(self.pad)] = True
         return found
@@ -276,7 +276,7 @@ class Plays:
     def bits(self) -> tuple[list[str], NDArray[np.int64]]:
         """Names of moves, and (n,) which of them happen in a row: the bit of a name is its place in the list."""
         names = list(EVENTS)
-        of_plays = [_bits_of(play, names) if play.events is None else play.events for play in self._plays]
+        of_plays = [_bits_of(play, names) if play.events is None else play.events for play in self.plays]
         return names, self._joined(iter(of_plays))
 
     def with_any(self, moves: Sequence[str], number: int | None = None) -> NDArray[np.int64]:
@@ -289,7 +289,7 @@ class Plays:
     def counts(self) -> list[dict[str, int]]:
         """For each play the name of every move in it -> rows in which it happens."""
         names, bits = self.bits
-        counts: list[dict[str, int]] = [{} for _ in self._plays]
+        counts: list[dict[str, int]] = [{} for _ in self.plays]
         present = int(np.bitwise_or.reduce(bits, initial=0))
         for bit, name in enumerate(names):
             if present >> bit & 1:

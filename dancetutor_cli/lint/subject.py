@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from dancetutor_cli.lint.note_questions import Notes
 from dancetutor_cli.lint.together import Shared
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Ambiguity, Limb, Play, StepKind
+
+if TYPE_CHECKING:
+    from dancetutor_cli.meter.estimate import Sized
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 
@@ -89,6 +92,16 @@ class ChartSubject:
     def counts(self) -> Mapping[str, int]:
         """Name of the move -> rows of the play in which it happens."""
         return {} if self.play is None else self.shared.candidates.plays.counts[self.shared.number]
+
+    def sized(self, rate: float = 1.0) -> Sized | None:
+        """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
+        from dancetutor_cli.meter.estimate import size
+
+        if self.play is None:
+            return None
+        candidates, number = self.shared
+        ask = partial(candidates.features, number)
+        return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
 
     def _rows_with(self, moves: Sequence[str]) -> list[int]:
         return [] if self.play is None else self.shared.candidates.plays.with_any(moves, self.shared.number).tolist()

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dancetutor_cli.meter.bill import AUTO, Estimate
-from dancetutor_cli.meter.features import features
+from dancetutor_cli.meter.features import Feature
 from dancetutor_cli.meter.model import MeterModel, Scale, model_for
-from dancetutor_cli.play.played import Play
 
 # What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: not trusted.
 _TAGS = {"ITG": "itg", "DDR X": "ddr"}
 _UNUSUAL = 0.5  # meters that a scale other than the usual one has to fit better by, over all charts of a song
 _WORTH = 0.1  # meters that a term has to add to stand on the bill; less goes into its "rest"
 _FEWEST = 2  # other charts of a song that tell its scale surely
+Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a play, at a rate
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +34,18 @@ class Sized:
     rate: float = 1.0
 
 
-def size(play: Play, steps_type: str, label: tuple[int, str], rate: float = 1.0) -> Sized | None:
-    """A chart's meters on every scale; None for a pad without a model. label : its meter and difficulty"""
+def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -> Sized | None:
+    """A chart's meters on every scale; None for a pad without a model.
+
+    label : its meter and difficulty; ask : what tells features of its play, at a rate
+    """
     model = model_for(steps_type)
     if model is None:
         return None
-    one = sized(model, features(play, model.wanted), label)
+    one = sized(model, ask(model.wanted, 1.0), label)
     if rate == 1.0:
         return one
-    return replace(one, played=model.terms(features(play, model.wanted, rate)), rate=rate)
+    return replace(one, played=model.terms(ask(model.wanted, rate)), rate=rate)
 
 
 def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> Sized:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.meter.bill import Estimate
 from dancetutor_cli.meter.estimate import Sized, on_scale, scales_of, size
+from dancetutor_cli.meter.features import features
 from dancetutor_cli.meter.model import model_for
 from dancetutor_cli.play import Play, load_preset
 from dancetutor_cli.resources import charts_path
@@ -37,7 +39,7 @@ def stream(rows: list[str], measures: int = 24, bpm: int = 150) -> Play:
 
 
 def estimated(play: Play, steps_type: str = "dance-single", scale: str = "itg", rate: float = 1.0) -> Estimate:
-    one = size(play, steps_type, (9, "Hard"), rate)
+    one = size(steps_type, (9, "Hard"), partial(features, play), rate)
     assert one is not None
     return on_scale(one, scale, True)
 
@@ -110,7 +112,7 @@ def test_an_edit_does_not_tell_the_scale_of_the_others() -> None:
 
 
 def test_what_nothing_tells_the_scale_of_has_a_wider_interval() -> None:
-    one = size(stream(["1000", "0001"]), "dance-single", (9, "Hard"))
+    one = size("dance-single", (9, "Hard"), partial(features, stream(["1000", "0001"])))
     assert one is not None
     sure, guess = on_scale(one, "itg", True), on_scale(one, "itg", False)
     assert guess.meter == sure.meter
@@ -119,7 +121,7 @@ def test_what_nothing_tells_the_scale_of_has_a_wider_interval() -> None:
 
 
 def test_pads_that_nobody_has_rated_have_no_estimate() -> None:
-    assert size(stream(["1000"], 1), "smx-single", (9, "Hard")) is None
+    assert size("smx-single", (9, "Hard"), partial(features, stream(["1000"], 1))) is None
 
 
 def test_many_charts_of_one_file_are_no_burden() -> None:

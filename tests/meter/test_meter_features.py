@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.meter.features import THINGS, Feature, features
+from dancetutor_cli.meter.features import THINGS, Feature, features, features_of
 from dancetutor_cli.meter.model import model_for
 from dancetutor_cli.play import Play, load_preset, solve_chart
 
@@ -69,6 +70,15 @@ def test_feet_that_stay_crossed_cross_over_once() -> None:
 
 def test_a_chart_without_steps_has_none() -> None:
     assert features(played(["M000 0000"]), ALL) == [0.0] * len(ALL)
+
+
+def test_plays_looked_at_together_are_each_as_if_alone() -> None:
+    """The second begins crossed where the first ended crossed, under the first one's last hold, and after a rest."""
+    crossed = played(["1000 0100 0001 0100", "0001 0000 0000 0000"])
+    plays = [mixed(), crossed, played(["M000 0000"]), crossed, replace(mixed(), events=None), crossed]
+    alone = [features(play, ALL, 1.5) for play in plays]
+    assert features_of(plays, ALL, 1.5) == alone
+    assert alone[0] == alone[4] != alone[1]
 
 
 @given(st.floats(1.0, 4.0), st.floats(1.0, 2.0))

@@ -53,14 +53,12 @@ class Hand(MoveRule):
 
     def _expected(self, subject: ChartSubject) -> bool:
         """Whether the players of this chart know hands; a label of 1 may stand for nothing."""
-        from dancetutor_cli.meter.estimate import size
-
         chart, least = subject.chart, self.options["least_meter"]
         if chart.meter >= least:
             return True
         if chart.meter > 1 or subject.play is None:
             return False
-        sized = size(subject.play, chart.steps_type, (chart.meter, chart.difficulty))
+        sized = subject.sized()
         return sized is not None and sized.on.get(_SCALE, 0.0) >= least
 
     def message(self, subject: ChartSubject, row: int) -> str:
