@@ -26,6 +26,7 @@ class Beginnings:
     def __init__(self, play: Play, rows: NDArray[np.int64], pauses: NDArray[np.float64]) -> None:
         self._play, self._rows, self._pauses = play, rows, pauses
         self._anew: dict[float, NDArray[np.bool_]] = {}
+        self._starts: dict[float, NDArray[np.int64]] = {}
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
@@ -68,6 +69,8 @@ class Beginnings:
 
     def segment(self, at: int, quick: float) -> tuple[int, int]:
         """First and last place around one in which the dancer does not begin anew."""
-        starts = np.flatnonzero(self.anew(quick))
+        if quick not in self._starts:
+            self._starts[quick] = np.flatnonzero(self.anew(quick))
+        starts = self._starts[quick]
         after = int(starts.searchsorted(at, side="right"))
         return int(starts[after - 1]), int(starts[after]) - 1 if after < len(starts) else len(self._rows) - 1

@@ -62,32 +62,32 @@ class Candidates:
         return found
 
     @cached_property
-    def half_turns(self) -> NDArray[np.int64]:
-        """Rows to which the body turns by 180 degrees."""
+    def half_turns(self) -> list[list[int]]:
+        """For each play the rows to which the body turns by 180 degrees."""
         plays = self.plays
         turn = plays.facing[1:] - plays.facing[:-1]
         half = np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= EPSILON
-        return np.flatnonzero(half & (plays.number[1:] == plays.number[:-1])) + 1
+        return plays.of_each(np.flatnonzero(half & (plays.number[1:] == plays.number[:-1])) + 1)
 
     @cached_property
-    def triples(self) -> NDArray[np.int64]:
-        """Rows with a step in which three panels or more are down."""
-        return np.flatnonzero((self.plays.down >= _HAND) & self.plays.real.any(axis=0))
+    def triples(self) -> list[list[int]]:
+        """For each play the rows with a step in which three panels or more are down."""
+        return self.plays.of_each(np.flatnonzero((self.plays.down >= _HAND) & self.plays.real.any(axis=0)))
 
     @cached_property
-    def free_doublesteps(self) -> NDArray[np.int64]:
-        """Rows of doublesteps with nothing in the way, which do not cross the feet."""
-        rows = self.plays.with_any(("doublestep",))
-        return rows[self.plays.free[rows] & ~self.plays.crossed[rows]]
+    def free_doublesteps(self) -> list[list[int]]:
+        """For each play the rows of doublesteps with nothing in the way, which do not cross the feet."""
+        rows = self.plays.rows_with("doublestep")
+        return self.plays.of_each(rows[self.plays.free[rows] & ~self.plays.crossed[rows]])
 
     @cached_property
-    def ties(self) -> NDArray[np.int64]:
-        """First rows of every run of steps that cost the same with other limbs."""
+    def ties(self) -> list[list[int]]:
+        """For each play the first rows of every run of steps that cost the same with other limbs."""
         plays = self.plays
         rows = plays.stepped
         tied, number = plays.margin[rows] == 0, plays.number[rows]
         tied[1:] &= ~(tied[:-1] & (number[1:] == number[:-1]))
-        return np.asarray(rows[tied])
+        return plays.of_each(rows[tied])
 
     @cached_property
     def repeats(self) -> Repeats:

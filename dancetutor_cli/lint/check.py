@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 _AMBIGUITY = "DT207"
+_MOST_KNOWN = 256
+Rules = Mapping[str, ChartRule | ReaderRule]
 # Rule -> what SMEditor calls such findings in the `ignores` of data.sme.
 _EDITOR_CODES = {
     "DT201": "DS", "DT209": "DS", "DT206": "FS", "DT208": "FS", "DT211": "FS", "DT212": "FS", "DT207": "AM",
@@ -28,7 +30,8 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     findings: list[Finding] = []
     for code, options in settings.for_file(subject.song.path).items():
         if code in _rules_of_files():
-            findings += _rules_of_files()[code](options).check(subject)
+            rule = _rules_of_files()[code](options)
+            findings += () if rule.is_silent(subject) else rule.check(subject)
     return _in_order(findings)
 
 
@@ -37,29 +40,39 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     if is_lights(subject.chart.steps_type):
         return ()
     rules = rules_of(subject, settings)
-    findings = [finding for code in rules for finding in _found(code, rules, subject)]
+    findings = [finding for rule in rules.values() for finding in _found(rule, subject)]
     told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
     return _in_order(finding for finding in told if not _silenced(finding, subject))
 
 
-def rules_of(subject: ChartSubject, settings: Settings) -> Mapping[str, Options]:
-    """The rules that run on a chart, with their options."""
+def rules_of(subject: ChartSubject, settings: Settings) -> Rules:
+    """The rules that run on a chart, by their codes; the same again for the same options, as from chart to chart."""
     chart = subject.chart
-    rules = settings.for_chart(subject.song.path, chart.written_type, chart.difficulty, chart.meter)
-    return {code: options for code, options in rules.items() if code in _rules_of_charts()}
+    options = settings.for_chart(subject.song.path, chart.written_type, chart.difficulty, chart.meter)
+    known = _known.get(id(options))
+    if known is None:
+        if len(_known) >= _MOST_KNOWN:
+            _known.clear()
+        rules = {code: rule(options[code]) for code, rule in _rules_of_charts().items() if code in options}
+        known = _known[id(options)] = options, {code: rules[code] for code in options if code in rules}
+    return known[1]
 
 
-def check_rule(
-    code: str, rules: Mapping[str, Options], subject: ChartSubject, settings: Settings
-) -> tuple[Finding, ...]:
+# By the object that the options are, which is kept here so that no other takes its place.
+_known: dict[int, tuple[Mapping[str, Options], Rules]] = {}
+
+
+def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is told again."""
-    told = _as_sure_as_they_are(_found(code, rules, subject), subject, settings, rules.get(_AMBIGUITY))
+    told = _as_sure_as_they_are(_found(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
     return tuple(finding for finding in told if not _silenced(finding, subject))
 
 
-def _found(code: str, rules: Mapping[str, Options], subject: ChartSubject) -> list[Finding]:
+def _found(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
     """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
-    found = _rule(code, rules[code]).check(subject)
+    if rule.is_silent(subject):
+        return []
+    found = rule.check(subject)
     about_all = subject.chart.player <= 1
     return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
 
@@ -73,17 +86,6 @@ def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     return check_chart(subject, settings)
 
 
-def _rule(code: str, options: Options) -> ChartRule | ReaderRule:
-    """A rule with its options; the last one again if it is for the same, as from chart to chart."""
-    known = _last.get(code)
-    if known is None or known.options is not options:
-        known = _last[code] = _rules_of_charts()[code](options)
-    return known
-
-
-_last: dict[str, ChartRule | ReaderRule] = {}  # rules keep nothing but their options
-
-
 @cache
 def _rules_of_files() -> Mapping[str, type[FileRule] | type[ReaderRule]]:
     return {code: rule for code, rule in all_rules().items() if issubclass(rule, FileRule | ReaderRule)}
@@ -95,7 +97,7 @@ def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
 
 
 def _as_sure_as_they_are(
-    findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: Options | None
+    findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: ChartRule | ReaderRule | None
 ) -> Iterator[Finding]:
     """The findings; those that are true only with other feet than players may have are no warnings.
 
@@ -114,7 +116,7 @@ def _as_sure_as_they_are(
             elif finding.beat not in known:
                 known.add(finding.beat)
                 tossed = replace(finding, rule=_AMBIGUITY, name=_rules_of_charts()[_AMBIGUITY].name)
-                yield replace(tossed, severity=ambiguity["severity"], message=said)
+                yield replace(tossed, severity=ambiguity.options["severity"], message=said)
         elif confidence is not None and 100 * confidence < settings.sure_feet:
             said = f"{finding.message}, if the feet are these: {confidence:.0%} sure".replace("%", " %")
             yield replace(finding, severity="info", message=said)

@@ -52,8 +52,14 @@ class Feet:
         return self.presses.of(0), self.presses.of(1)
 
     @property
-    def _has_mines(self) -> bool:
+    def has_mines(self) -> bool:
+        """Whether there are mines."""
         return self._plays.with_mines[self._number]
+
+    @property
+    def has_holds(self) -> bool:
+        """Whether there are holds."""
+        return self._plays.with_holds[self._number]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
@@ -76,11 +82,11 @@ class Feet:
 
     def triples(self) -> list[int]:
         """Rows with a step in which three panels or more are down."""
-        return self._own(self._candidates.triples)
+        return self._candidates.triples[self._number]
 
     def doublesteps(self) -> list[int]:
         """Rows of doublesteps that follow freely (see there) and do not cross the feet."""
-        return self._own(self._candidates.free_doublesteps)
+        return self._candidates.free_doublesteps[self._number]
 
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
@@ -125,7 +131,7 @@ class Feet:
 
     def ties(self) -> list[int]:
         """First row of every run of rows with steps that cost the same with other limbs."""
-        return self._own(self._candidates.ties)
+        return self._candidates.ties[self._number]
 
     def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
         """Runs of (row, confidence) less than `below`, with a few surer rows between them left out; none if unknown."""
@@ -145,7 +151,7 @@ class Feet:
 
     def half_turns(self) -> list[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
-        return self._own(self._candidates.half_turns)
+        return self._candidates.half_turns[self._number]
 
     def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
         """Rows in which one foot steps, alone, for the third time in a row and always on a new panel.
@@ -167,10 +173,6 @@ class Feet:
             if count == 3:
                 yield row - self._first, seconds
                 count = 1
-
-    def _own(self, rows: NDArray[np.int64]) -> list[int]:
-        own: list[int] = self._plays.own(rows, self._number).tolist()
-        return own
 
     def _bounds(self, rows: NDArray[np.int64]) -> tuple[int, int]:
         """From where to where some ascending rows of all plays are of this one."""
@@ -214,7 +216,7 @@ class Feet:
         row has left, and before a wall of mines everybody waits between the panels: those are told only of a foot that
         has hardly stepped.
         """
-        if not (self._has_mines and self._plays.with_holds[self._number]):
+        if not (self.has_mines and self.has_holds):
             return
         rows, play = self._play.rows, self._play
         row, column = np.nonzero(rows.mines)
@@ -252,7 +254,7 @@ class Feet:
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since the end of a foot's hold on its panel, of each mine that comes so soon."""
-        if not (self._has_mines and self._plays.with_holds[self._number]):
+        if not (self.has_mines and self.has_holds):
             return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
@@ -270,7 +272,7 @@ class Feet:
 
     def mines_before_steps(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Row, column and time (s) since a mine on the same panel, of each step for which a foot has to come."""
-        if not self._has_mines:
+        if not self.has_mines:
             return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,6 +70,8 @@ class Plays:
         self.plays = plays
         self.pad = pad
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
+        self._rows_with: dict[str, NDArray[np.int64]] = {}
+        self._having: dict[str, list[bool]] = {}
 
     def play(self, number: int) -> Play:
         """One of the plays."""
@@ -80,6 +82,11 @@ class Plays:
         first, after = self.first[number], self.first[number + 1]
         low, high = rows.searchsorted((first, after)).tolist()
         return np.asarray(rows[low:high] - first)
+
+    def of_each(self, rows: NDArray[np.int64]) -> list[list[int]]:
+        """For each play those of some ascending rows that are of it, counted from its first."""
+        bounds, own = rows.searchsorted(self.first).tolist(), (rows - self.start[rows]).tolist()
+        return [own[low:high] for low, high in pairwise(bounds)]
 
     def least(self, rows: NDArray[np.int64], values: NDArray[np.float64]) -> list[float]:
         """For each play the least of the values that some rows have; endless where it has none."""
@@ -279,11 +286,19 @@ class Plays:
         of_plays = [_bits_of(play, names) if play.events is None else play.events for play in self.plays]
         return names, self._joined(iter(of_plays))
 
-    def with_any(self, moves: Sequence[str], number: int | None = None) -> NDArray[np.int64]:
-        """Rows in which one of these moves happens; of one play counted from its first."""
-        names, bits = self.bits
-        here = slice(None) if number is None else slice(self.first[number], self.first[number + 1])
-        return np.flatnonzero(bits[here] & sum(1 << names.index(move) for move in moves if move in names))
+    def rows_with(self, move: str) -> NDArray[np.int64]:
+        """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
+        if move not in self._rows_with:
+            names, bits = self.bits
+            kinds = sum(1 << bit for bit, name in enumerate(names) if name == move or name.startswith(f"{move}-"))
+            self._rows_with[move] = np.flatnonzero(bits & kinds)
+        return self._rows_with[move]
+
+    def having(self, move: str) -> list[bool]:
+        """Which plays have such rows."""
+        if move not in self._having:
+            self._having[move] = [count > 0 for count in self.how_often(self.rows_with(move))]
+        return self._having[move]
 
     @cached_property
     def counts(self) -> list[dict[str, int]]:

@@ -39,6 +39,10 @@ class Rule(ABC):
         """What is wrong with the value of an option, beyond its kind; None if nothing."""
         return None
 
+    def is_silent(self, subject: Any) -> bool:
+        """Whether a glance at what it would check tells that there is nothing: so it is with most rules and charts."""
+        return False
+
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
         """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
         return Finding(
@@ -89,10 +93,12 @@ class ReaderRule(Rule):
 
     usual: ClassVar[frozenset[str]] = frozenset()
 
+    def is_silent(self, subject: FileSubject | ChartSubject) -> bool:
+        """Whether the reader has warned of nothing."""
+        return not subject.is_warned_of
+
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each line with warnings that are claimed."""
-        if not subject.is_warned_of:
-            return
         kinds: tuple[tuple[frozenset[str], dict[str, str]], ...]
         kinds = (self.codes - self.usual, {}), (self.usual, {"severity": "info"})
         for codes, least in kinds:
@@ -127,6 +133,10 @@ class TimedRule(ChartRule):
     slowest: ClassVar[float] = math.inf
     passage_beats: ClassVar[float] = 0
     about_feet: ClassVar[bool] = True
+
+    def __init__(self, options: Mapping[str, Any]) -> None:
+        super().__init__(options)
+        self._longest: dict[tuple[str, int], float] = {}  # by steps type and meter
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
@@ -172,13 +182,18 @@ class TimedRule(ChartRule):
 
     def longest(self, subject: ChartSubject) -> float:
         """The longest time (s) that is still quick in this chart; 0: nothing is."""
+        kind = subject.chart.steps_type, subject.chart.meter
+        if kind not in self._longest:
+            self._longest[kind] = self._longest_of(*kind)
+        return self._longest[kind]
+
+    def _longest_of(self, steps_type: str, meter: int) -> float:
         longest = self.options.get("max_seconds", math.inf)
         if longest != BY_METER:
             return float(longest)
         from dancetutor_cli.lint.times import limit
 
-        few = limit(self.times, self.options["share"], subject.chart.steps_type, subject.chart.meter)
-        return min(few, self.slowest)
+        return min(limit(self.times, self.options["share"], steps_type, meter), self.slowest)
 
 
 class MoveRule(TimedRule):
@@ -191,6 +206,10 @@ class MoveRule(TimedRule):
     move: ClassVar[str]
     said: ClassVar[str]
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the move never happens."""
+        return not subject.has(self.move)
+
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each quick row with the move, with the time since the step before."""
         for row in self.rows(subject):
@@ -198,7 +217,7 @@ class MoveRule(TimedRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Quick rows with the move."""
-        return self.quick(subject, subject.rows_with_any(self.move))
+        return self.quick(subject, subject.rows_with(self.move))
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -103,9 +103,6 @@ class ChartSubject:
         ask = partial(candidates.features, number)
         return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
 
-    def _rows_with(self, moves: Sequence[str]) -> list[int]:
-        return [] if self.play is None else self.shared.candidates.plays.with_any(moves, self.shared.number).tolist()
-
     @property
     def row_count(self) -> int:
         """Rows of the play; 0 without one."""
@@ -122,14 +119,17 @@ class ChartSubject:
             if warning.code in codes:
                 yield warning.message, self.at_line(warning.line)
 
-    def rows_with(self, move: str) -> list[int]:
-        """Rows of the play in which a move of this name happens, in order."""
-        return self._rows_with((move,)) if move in self.counts else []
+    def has(self, move: str) -> bool:
+        """Whether a move of this name or of a kind of it happens in the play."""
+        return self.play is not None and self.shared.candidates.plays.having(move)[self.shared.number]
 
-    def rows_with_any(self, move: str) -> list[int]:
+    def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
-        kinds = [name for name in self.counts if name.startswith(move) and name[len(move) :][:1] in ("", "-")]
-        return self._rows_with(kinds) if kinds else []
+        if not self.has(move):
+            return []
+        plays, number = self.shared.candidates.plays, self.shared.number
+        rows: list[int] = plays.own(plays.rows_with(move), number).tolist()
+        return rows
 
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:
@@ -153,8 +153,13 @@ class ChartSubject:
 
     def pause(self, row: int) -> float:
         """Seconds since the row with a step before this one; endless for the first."""
+        return self._pauses[row]
+
+    @cached_property
+    def _pauses(self) -> list[float]:
         assert self.feet is not None
-        return float(self.feet.pauses[row])
+        pauses: list[float] = self.feet.pauses.tolist()
+        return pauses
 
     def is_jump(self, row: int) -> bool:
         """Whether both feet press in this row."""

@@ -132,7 +132,7 @@ def _repeats(steps: _Steps, plays: Plays) -> Found:
         jacks.append(steps.row[1:][again & same & (steps.gap < _JACK)])
         doublesteps.append(steps.row[1:][again & ~same])
     stepped = np.concatenate(doublesteps)
-    forced = np.isin(stepped, plays.with_any(("forced-doublestep",)))
+    forced = np.isin(stepped, plays.rows_with("forced-doublestep"))
     return {
         "Jacks": np.concatenate(jacks),
         "Doublesteps": stepped,

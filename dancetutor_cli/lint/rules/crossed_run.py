@@ -41,6 +41,10 @@ class CrossedRun(ChartRule):
     name = "crossed-run"
     about_feet = True
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the feet are never crossed."""
+        return subject.feet is None or not subject.feet.crossed_runs()
+
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run that is too long, at its first row."""
         from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, segment

@@ -54,6 +54,10 @@ class Crossover(TimedRule):
     times = "crossover"
     slowest = 0.4
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the feet are never crossed."""
+        return subject.feet is None or not subject.feet.crossed_runs()
+
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each step after which the feet are newly crossed."""
         from dancetutor_cli.lint.freely import Freedom, fewest_crossed

@@ -45,7 +45,7 @@ class Footswitch(MoveRule):
         """Footswitches on one panel; what a bracket does beside it is DT210's."""
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
 
-        found = self.quick(subject, subject.rows_with_any(self.move))
+        found = self.quick(subject, subject.rows_with(self.move))
         rows = [row for row in found if not subject.brackets(row)]
         quick = self.longest(subject)
         return [row for row in rows if not goes_on_the_other_foot(subject, row, quick, jacked=True)]

@@ -34,6 +34,10 @@ class HalfTurn(ChartRule):
     name = "half-turn"
     about_feet = True
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the body never turns so."""
+        return subject.feet is None or not subject.feet.half_turns()
+
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each half turn."""
         for row in subject.feet.half_turns() if subject.feet else ():

@@ -44,11 +44,15 @@ class Hand(MoveRule):
     about_feet = False  # it is the number of panels that asks for it
     passage_beats = 8
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether three panels are never down."""
+        return subject.feet is None or not (subject.has(self.move) or subject.feet.triples())
+
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
         if subject.feet is None or len(subject.step_rows) < _STUB:
             return []
-        found = sorted({*subject.rows_with_any(self.move), *subject.feet.triples()})
+        found = sorted({*subject.rows_with(self.move), *subject.feet.triples()})
         return found if found and not self._expected(subject) else []
 
     def _expected(self, subject: ChartSubject) -> bool:

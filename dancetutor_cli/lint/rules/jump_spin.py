@@ -36,6 +36,10 @@ class JumpSpin(ChartRule):
     name = "jump-spin"
     about_feet = True
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether she never spins."""
+        return not subject.has("spin")
+
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each spin that ends in a jump."""
         for row in subject.rows_with("spin"):

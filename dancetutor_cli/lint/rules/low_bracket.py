@@ -43,13 +43,16 @@ class LowBracket(TimedRule):
     name = "low-bracket"
     passage_beats = math.inf
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there is no bracket."""
+        return not subject.has("bracket")
+
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each bracket in a chart of so low a meter."""
         meter, feet = subject.chart.meter, subject.feet
-        rows = subject.rows_with_any("bracket") if feet and meter < self.options["least_meter"] else []
-        if not rows or self._quick_throughout(subject):
+        if meter >= self.options["least_meter"] or self._quick_throughout(subject):
             return
-        for row in rows:
+        for row in subject.rows_with("bracket"):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
                 pause = subject.pause(row)
                 said = f"two panels {1000 * pause:.0f} ms after a step, too quick for a jump: a bracket"

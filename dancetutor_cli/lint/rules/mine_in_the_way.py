@@ -36,6 +36,10 @@ class MineInTheWay(ChartRule):
     name = "mine-in-the-way"
     about_feet = True
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no mines."""
+        return subject.feet is None or not subject.feet.has_mines
+
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with such a step."""
         limit = self.options["max_seconds"]

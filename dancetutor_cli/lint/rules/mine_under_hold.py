@@ -38,6 +38,10 @@ class MineUnderHold(TimedRule):
     name = "mine-under-hold"
     times = "mine-under-hold"
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no mines or no holds."""
+        return subject.feet is None or not (subject.feet.has_mines and subject.feet.has_holds)
+
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         told: set[int] = set()

@@ -38,6 +38,10 @@ class StuckHold(ChartRule):
     name = "stuck-hold"
     about_feet = True
 
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no holds."""
+        return subject.feet is None or not subject.feet.has_holds
+
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine, and for each step that comes too early."""
         feet = subject.feet

@@ -44,11 +44,10 @@ class UnsureFeet(ChartRule):
         passages.sort(key=lambda rows: -sum(1 - sure for _, sure in rows))
         for rows in passages[: int(self.options["most"])]:
             row, least = min(rows, key=lambda one: one[1])
-            first, last = subject.at_row(rows[0][0]), subject.at_row(rows[-1][0])
             if len(rows) == 1:
                 message = f"the feet of this row are only {least:.0%} sure".replace("%", " %")
             else:
-                at = f"on beat {round(subject.at_row(row)['beat'], 3):g}"
-                message = f"the feet of {len(rows)} rows up to beat {round(last['beat'], 3):g} are unsure, {at} only "
+                at, last = (round(subject.beat(one), 3) for one in (row, rows[-1][0]))
+                message = f"the feet of {len(rows)} rows up to beat {last:g} are unsure, on beat {at:g} only "
                 message += f"{least:.0%}".replace("%", " %")
-            yield self.finding(message, first)
+            yield self.finding(message, subject.at_row(rows[0][0]))
