@@ -67,11 +67,17 @@ class Timing:
         stopped = np.array([tick for tick, _ in (*self.stops, *self.delays)], dtype=np.int64)
         return ~((_inside(self.warps, ticks) & ~np.isin(ticks, stopped)) | _inside(self.fakes, ticks))
 
-    def milliseconds(self, ticks: NDArray[np.int64], seconds: NDArray[np.float64] | None = None) -> NDArray[np.int64]:
+    def milliseconds(
+        self,
+        ticks: NDArray[np.int64],
+        seconds: NDArray[np.float64] | None = None,
+        first: NDArray[np.intp] | None = None,
+    ) -> NDArray[np.int64]:
         """Time since the previous of the given ascending ticks, rounded half up to milliseconds; the first is 0.
 
         The time is that of the exact decimals in the file: where floats could round the wrong way, fractions decide.
         seconds : what `seconds` says of these ticks, where it has been asked
+        first : where ticks begin anew, and ascend from there; None: they do not
         """
         ticks = np.asarray(ticks, dtype=np.int64)
         out = np.zeros(ticks.shape, dtype=np.int64)
@@ -81,6 +87,10 @@ class Timing:
         halves = (seconds[1:] - seconds[:-1]) * 1000 + 0.5
         out[1:] = np.floor(halves)
         doubt = np.abs(halves - np.rint(halves)) < 1e-6 + 4e-12 * np.abs(seconds).max()
+        if first is not None:
+            first = first[(first > 0) & (first < len(ticks))]
+            out[first] = 0
+            doubt[first - 1] = False
         for n, exact in self._exact_milliseconds(ticks, np.flatnonzero(doubt) + 1):
             out[n] = exact
         return out

@@ -214,13 +214,10 @@ def load_song(task: AnalyzeTask) -> Song:
 
 def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
     """Each of the charts with its play; of those for two, each player's part."""
-    from dancetutor_cli.feet import SongFeet
-    from dancetutor_cli.lint.solved import solved_chart
+    from dancetutor_cli.lint.solved import solved_charts
 
-    feet = SongFeet(song)
-    for chart in charts:
-        for part in task.selection.parts(chart):
-            yield solved_chart(song, part, preset_for(part, task.path, task.presets), feet)
+    parts = [part for chart in charts for part in task.selection.parts(chart)]
+    return solved_charts(song, parts, lambda part: preset_for(part, task.path, task.presets))
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:

@@ -133,7 +133,7 @@ class _Trial:
         rule, beat = place
         if rule not in _MOVES or beat is None or self.subject.play is None:
             return False
-        row = self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT))
+        row = int(self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT)))
         new, bit = self._outline(edit), EVENTS.index(_MOVES[rule])
         if new.first <= row < new.first + len(new.events):
             return bool(new.events[row - new.first] >> bit & 1)

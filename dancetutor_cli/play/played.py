@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -79,7 +80,7 @@ class Play:
     terms: tuple[str, ...]
     cost: NDArray[np.int32]
     margin: NDArray[np.int64] | None
-    moves: tuple[tuple[str, ...], ...]
+    moves: Sequence[tuple[str, ...]]
     preset: str
     ambiguity: NDArray[np.uint8] | None = None
     confidence: NDArray[np.float64] | None = None

@@ -14,7 +14,7 @@ from dancetutor_cli.play.played import Play, Rows
 from dancetutor_cli.play.preset import Preset
 from dancetutor_cli.play.rows import prepare
 from dancetutor_cli.play.store import Found
-from dancetutor_cli.play.techniques import names_of
+from dancetutor_cli.play.techniques import EventNames
 
 
 def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True) -> Play:
@@ -72,7 +72,7 @@ def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
         cost=told.cost,
         margin=told.margin if len(told.margin) or not len(rows) else None,
         ambiguity=told.ambiguity if len(told.margin) or not len(rows) else None,
-        moves=names_of(told.events),
+        moves=EventNames(told.events),
         preset=engine.preset.name,
         confidence=_confidence(rows, engine.preset, told.margin) if len(told.margin) else None,
         events=told.events,

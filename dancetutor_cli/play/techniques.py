@@ -5,7 +5,9 @@ What happens is found by the kernels: in a row by the rules, in its neighbours b
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cache
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +20,33 @@ from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 
 
-def names_of(events: NDArray[np.int32]) -> tuple[tuple[str, ...], ...]:
-    """Per row the names of what happens, sorted."""
-    return tuple([event_names(bits) for bits in events.tolist()])
+class EventNames(Sequence[tuple[str, ...]]):
+    """Per row the names of what happens, sorted; told when asked for, for most rows of most charts nobody asks.
+
+    events : (n,) bits of `EVENTS`
+    """
+
+    def __init__(self, events: NDArray[np.int32]) -> None:
+        self._events = events
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    @overload
+    def __getitem__(self, row: int) -> tuple[str, ...]: ...
+    @overload
+    def __getitem__(self, row: slice) -> EventNames: ...
+    def __getitem__(self, row: int | slice) -> tuple[str, ...] | EventNames:
+        return EventNames(self._events[row]) if isinstance(row, slice) else event_names(int(self._events[row]))
+
+    def __iter__(self) -> Iterator[tuple[str, ...]]:
+        return map(event_names, self._events.tolist())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
 
 
 @cache
