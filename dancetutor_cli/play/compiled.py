@@ -20,7 +20,8 @@ from dancetutor_cli.play.preset import Preset
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
 _HERE = Path(__file__).parent
 _SOURCES = (
-    "explore", "happens", "itg_costs", "itg_moves", "kernel", "state", "store", "tables", "thesis_moves", "vocabulary",
+    "explore", "happens", "itg_costs", "itg_moves", "kernel", "solvers", "state", "store", "tables", "thesis_moves",
+    "vocabulary",
 )  # fmt: skip
 _TINY = 12_000  # bytes of chart files that Python solves at once: nothing is ever compiled for these
 _SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
@@ -35,18 +36,18 @@ def source_stamp() -> str:
 
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    source = _HERE / "kernel.py"
+    source = _HERE / "solvers.py"
     shipped = shipped_folder(source)
     folders = [shipped] if shipped else []
-    wanted = [f"kernel.run.*{SUFFIX}", f"explore.explore_{preset.model}.*{SUFFIX}"]
+    wanted = f"{source.stem}.solve_{preset.model}.*{SUFFIX}"
     try:
-        for folder in chain(folders, places_of(source)):
-            wanted = [one for one in wanted if not any(is_current(path, source_stamp()) for path in folder.glob(one))]
-            if not wanted:
-                return True
+        return any(
+            is_current(path, source_stamp())
+            for folder in chain(folders, places_of(source))
+            for path in folder.glob(wanted)
+        )
     except OSError:
         return True
-    return False
 
 
 def is_interpreted() -> bool:
@@ -66,7 +67,7 @@ def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
     if much <= _TINY:
         os.environ[VARIABLE] = "python"
         return True
-    note = kernel_folder().of_module(_HERE / "kernel.py") / "interpreted"
+    note = kernel_folder().of_module(_HERE / "solvers.py") / "interpreted"
     try:
         before = int(note.read_text())
     except (OSError, ValueError):

@@ -13,19 +13,18 @@ from numpy.typing import NDArray
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play import store
 from dancetutor_cli.play.curves import curve_table
-from dancetutor_cli.play.explore import explore_itg, explore_thesis
 from dancetutor_cli.play.jit import INTERPRETED
-from dancetutor_cli.play.kernel import TELL, run
 from dancetutor_cli.play.played import Limb, Rows
 from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.play.solvers import TELL, solve_itg, solve_thesis
 from dancetutor_cli.play.store import Found, RowArrays, RowStates
 from dancetutor_cli.play.table_room import empty_tables, grown
-from dancetutor_cli.play.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Rules, geometry, moves
+from dancetutor_cli.play.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Making, Rules, geometry, moves
 from dancetutor_cli.play.techniques import limits, long_ways
 from dancetutor_cli.play.thesis_moves import UNPLAYED
 from dancetutor_cli.play.vocabulary import MODELS
 
-_EXPLORERS = {"thesis": explore_thesis, "itg": explore_itg}
+_SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
 _MOST_MOVES_KEPT = 2_000_000  # then the tables start anew, so that a long run does not fill the memory
@@ -39,8 +38,8 @@ class Engine:
     def __init__(self, pad: Pad, preset: Preset) -> None:
         self.pad, self.preset = pad, preset
         self.terms = MODELS[preset.model].terms
-        self._explore = _EXPLORERS[preset.model]
-        self.rules = Rules(
+        self._solve = _SOLVERS[preset.model]
+        rules = Rules(
             list(MODELS).index(preset.model),
             geometry(pad),
             np.array([value for _, value in preset.weights], dtype=np.int64),
@@ -50,7 +49,7 @@ class Engine:
             limits(),
             long_ways(pad),
         )
-        self._moves = moves(len(preset.weights))
+        self._making = Making(rules, moves(len(preset.weights)))
         self.tables = empty_tables(len(preset.weights))
         self.era = 0  # numbers of the tables hold as long as this stays
         self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
@@ -60,15 +59,22 @@ class Engine:
             np.empty((0, 2), dtype=np.int16), np.empty(0, dtype=np.float64),
         )  # fmt: skip
 
-    def cheapest(self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False) -> Found:
+    def cheapest(
+        self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, told: bool = False
+    ) -> Found:
         """The cheapest way through rows.
 
         Parameters
         ----------
         forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
         margins : whether to look for the best way with other limbs, too
+        told : whether to tell what each row costs and what happens in it
         """
-        return self._run(_arrays(rows, forced), margins)[0]
+        arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
+        found = self._found(n, c, margins=margins)
+        found = self._to_be_told(found) if told else found
+        self._run(arrays, found)
+        return found
 
     def edited(self, rows: Rows) -> Callable[[], NDArray[np.int32]]:
         """What to call for the moves of the cheapest way through rows, as often as their arrays are edited in place.
@@ -76,7 +82,8 @@ class Engine:
         The next call overwrites what it returns. Only one such function of an engine may be in use at a time: they and
         the other ways to ask share memory, which takes longer to make than a few rows to solve.
         """
-        arrays, (found, nodes) = _arrays(rows, None), self._room(*rows.steps.shape, margins=False)
+        (n, c), arrays = rows.steps.shape, _arrays(rows, None)
+        found, nodes = self._found(n, c, margins=False), self._room(n, c)
 
         def moves() -> NDArray[np.int32]:
             self._start_anew_if_full()
@@ -94,8 +101,8 @@ class Engine:
         self, rows: Rows, forced: NDArray[np.int64] | None = None
     ) -> tuple[RowArrays, RowStates, NDArray[np.int32]]:
         """All that the programme found out on the way through rows, to go on from it, and the moves of the way."""
-        arrays = _arrays(rows, forced)
-        found, nodes = self._run(arrays, False)
+        arrays, found = _arrays(rows, forced), self._found(*rows.steps.shape, margins=False)
+        nodes = self._run(arrays, found)
         return arrays, nodes._replace(node=nodes.node[: nodes.row[len(rows) + 1, store.FIRST]].copy()), found.move
 
     def keeps(self, era: int) -> bool:
@@ -132,7 +139,7 @@ class Engine:
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
         arrays = _arrays(rows, forced)
-        _, nodes = self._run(arrays, False)
+        nodes = self._run(arrays, self._found(*rows.steps.shape, margins=False))
         t = self.tables
         numbers = [store.START, *t.transition[nodes.transition, store.TO_LAYER].tolist()]
         spans = {number: t.layer[number].tolist() for number in set(numbers)}
@@ -155,26 +162,28 @@ class Engine:
 
     def told(self, rows: Rows, found: Found) -> Found:
         """A way, and what it costs and what happens in each row."""
-        n = len(rows)
-        told = found._replace(
-            events=np.empty(n, dtype=np.int32),
-            feet=np.empty((n, 2), dtype=np.int16),
-            facing=np.empty(n, dtype=np.float64),
-            cost=np.empty((n, len(self.terms)), dtype=np.int32),
-        )
+        told = self._to_be_told(found)
         self._call(_arrays(rows, None), TELL, _nodes(0, self._node), told)
         return told
 
+    def _to_be_told(self, found: Found) -> Found:
+        n = len(found.move)
+        return found._replace(
+            events=np.empty(n, dtype=np.int32),
+            feet=np.empty((n, 2), dtype=np.int16),
+            facing=np.empty(n, dtype=np.float64),
+            cost=np.empty((n + 1, len(self.terms)), dtype=np.int32),
+        )
+
     def _call(self, arrays: RowArrays, row: int, nodes: RowStates, found: Found) -> tuple[int, int]:
         with _wrapping():
-            reached: tuple[int, int] = run(arrays, row, self.tables, nodes, self.rules, found)
-        return reached
+            return self._solve(arrays, row, self.tables, nodes, self._making, found)
 
-    def _run(self, arrays: RowArrays, margins: bool) -> tuple[Found, RowStates]:
+    def _run(self, arrays: RowArrays, found: Found) -> RowStates:
         self._start_anew_if_full()
-        found, nodes = self._room(*arrays.steps.shape, margins=margins)
+        nodes = self._room(*arrays.steps.shape)
         self._until_done(0, arrays, nodes, found)
-        return found, nodes
+        return nodes
 
     def _start_anew_if_full(self) -> None:
         if self._is_full():
@@ -182,10 +191,9 @@ class Engine:
             self.era += 1
             self._numbers.clear()
 
-    def _room(self, n: int, c: int, *, margins: bool) -> tuple[Found, RowStates]:
+    def _room(self, n: int, c: int) -> RowStates:
         wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
-        nodes = _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
-        return self._found(n, c, margins=margins), nodes
+        return _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
 
     def _is_full(self) -> bool:
         counts = self.tables.counts
@@ -207,21 +215,11 @@ class Engine:
         wanted = -1
         while wanted != store.DONE:
             row, wanted = self._call(arrays, row, nodes, found)
-            if wanted == store.UNEXPLORED:
-                self._explore_from(row, arrays, nodes)
-            elif wanted == store.MORE_NODES:
+            if wanted == store.MORE_NODES:
                 _make_room(nodes, row)
-            elif wanted != store.DONE:
-                self.tables = grown(self.tables, wanted, len(arrays.tick))
-
-    def _explore_from(self, row: int, arrays: RowArrays, nodes: RowStates) -> None:
-        """Meet every state from a row on, so that the programme can go on there."""
-        wanted = store.UNEXPLORED
-        while wanted != store.DONE:
-            with _wrapping():
-                wanted = self._explore(row, arrays.pattern, nodes.transition, self.tables, self.rules, self._moves)
-            if wanted == store.MORE_SCRATCH:
-                self._moves = moves(len(self.preset.weights), 2 * len(self._moves.packed))
+            elif wanted == store.MORE_SCRATCH:
+                room = moves(len(self.preset.weights), 2 * len(self._making.moves.packed))
+                self._making = self._making._replace(moves=room)
             elif wanted != store.DONE:
                 self.tables = grown(self.tables, wanted, len(arrays.tick))
 

@@ -1,19 +1,17 @@
 """Meets the states that rows can end in, without costs, and keeps the moves between them for the dynamic programme.
 
-One kernel for each model, so that a command compiles and loads only the rules it needs.
+`solvers` has a kernel for each model, so that a command compiles and loads only the rules it needs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
 from dancetutor_cli.play import tables as columns
-from dancetutor_cli.play.itg_moves import expand_itg
-from dancetutor_cli.play.jit import door, uncounted
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -65,7 +63,6 @@ from dancetutor_cli.play.store import (
     slot_of,
 )  # fmt: skip
 from dancetutor_cli.play.tables import MOST_MOVES
-from dancetutor_cli.play.thesis_moves import expand_thesis
 
 _RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
 _PLACE = (1 << PLACE_BITS) - 1
@@ -195,10 +192,10 @@ def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-expand: Any = None  # a global of each explorer's own; see `_explorer`
+expand: Any = None  # a global of each explorer's own; see `explorer`
 
 
-def _explorer(name: str, rules: Any) -> Any:
+def explorer(rules: Any) -> Any:
     """An explorer for the rules of one model, whose `expand` is a global: what is compiled finds kernels there."""
 
     def explore(row, pattern, chosen, t, rules, out):  # type: ignore[no-untyped-def]
@@ -254,11 +251,4 @@ def _explorer(name: str, rules: Any) -> Any:
             layer = np.int64(t.transition[chosen[r], TO_LAYER])
         return DONE
 
-    own = FunctionType(explore.__code__, {**globals(), "expand": rules}, name)
-    own.__qualname__ = name
-    return door(3, 4, 5)(own)
-
-
-Explorer = Callable[..., int]
-explore_thesis: Explorer = _explorer("explore_thesis", expand_thesis)
-explore_itg: Explorer = _explorer("explore_itg", expand_itg)
+    return uncounted(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))

@@ -12,7 +12,7 @@ from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.happens import name_neighbours
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
-from dancetutor_cli.play.jit import door, uncounted
+from dancetutor_cli.play.jit import uncounted
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -34,8 +34,6 @@ from dancetutor_cli.play.store import (
     LAYER_SIZE,
     LIMBS,
     MORE_NODES,
-    MORE_PATTERNS,
-    MORE_TIMED,
     MOST_MS,
     MOVES,
     NEXT,
@@ -55,7 +53,6 @@ from dancetutor_cli.play.store import (
 from dancetutor_cli.play.tables import ROLLS
 from dancetutor_cli.play.thesis_moves import start_thesis
 
-TELL = -1  # instead of a row to start from
 _PLACE = (1 << PLACE_BITS) - 1
 _NEVER = np.int64(1 << 60)
 # what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
@@ -155,7 +152,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
 
 
 @uncounted
-def _wait(rows):  # type: ignore[no-untyped-def]
+def wait(rows):  # type: ignore[no-untyped-def]
     """Milliseconds since the last row with steps, for every row."""
     steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
     waited = MOST_MS
@@ -175,7 +172,7 @@ def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore
 
 
 @uncounted(inline="always")
-def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
+def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
 
     Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
@@ -222,7 +219,7 @@ def _advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
 
 
 @uncounted(inline="always")
-def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
+def trace(t, nodes, found):  # type: ignore[no-untyped-def]
     """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
     first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
     limb, part, path = found.limb, found.part, found.move
@@ -242,7 +239,7 @@ def _trace(t, nodes, found):  # type: ignore[no-untyped-def]
 
 
 @uncounted(inline="always")
-def _tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
+def tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
     moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
     path, cost, events, feet, facing = found.move, found.cost, found.events, found.feet, found.facing
@@ -264,7 +261,7 @@ def _tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
 
 
 @uncounted(inline="always")
-def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
+def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
 
     Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
@@ -310,33 +307,18 @@ def _margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     return DONE
 
 
-@door(0, 2, 4, 5)
-def run(rows, start_row, t, nodes, rules, found):  # type: ignore[no-untyped-def]
-    """Go on from `start_row` to the end of the rows. Returns the row reached and what it wants, or DONE.
-
-    From TELL on: write what the rows of `found.move` cost, and what happens in them, into `found`.
-    """
-    if start_row == TELL:
-        _wait(rows)
-        _tell(t, rows, rules, found)
-        return start_row, DONE
+@uncounted
+def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
+    """Get rows ready for the programme; False if the tables have no room for as many patterns."""
     if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
         key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
         t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
         nodes.node[0] = START
         number_of_layer(nodes.node, 1, t)
         t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
-    if start_row == 0:
-        if not _number_rows(rows, rules.model > 0, t):
-            return 0, MORE_PATTERNS
-        _wait(rows)
-        nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
-        nodes.node[0] = 0
-    if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
-        return start_row, MORE_TIMED
-    row, wanted = _advance(start_row, rows, t, nodes, rules, found.cost[0])
-    if wanted == DONE:
-        _trace(t, nodes, found)
-        if len(found.margin):
-            wanted = _margins(rows, t, nodes, found)
-    return row, wanted
+    if not _number_rows(rows, rules.model > 0, t):
+        return False
+    wait(rows)
+    nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
+    nodes.node[0] = 0
+    return True

@@ -32,7 +32,7 @@ def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = No
     if rows.steps.shape[1] != len(pad):
         raise ValueError(f"rows have {rows.steps.shape[1]} columns, {pad.steps_type} has {len(pad)} panels")
     engine = engine_for(pad, preset)
-    return play_of(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins))
+    return play_of(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins, told=True))
 
 
 def solve_chart(
@@ -60,22 +60,21 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 
 def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
-    """The play that a way through the rows is."""
-    told = engine.told(rows, found)
+    """The play that a way through the rows is, of which the engine has told all."""
     return Play(
         rows=rows,
-        limb=told.limb,
-        part=told.part,
-        feet=told.feet,
-        facing=told.facing,
+        limb=found.limb,
+        part=found.part,
+        feet=found.feet,
+        facing=found.facing,
         terms=engine.terms,
-        cost=told.cost,
-        margin=told.margin if len(told.margin) or not len(rows) else None,
-        ambiguity=told.ambiguity if len(told.margin) or not len(rows) else None,
-        moves=EventNames(told.events),
+        cost=found.cost[: len(rows)],
+        margin=found.margin if len(found.margin) or not len(rows) else None,
+        ambiguity=found.ambiguity if len(found.margin) or not len(rows) else None,
+        moves=EventNames(found.events),
         preset=engine.preset.name,
-        confidence=_confidence(rows, engine.preset, told.margin) if len(told.margin) else None,
-        events=told.events,
+        confidence=_confidence(rows, engine.preset, found.margin) if len(found.margin) else None,
+        events=found.events,
     )
 
 

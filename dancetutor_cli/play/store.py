@@ -132,7 +132,7 @@ class Found(NamedTuple):
     """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
-    cost : int32 (n, t), of each row by term; or one row, which is scratch, where nobody wants to know
+    cost : int32 (n + 1, t), of each row by term; the last is scratch, and the only one where nobody wants to know
     events : int32 (n,), bits of `EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; written with the cost
     """
 

@@ -92,6 +92,13 @@ class Moves(NamedTuple):
     reached: NDArray[np.int64]
 
 
+class Making(NamedTuple):
+    """What the ways to play a row are made of: the rules, and room for them."""
+
+    rules: Rules
+    moves: Moves
+
+
 def geometry(pad: Pad) -> Geometry:
     """The arrays of a pad."""
     (x, y), c = pad.centre, len(pad)

@@ -26,7 +26,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         shutil.copy2(path, here)
     monkeypatch.setattr(compiled, "_HERE", here)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    folder = kernel_folder().of_module(here / "kernel.py")
+    folder = kernel_folder().of_module(here / "solvers.py")
     folder.mkdir()
     return folder
 
@@ -39,14 +39,12 @@ def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:
     itg, thesis = load_preset("itg"), load_preset("thesis")
     assert not compiled.is_compiled(itg)
-    fill(cache, "kernel.run.1.door")
-    assert not compiled.is_compiled(itg)
-    fill(cache, "explore.explore_itg.1.door")
+    fill(cache, "solvers.solve_itg.1.door")
     assert compiled.is_compiled(itg) and not compiled.is_compiled(thesis)
 
 
 def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
-    fill(cache, "kernel.run.1.door", "explore.explore_itg.1.door", stamp="ab" * 32)
+    fill(cache, "solvers.solve_itg.1.door", stamp="ab" * 32)
     assert not compiled.is_compiled(load_preset("itg"))
 
 
@@ -79,7 +77,7 @@ def test_little_is_solved_without_compiling_and_much_is_not(cache: Path, monkeyp
 def test_what_is_compiled_is_used(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "environ", {**os.environ})
     del os.environ[compiled.VARIABLE]
-    fill(cache, "kernel.run.1.door", "explore.explore_itg.1.door")
+    fill(cache, "solvers.solve_itg.1.door")
     assert not compiled.interpret([load_preset("itg")], lambda: pytest.fail("no file need be read for this"))
 
 
