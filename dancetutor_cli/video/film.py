@@ -47,6 +47,7 @@ BACKGROUND = (12, 14, 26)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES, WIDE_LANES = 0.74, 0.8  # of the highway's width that lanes may take, of wide pads; words stand beside them
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
+TAG_SEEN = 4.0  # seconds before its row that words beside the notes may be seen
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 BLOCK = 64  # frames whose joints are made at once
 
@@ -129,7 +130,9 @@ class Film:
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
-        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned)
+        runs = plan.clock.passes
+        tags = any(one.start <= told.second <= one.end + TAG_SEEN for one in runs for told in plan.callouts)
+        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
         return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)

@@ -34,6 +34,7 @@ class HighwayGeometry:
 
     directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
     turned : she faces who looks on; the lanes stand the other way round, and `directions` are as they are seen then
+    tags : words stand beside the notes
     """
 
     box: tuple[int, int, int, int]
@@ -42,6 +43,7 @@ class HighwayGeometry:
     directions: tuple[float | None, ...]
     down: bool = False
     turned: bool = False
+    tags: bool = True
 
     def lane_of(self, column: int) -> int:
         """Which lane from the left a column has."""
@@ -49,9 +51,9 @@ class HighwayGeometry:
 
     @property
     def left(self) -> float:
-        """x of the first lane; more room is left on the right, where words stand, than for the measure numbers."""
+        """x of the first lane; where words stand, more room is left for them on the right than for measure numbers."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
-        return self.box[0] + 0.26 * spare
+        return self.box[0] + (0.26 if self.tags else 0.5) * spare
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +191,7 @@ class Highway:
 
     def _draw_number(self, measure: int) -> Sprite:
         size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
-        room = self.geometry.left - 0.2 * self.geometry.lane - self.geometry.box[0] - 4
+        room = self.geometry.left - 0.28 * self.geometry.lane - self.geometry.box[0] - 2
         (text,), size = fitted(str(measure), size, room, self.face, most=1)
         return self.face.sprite(text, size, (190, 196, 220))
 

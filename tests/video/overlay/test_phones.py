@@ -15,6 +15,7 @@ from dancetutor_cli.video.film import Film, turned
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.film_formats import FORMATS
+from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.diagram import DiagramRows, NextRows, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
@@ -23,6 +24,7 @@ from dancetutor_cli.video.scene.scene import Scene
 from dancetutor_cli.video.scroll import parse_scroll
 
 FACE = Typeface()
+CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
 
 
 @pytest.mark.parametrize("columns", [4, 5, 8, 10])
@@ -106,7 +108,7 @@ def test_the_tags_beside_the_notes_can_be_read(
     """Their letters are at least so many pixels, and no part of them is cut."""
     plan = film_plan(np.arange(1.0, 1.0 + columns), columns=np.arange(columns))
     look = FilmLook(load_layout(name), size)
-    highway = Film(replace(plan, look=look, directions=DIRECTIONS * (columns // 4))).highway
+    highway = Film(replace(plan, look=look, directions=DIRECTIONS * (columns // 4), callouts=(CALL,))).highway
     assert highway is not None
     sizes: list[float] = []
     flag = sprites.flag
@@ -228,3 +230,17 @@ def test_a_note_that_no_foot_is_left_for_has_a_mark_of_its_own() -> None:
     assert (bare != frame).any(), "a chart without feet has no such marks"
     grey = np.abs(sprites.marker(32, -1, FACE)[..., :3].astype(int) - np.array(sprites.NOBODY)).sum(axis=-1) < 12
     assert grey.sum() > 100
+
+
+@pytest.mark.parametrize("name", ["side-by-side", "vertical", "practice"])
+def test_without_words_beside_them_the_lanes_stand_in_the_middle(name: str) -> None:
+    plan = film_plan(np.arange(1.0, 5.0))
+    layout = load_layout(name)
+    look = FilmLook(layout, layout.size)
+    alone, told = (Film(replace(plan, look=look, callouts=calls)).highway for calls in ((), (CALL,)))
+    later = Film(replace(plan, look=look, callouts=(replace(CALL, second=90.0),))).highway
+    assert alone is not None and told is not None and later is not None
+    left, _, right, _ = alone.geometry.box
+    middle = alone.geometry.left + 2 * alone.geometry.lane
+    assert middle == pytest.approx((left + right) / 2)
+    assert later.geometry.left == alone.geometry.left > told.geometry.left, "what is called out after the film"
