@@ -20,9 +20,10 @@ from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.render import make_film
+from dancetutor_cli.video.choices import QUALITIES, Quality
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.media import ffmpeg
-from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.video.media.encoder import Encoding, join
 from dancetutor_cli.video.media.sound import SoundPlan
 from dancetutor_cli.video.notes import NoteTrack
 
@@ -79,8 +80,8 @@ def onsets(samples: NDArray[np.float32]) -> NDArray[np.float64]:
     return loud[np.insert(np.diff(loud) > 0.2 * RATE, 0, True)] / RATE
 
 
-@pytest.mark.parametrize("fps", [30, 60])
-def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int) -> None:
+@pytest.mark.parametrize(("fps", "quality"), [(30, "good"), (60, "draft")])  # draft has another encoder of sound
+def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int, quality: Quality) -> None:
     size = (240, 240)
     write_clicks(tmp_path / "song.wav")
     clock = Clock((Pass(-0.25, 6.2),), fps)
@@ -90,7 +91,7 @@ def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int)
     plan = replace(plan, notes=notes, beats=np.full(clock.frames, -1.0))  # nothing else moves than the receptor's light
     film = tmp_path / "film.mp4"
     prepared = Prepared(plan, SoundPlan(tmp_path / "song.wav"), ())
-    make_film(lambda: prepared, Encoding("mp4", size, fps), film, 1, Silent())
+    make_film(lambda: prepared, Encoding("mp4", size, fps, quality), film, 1, Silent())
 
     heard = onsets(decode_sound(film))
     assert len(heard) == len(NOTES)
@@ -197,6 +198,14 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
         make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
     assert film.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == ["film.mp4"]
+
+
+@pytest.mark.parametrize("quality", QUALITIES)
+def test_only_drafts_trade_sound_for_time(tmp_path: Path, monkeypatch, quality: Quality) -> None:
+    said: list[tuple[str, ...]] = []
+    monkeypatch.setattr(ffmpeg, "run", lambda arguments, what: said.append(tuple(arguments)))
+    join([], Encoding("mp4", (64, 64), 30, quality), tmp_path / "sound.wav", tmp_path, tmp_path / "film.mp4")
+    assert ("fast" in said[0]) == (quality == "draft")
 
 
 @pytest.mark.parametrize("kept", [True, False])

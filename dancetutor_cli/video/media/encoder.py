@@ -110,7 +110,7 @@ def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work:
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
     assert encoding.format.join is not None, "pictures are not joined"
-    encoding.format.join(Joining(listing, sound, work, output))
+    encoding.format.join(Joining(listing, sound, work, output, encoding.quality == "draft"))
 
 
 def _quoted(path: Path) -> str:

@@ -19,13 +19,14 @@ from dancetutor_cli.video.media import ffmpeg
 class Joining(NamedTuple):
     """What a film is joined of. listing : a list of segments for ffmpeg; sound : a WAV file or None
 
-    work : folder for what that needs; output : the film
+    work : folder for what that needs; output : the film; quick : a little noise in the sound for a third of the time
     """
 
     listing: Path
     sound: Path | None
     work: Path
     output: Path
+    quick: bool = False
 
     @property
     def source(self) -> tuple[str, ...]:
@@ -55,7 +56,8 @@ class FilmFormat:
 
 def _mp4(parts: Joining) -> None:
     sound = () if parts.sound is None else (*ffmpeg.INPUT_GUARD, "-i", ffmpeg.local(parts.sound))
-    codec = ("-c:v", "copy", "-c:a", "aac", "-b:a", "192k", "-threads", "1")
+    coder = ("-aac_coder", "fast") if parts.quick else ()
+    codec = ("-c:v", "copy", "-c:a", "aac", *coder, "-b:a", "192k", "-threads", "1")
     tidy = ("-map_metadata", "-1", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4")
     ffmpeg.run(("-y", *parts.source, *sound, *codec, *tidy, ffmpeg.local(parts.output)), "writing the film")
 

@@ -53,19 +53,21 @@ def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pr
         r = fy - y
         here, above = min(r, rows - 1), max(r - 1, 0)
         of_here, of_above = 256 - fraction if r < rows else 0, fraction if r > 0 else 0
+        lower, upper, row = uint64(here), uint64(above), uint64(fy)  # places that are not negative take less time
         for c in range(first, last):
-            alpha = sprite[here, c, 3] * of_here + sprite[above, c, 3] * of_above  # 0..255 * 256
+            i, j = uint64(c), uint64(x + c)
+            alpha = sprite[lower, i, 3] * of_here + sprite[upper, i, 3] * of_above  # 0..255 * 256
             if alpha == 0:
                 continue
             if plain and alpha == 255 * 256:  # what the last line comes to where nothing shows through
                 for k in range(3):
-                    frame[fy, x + c, k] = (sprite[here, c, k] * of_here + sprite[above, c, k] * of_above + 128) >> 8
+                    frame[row, j, k] = (sprite[lower, i, k] * of_here + sprite[upper, i, k] * of_above + 128) >> 8
                 continue
             keep = 255 * 65536 - alpha * opacity
             for k in range(3):
-                colour = (sprite[here, c, k] * of_here + sprite[above, c, k] * of_above) * opacity
-                value = uint64(frame[fy, x + c, k] * keep + (colour * gain >> 8) * 255 + 255 * 32768)
-                frame[fy, x + c, k] = min(255, int64(value // uint64(255 * 65536)))  # signed division takes longer
+                colour = (sprite[lower, i, k] * of_here + sprite[upper, i, k] * of_above) * opacity
+                value = uint64(frame[row, j, k] * keep + (colour * gain >> 8) * 255 + 255 * 32768)
+                frame[row, j, k] = min(255, int64(value // uint64(255 * 65536)))  # signed division takes longer
 
 
 @njit(cache=True)

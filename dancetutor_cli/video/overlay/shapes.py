@@ -51,17 +51,19 @@ class Painter:
 
     def __init__(self, height: int, width: int) -> None:
         self.x, self.y = grid(height, width)
-        self.picture = np.zeros((*self.x.shape, 4), dtype=np.float32)
+        self.planes = np.zeros((4, *self.x.shape), dtype=np.float32)  # one after the other: they add up quicker
 
     def paint(self, share: Field, colour: NDArray[np.float64] | tuple[float, ...], opacity: float = 1.0) -> None:
         """Lay `colour`, 0..255 (3,) or per sample (h, w, 3), over the picture where `share` is more than 0."""
-        alpha = np.clip(share * opacity, 0, 1).astype(np.float32)[..., None]
-        self.picture *= 1 - alpha
-        self.picture[..., :3] += alpha * (np.asarray(colour, dtype=np.float32) / 255)
-        self.picture[..., 3:] += alpha
+        alpha = np.clip(share * opacity, 0, 1).astype(np.float32)
+        self.planes *= 1 - alpha
+        inks = np.asarray(colour, dtype=np.float32) / 255
+        for plane, ink in zip(self.planes, np.moveaxis(inks, -1, 0), strict=False):
+            plane += alpha * ink
+        self.planes[3] += alpha
 
     def sprite(self) -> NDArray[np.uint8]:
         """The picture as a premultiplied uint8 sprite (h, w, 4)."""
         h, w = (n // SAMPLES for n in self.x.shape)
-        mean = self.picture.reshape(h, SAMPLES, w, SAMPLES, 4).mean(axis=(1, 3))
-        return np.asarray(np.rint(mean * 255), dtype=np.uint8)
+        mean = self.planes.reshape(4, h, SAMPLES, w, SAMPLES).mean(axis=(2, 4))
+        return np.ascontiguousarray(np.rint(mean * 255).astype(np.uint8).transpose(1, 2, 0))

@@ -167,16 +167,15 @@ def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: 
 
 
 @inner_kernel
-def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> bool:  # pragma: no cover
-    """May light, shadow or a foot change a pixel of a tile?"""
+def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  # pragma: no cover
+    """May light, shadow or a foot change a pixel of a tile? -1: nothing does; else how many feet must be looked at."""
     low, high = tiles.low[row, column], tiles.high[row, column]
     if low[0] > high[0]:
-        return False
-    return (
-        _is_lit(tiles.panel[row, column], live.lit)
-        or (shade.dark > 0.0 and _shaded(low, high, shade))
-        or _trodden(low, high, tiles.coarse[row, column], live)
-    )
+        return -1
+    if _trodden(low, high, tiles.coarse[row, column], live):
+        return int(live.feet.shape[0])
+    lit = _is_lit(tiles.panel[row, column], live.lit)
+    return 0 if lit or (shade.dark > 0.0 and _shaded(low, high, shade)) else -1
 
 
 @kernel
@@ -193,16 +192,17 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
     far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
     for i in range(box[1] // TILE, (box[3] + TILE - 1) // TILE):
         for j in range((box[0] + shift) // TILE, (box[2] + shift + TILE - 1) // TILE):
-            if not _touched(standing.tiles, i, j, shade, live):
+            near_feet = _touched(standing.tiles, i, j, shade, live)
+            if near_feet < 0:
                 continue
             for row in range(max(i * TILE, box[1]), min(i * TILE + TILE, box[3])):
                 for column in range(max(j * TILE - shift, box[0]), min(j * TILE + TILE - shift, box[2])):
                     c = column + shift
                     take = takes[row, c]
-                    p = panel[row, c]
-                    shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
                     if take <= 0.0:
                         continue
+                    p = panel[row, c]
+                    shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
                     x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
                     keep = 1.0
                     if dark > 0.0:
@@ -210,7 +210,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
                         keep = 1.0 - dark * _bilinear(shadow, u, v)
                     ring, owner = 0.0, 0
-                    for f in range(feet.shape[0]):
+                    for f in range(near_feet):
                         if (
                             feet[f, 5] < 0.0
                             or abs(y - feet[f, 4]) > 0.03

@@ -204,7 +204,8 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
     height, width = nearest.shape
     lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):
-        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        i = uint64(t)
+        a, b, c = uint64(triangles[i, 0]), uint64(triangles[i, 1]), uint64(triangles[i, 2])
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
         x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
         x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
@@ -246,10 +247,10 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
                 first = min(x, width - lanes)  # the last step may look again at samples that the one before has seen
                 f0, f1, f2 = e0 + (first - left) * sx0, e1 + (first - left) * sx1, e2 + (first - left) * sx2
                 z = zrow + (first - left) * right_step
-                for i in range(lanes):
-                    lane, place = _LANES[uint64(i)], uint64(first) + uint64(i)
+                for k in range(lanes):
+                    lane, place = _LANES[uint64(k)], uint64(first) + uint64(k)
                     inside = (f0 + lane * sx0 >= 0.0) & (f1 + lane * sx1 >= 0.0) & (f2 + lane * sx2 >= 0.0)
-                    key = ((z + i * right_step) >> 16 << 32) | number if inside else 0
+                    key = ((z + k * right_step) >> 16 << 32) | number if inside else 0
                     nearest[uint64(y), place] = max(nearest[uint64(y), place], key)
                 x += lanes
             e0 += sy0
@@ -281,7 +282,8 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
     height, width = depth.shape
     lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):
-        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        i = uint64(t)
+        a, b, c = uint64(triangles[i, 0]), uint64(triangles[i, 1]), uint64(triangles[i, 2])
         x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
         x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
         x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
@@ -308,8 +310,8 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
                 f1 = (px - x2) * sx1 - (py - y2) * (x0 - x2)
                 f2 = (px - x0) * sx2 - (py - y0) * (x1 - x0)
                 z = z0 + (px - x0) * zx + (py - y0) * zy
-                for i in range(lanes):
-                    lane, place = _LANES[uint64(i)], uint64(first) + uint64(i)
+                for k in range(lanes):
+                    lane, place = _LANES[uint64(k)], uint64(first) + uint64(k)
                     inside = (f0 + lane * sx0 >= 0.0) & (f1 + lane * sx1 >= 0.0) & (f2 + lane * sx2 >= 0.0)
                     found = float32(z + lane * zx) if inside else float32(0.0)
                     depth[uint64(y), place] = max(depth[uint64(y), place], found)

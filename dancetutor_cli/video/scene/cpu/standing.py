@@ -71,10 +71,9 @@ class _Rays(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """Places of a picture, n each: rows and columns of pixels, and where in the unpanned picture a ray goes through."""
+    """Places of a picture, n each: pixels by number, row by row, and where in the unpanned picture a ray goes."""
 
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
+    pixel: NDArray[np.int64]
     x: NDArray[np.floating]
     y: NDArray[np.floating]
     drawn: Background
@@ -88,16 +87,6 @@ class _Stage(NamedTuple):
     paints: Paints
 
 
-def _distance(quad: Array, rays: _Rays, direction: Array) -> Array:
-    """How far along rays (3, ...) the plane of a surface is; not finite or negative: nowhere."""
-    ex, ey, ez = rays.eye
-    dx, dy, dz = direction
-    facing = quad[0] * dx + quad[1] * dy + quad[2] * dz
-    with np.errstate(divide="ignore"):
-        far = (quad[3] - (quad[0] * ex + quad[1] * ey + quad[2] * ez)) / facing
-    return np.where(facing < 0.0, far, -1.0)
-
-
 def _within(quad: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
     """Where world points are on a surface: both 0..1 inside of it."""
     u = quad[4] * x + quad[5] * y + quad[6] * z + quad[7]
@@ -108,6 +97,16 @@ def _within(quad: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
 def _direction(x: NDArray[np.floating], y: NDArray[np.floating], rays: _Rays) -> Array:
     """Rays through places of the unpanned picture, (3, ...)."""
     return np.stack(np.broadcast_arrays(*(row[0] * x + row[1] * y + row[2] for row in rays.back)))
+
+
+def _linear(direction: Array, rays: _Rays) -> Array:
+    """How far rays go along a direction of the world (3,) at depth 1: that times (x, y, 1) of the unpanned picture."""
+    return np.asarray((direction[:, None] * rays.back).sum(axis=0))
+
+
+def _at(places: Array, x: NDArray[np.floating], y: NDArray[np.floating]) -> Array:
+    """A linear function of `_linear` at places of the unpanned picture; a column and a row make a rectangle."""
+    return np.asarray((places[0] * x + places[2]) + places[1] * y)
 
 
 def _find(
@@ -125,12 +124,19 @@ def _find(
         px, py = x, y
         if boxes is not None:
             left, top, right, bottom = boxes[number]
+            if left >= right or top >= bottom:
+                continue
             part = slice(top, bottom), slice(left, right)
             px, py = x[:, left:right], y[top:bottom]
-        direction = _direction(px, py, rays)
-        t = _distance(quad, rays, direction)
-        u, v = _within(quad, *(e + t * d for e, d in zip(rays.eye, direction, strict=True)))
-        here = (t > 0.0) & (t < best[part]) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
+        facing = _at(_linear(quad[:3], rays), px, py)
+        with np.errstate(divide="ignore"):
+            t = (quad[3] - (quad[:3] * rays.eye).sum()) / facing
+        here = (facing < 0.0) & (t > 0.0) & (t < best[part])
+        for across in (quad[4:8], quad[8:12]):  # both 0..1 inside of it
+            place = _at(_linear(across[:3], rays), px, py)
+            place *= t
+            place += (across[:3] * rays.eye).sum() + across[3]
+            here &= (place >= 0.0) & (place <= 1.0)
         found[part][here], best[part][here] = number, t[here]
     return found
 
@@ -165,37 +171,38 @@ def _paint(rays: _Rays, stage: _Stage, places: _Places, found: NDArray[np.int16]
     drawn = places.drawn
     for number in np.unique(found[found >= 0]):
         at = np.flatnonzero(found == number)
-        row, column, quad = places.row[at], places.column[at], stage.quads[number]
+        pixel, quad = places.pixel[at], stage.quads[number]
         dx, dy, dz = _direction(places.x[at], places.y[at], rays)
-        t = _distance(quad, rays, np.stack((dx, dy, dz)))
+        facing = quad[0] * dx + quad[1] * dy + quad[2] * dz
+        t = (quad[3] - (quad[:3] * rays.eye).sum()) / facing
         x, y, z = rays.eye[0] + t * dx, rays.eye[1] + t * dy, rays.eye[2] + t * dz
         u, v = _within(quad, x, y, z)
-        slope = -(quad[0] * dx + quad[1] * dy + quad[2] * dz) / np.sqrt(dx * dx + dy * dy + dz * dz)
+        slope = -facing / np.sqrt(dx * dx + dy * dy + dz * dz)
         footprint = t / rays.focal / np.sqrt(np.maximum(slope, 0.05))
         painted = surface(int(stage.kinds[number]), Place(x, z, 2.0 * v - 1.0, u, footprint), stage.paints)
-        drawn.colour[row, column] += 255.0 * painted.colour * share
-        drawn.takes[row, column] += painted.takes * share
-        drawn.glow[row, column] += painted.glow * share
-        drawn.white[row, column] += painted.white * share
+        colour, ground = drawn.colour.reshape(-1, 3), drawn.ground.reshape(-1, 3)
+        colour[pixel] += 255.0 * painted.colour * share
+        for picture, value in ((drawn.takes, painted.takes), (drawn.glow, painted.glow), (drawn.white, painted.white)):
+            picture.reshape(-1)[pixel] += value * share
         lit = painted.panel >= 0
-        drawn.panel[row[lit], column[lit]] = painted.panel[lit]
-        drawn.ground[row, column] = np.column_stack((x, y, z))
-        drawn.footprint[row, column] = footprint
+        drawn.panel.reshape(-1)[pixel[lit]] = painted.panel[lit]
+        ground[pixel] = np.column_stack((x, y, z))
+        drawn.footprint.reshape(-1)[pixel] = footprint
 
 
 def _shade(rays: _Rays, stage: _Stage, samples: int, found: NDArray[np.int16], drawn: Background) -> None:
     """Colour the picture that `drawn` has room for: samples x samples rays a pixel where surfaces meet."""
-    alike = _alike(found)
+    alike, wide = _alike(found), found.shape[1]
     for top in range(0, len(found), BAND):
         row, column = np.nonzero(alike[top : top + BAND])
         row += top
-        places = _Places(row, column, column - drawn.left + 0.5, row + 0.5, drawn)
+        places = _Places(row * wide + column, column - drawn.left + 0.5, row + 0.5, drawn)
         _paint(rays, stage, places, found[row, column], 1.0)
     row, column = np.nonzero(~alike)
     for i in range(samples):
         for j in range(samples):
             x, y = column - drawn.left + (i + 0.5) / samples, row + (j + 0.5) / samples
-            places = _Places(row, column, x, y, drawn)
+            places = _Places(row * wide + column, x, y, drawn)
             _paint(rays, stage, places, _find(rays, stage.quads, x, y), 1.0 / (samples * samples))
 
 
