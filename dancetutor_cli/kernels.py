@@ -170,7 +170,7 @@ class _Locator(caching.InTreeCacheLocator):  # type: ignore[misc]
         return stamp_of(self._source)
 
 
-_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b")  # the second is `video.scene.cpu.uncounted`
+_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b|\buncounted\b")  # the middle two are `video.scene.cpu.uncounted`
 _IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
 _WORD = re.compile(r"\w+")
 _CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")

@@ -23,6 +23,7 @@ from dancetutor_cli.errors import DancetutorError, UnavailableError
 from dancetutor_cli.startup import collect_seldom, leave_garbage
 
 Report = Callable[[int], None]
+SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
 _SAFE_PATH = "PYTHONSAFEPATH"
 
 
@@ -139,17 +140,22 @@ def _uninterrupted() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _nothing_from_here() -> Iterator[None]:
-    """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
-    before = os.environ.get(_SAFE_PATH)
-    os.environ[_SAFE_PATH] = "1"
+def _said(name: str, value: str) -> Iterator[None]:
+    """A process started in here has this in its environment."""
+    before = os.environ.get(name)
+    os.environ[name] = value
     try:
         yield
     finally:
         if before is None:
-            del os.environ[_SAFE_PATH]
+            del os.environ[name]
         else:
-            os.environ[_SAFE_PATH] = before
+            os.environ[name] = before
+
+
+def _nothing_from_here() -> contextlib.AbstractContextManager[None]:
+    """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
+    return _said(_SAFE_PATH, "1")
 
 
 def _server(common: str) -> Any:
@@ -162,9 +168,9 @@ def _server(common: str) -> Any:
     from multiprocessing import forkserver
 
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([common])
+    context.set_forkserver_preload(["dancetutor_cli.jobs.preload"])
     try:
-        with _uninterrupted(), _nothing_from_here():
+        with _uninterrupted(), _nothing_from_here(), _said(SHARED, common):
             forkserver.ensure_running()
     except OSError:  # it needs a place for a socket
         return None

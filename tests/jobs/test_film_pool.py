@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,10 @@ def refuse(report: Report, number: int) -> int:
 
 def stumble(report: Report) -> None:
     raise ZeroDivisionError("oh")
+
+
+def fetch(report: Report, module: str) -> None:
+    import_module(module)
 
 
 def die(report: Report, marker: Path | None) -> str:
@@ -159,6 +164,31 @@ def test_no_module_of_the_folder_one_stands_in_is_run(tmp_path: Path, common: st
 
 def _without_safe_path() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+
+
+def test_a_shared_module_that_raises_leaves_no_traceback(tmp_path: Path) -> None:
+    """Work that needs it says what is wrong, in one line; other work is done."""
+    (tmp_path / "broken.py").write_text("raise RuntimeError('x.yaml: no such colour')\n", encoding="utf-8")
+    program = (
+        "from tests.jobs.test_film_pool import Task, double, fetch, open_workers\n"
+        "workers = open_workers(2, lambda key, n: None, 'broken')\n"
+        "workers.submit(Task(1, double, (1,)))\n"
+        "workers.submit(Task(2, fetch, ('broken',)))\n"
+        "for done in sorted(workers.done(), key=lambda done: done.key):\n"
+        "    print(done.result, done.error)\n"
+        "workers.close()\n"
+    )
+    path = os.pathsep.join([str(Path(__file__).parents[2]), str(tmp_path)])
+    run = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": path},
+        timeout=120,
+    )
+    assert run.stderr == ""
+    said = "a fault of the program: RuntimeError: x.yaml: no such colour"
+    assert run.stdout.splitlines() == ["2 None", f"None {said}"]
 
 
 def test_errors_survive_pickling() -> None:
