@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 BACKGROUND = (12, 14, 26)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
-LANES, WIDE_LANES = 0.74, 0.8  # of the highway's width that lanes may take, of wide pads; words stand beside them
+LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of wide pads; words stand beside them
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 TAG_SEEN = 4.0  # seconds before its row that words beside the notes may be seen
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them

@@ -23,6 +23,7 @@ from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
+NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045  # heights of the box beside it, and that three digits take with that
 TURNED = "she faces you: arrows turned with her"
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
@@ -53,7 +54,8 @@ class HighwayGeometry:
     def left(self) -> float:
         """x of the first lane; where words stand, more room is left for them on the right than for measure numbers."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
-        return self.box[0] + (0.26 if self.tags else 0.5) * spare
+        least = 0.2 * self.lane + NUMBER_ROOM * (self.box[3] - self.box[1])
+        return self.box[0] + (min(max(0.26 * spare, least), 0.5 * spare) if self.tags else 0.5 * spare)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +193,8 @@ class Highway:
 
     def _draw_number(self, measure: int) -> Sprite:
         size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
-        room = self.geometry.left - 0.28 * self.geometry.lane - self.geometry.box[0] - 2
+        left, top, _, bottom = self.geometry.box
+        room = self.geometry.left - 0.2 * self.geometry.lane - left - NUMBER_EDGE * (bottom - top)
         (text,), size = fitted(str(measure), size, room, self.face, most=1)
         return self.face.sprite(text, size, (190, 196, 220))
 

@@ -244,3 +244,21 @@ def test_without_words_beside_them_the_lanes_stand_in_the_middle(name: str) -> N
     middle = alone.geometry.left + 2 * alone.geometry.lane
     assert middle == pytest.approx((left + right) / 2)
     assert later.geometry.left == alone.geometry.left > told.geometry.left, "what is called out after the film"
+
+
+@pytest.mark.parametrize(
+    ("name", "columns"), [("side-by-side", 4), ("side-by-side", 8), ("practice", 8), ("vertical", 8)]
+)
+@pytest.mark.parametrize("calls", [(), (CALL,)])
+def test_numbers_of_measures_can_be_read(name: str, columns: int, calls: tuple[Callout, ...]) -> None:
+    """Three digits are not made much smaller than one, and keep off the edge."""
+    layout = load_layout(name)
+    look = FilmLook(layout, layout.size)
+    plan = replace(film_plan(np.arange(1.0, 5.0)), look=look, directions=DIRECTIONS * (columns // 4), callouts=calls)
+    highway = Film(plan).highway
+    assert highway is not None
+    one, three = (highway._draw_number(measure) for measure in (7, 148))
+    assert three.shape[0] > 0.75 * one.shape[0]
+    geometry = highway.geometry
+    edge = geometry.left - 0.2 * geometry.lane - three.shape[1]
+    assert edge >= geometry.box[0]
