@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
@@ -55,8 +54,8 @@ class Engine:
         self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
         self._untold = (
-            np.zeros((1, len(self.terms)), dtype=np.int32), np.empty(0, dtype=np.int32),
-            np.empty((0, 2), dtype=np.int16), np.empty(0, dtype=np.float64),
+            np.empty((0, 6), dtype=np.int64), np.zeros((1, len(self.terms)), dtype=np.int32),
+            np.empty(0, dtype=np.int32), np.empty((0, 2), dtype=np.int16), np.empty(0, dtype=np.float64),
         )  # fmt: skip
 
     def cheapest(
@@ -76,22 +75,15 @@ class Engine:
         self._run(arrays, found)
         return found
 
-    def edited(self, rows: Rows) -> Callable[[], NDArray[np.int32]]:
-        """What to call for the moves of the cheapest way through rows, as often as their arrays are edited in place.
+    def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
+        """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
 
-        The next call overwrites what it returns. Only one such function of an engine may be in use at a time: they and
-        the other ways to ask share memory, which takes longer to make than a few rows to solve.
+        rows : edited in place meanwhile; edits : int64 (k, 6), see `store.EDIT_ROW`; each is tried alone
         """
+        self._start_anew_if_full()
         (n, c), arrays = rows.steps.shape, _arrays(rows, None)
-        found, nodes = self._found(n, c, margins=False), self._room(n, c)
-
-        def moves() -> NDArray[np.int32]:
-            self._start_anew_if_full()
-            nodes.transition.fill(-1)
-            self._until_done(0, arrays, nodes, found)
-            return found.move
-
-        return moves
+        found, nodes = self._found(n, c, margins=False)._replace(edit=edits), self._room(n, c)
+        return self._until_done(0, arrays, nodes, found)
 
     def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
         """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
@@ -175,9 +167,9 @@ class Engine:
             cost=np.empty((n + 1, len(self.terms)), dtype=np.int32),
         )
 
-    def _call(self, arrays: RowArrays, row: int, nodes: RowStates, found: Found) -> tuple[int, int]:
+    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: Found) -> tuple[int, int]:
         with _wrapping():
-            return self._solve(arrays, row, self.tables, nodes, self._making, found)
+            return self._solve(arrays, start, self.tables, nodes, self._making, found)
 
     def _run(self, arrays: RowArrays, found: Found) -> RowStates:
         self._start_anew_if_full()
@@ -210,18 +202,19 @@ class Engine:
             *self._untold,
         )
 
-    def _until_done(self, row: int, arrays: RowArrays, nodes: RowStates, found: Found) -> None:
-        """Run the kernel from a row on, and give it what it asks for."""
+    def _until_done(self, start: int, arrays: RowArrays, nodes: RowStates, found: Found) -> int:
+        """Run the kernel from a row, or an edit, on, and give it what it asks for; where it has ended."""
         wanted = -1
         while wanted != store.DONE:
-            row, wanted = self._call(arrays, row, nodes, found)
+            start, wanted = self._call(arrays, start, nodes, found)
             if wanted == store.MORE_NODES:
-                _make_room(nodes, row)
+                _make_room(nodes, 0 if len(found.edit) else start)
             elif wanted == store.MORE_SCRATCH:
                 room = moves(len(self.preset.weights), 2 * len(self._making.moves.packed))
                 self._making = self._making._replace(moves=room)
             elif wanted != store.DONE:
                 self.tables = grown(self.tables, wanted, len(arrays.tick))
+        return start
 
 
 def _wrapping() -> AbstractContextManager[object]:

@@ -31,6 +31,8 @@ FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
 COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
 EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `RowStates.row`
+# columns of `Found.edit`: a cell, what shall be in it instead, and the row in which a doublestep is looked for
+EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
 START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on
 (
@@ -133,6 +135,7 @@ class Found(NamedTuple):
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
     cost : int32 (n + 1, t), of each row by term; the last is scratch, and the only one where nobody wants to know
+    edit : int64 (k, 6), see `EDIT_ROW`; none but to try what the rows are without something
     events : int32 (n,), bits of `EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; written with the cost
     """
 
@@ -141,6 +144,7 @@ class Found(NamedTuple):
     part: NDArray[np.uint8]
     margin: NDArray[np.int64]
     ambiguity: NDArray[np.uint8]
+    edit: NDArray[np.int64]
     cost: NDArray[np.int32]
     events: NDArray[np.int32]
     feet: NDArray[np.int16]
