@@ -242,14 +242,22 @@ class Feet:
         at = int(steps.searchsorted(row)) - 1
         return float(seconds[row] - seconds[steps[at]]) if at >= 0 else np.inf
 
+    @cached_property
+    def _holds(self) -> NDArray[np.int64]:
+        """Cells, row * columns + column, with holds."""
+        return np.flatnonzero(self._play.rows.hold_end.ravel() >= 0)
+
     def _holding(self, foot: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """For each of some rows the row before in which a foot pressed a hold that is still down, or -1."""
-        holds = np.where(self._play.limb == foot, self._play.rows.hold_end, -1).max(axis=1)
-        heads = np.flatnonzero(holds >= 0)
-        if not len(heads):
+        ends = self._play.rows.hold_end.ravel()
+        cells = self._holds[self._play.limb.ravel()[self._holds] == foot]
+        if not len(cells):
             return np.full(len(rows), -1)
+        of_cell = cells // self._play.limb.shape[1]
+        first = np.flatnonzero(np.diff(of_cell, prepend=-1))
+        heads, last = of_cell[first], np.maximum.reduceat(ends[cells], first)  # of a bracket the longer one
         at = heads.searchsorted(rows) - 1
-        down = (at >= 0) & (holds[heads[at]] > self._play.rows.tick[rows])
+        down = (at >= 0) & (last[at] > self._play.rows.tick[rows])
         return np.where(down, heads[at], -1)
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:

@@ -72,6 +72,7 @@ class Plays:
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
         self._rows_with: dict[str, NDArray[np.int64]] = {}
         self._having: dict[str, list[bool]] = {}
+        self._soonest: dict[str, list[float]] = {}
 
     def play(self, number: int) -> Play:
         """One of the plays."""
@@ -299,6 +300,13 @@ class Plays:
         if move not in self._having:
             self._having[move] = [count > 0 for count in self.how_often(self.rows_with(move))]
         return self._having[move]
+
+    def soonest(self, move: str) -> list[float]:
+        """For each play the least time (s) from a step to such a row."""
+        if move not in self._soonest:
+            rows = self.rows_with(move)
+            self._soonest[move] = self.least(rows, self.pauses[rows])
+        return self._soonest[move]
 
     @cached_property
     def counts(self) -> list[dict[str, int]]:

@@ -154,7 +154,7 @@ class TimedRule(ChartRule):
         longest = self.longest(subject) + EPSILON
         for passage in self.passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
             rows = [one.row for one in passage]
-            row, _, said, column = passage[subject.surest(rows) if self.about_feet else 0]
+            row, _, said, column = passage[subject.surest(rows) if self.about_feet and len(rows) > 1 else 0]
             if len(rows) > 1:
                 said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
             least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
@@ -207,8 +207,8 @@ class MoveRule(TimedRule):
     said: ClassVar[str]
 
     def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the move never happens."""
-        return not subject.has(self.move)
+        """Whether the move never happens, or never quickly enough."""
+        return not subject.has(self.move) or subject.soonest(self.move) > self.longest(subject) + EPSILON
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each quick row with the move, with the time since the step before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -122,6 +123,10 @@ class ChartSubject:
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
         return self.play is not None and self.shared.candidates.plays.having(move)[self.shared.number]
+
+    def soonest(self, move: str) -> float:
+        """The least time (s) from a step to a row with such a move; endless where there is none."""
+        return math.inf if self.play is None else self.shared.candidates.plays.soonest(move)[self.shared.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""

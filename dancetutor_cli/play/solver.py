@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,7 @@ from dancetutor_cli.pads import Pad, load_pad
 from dancetutor_cli.play.curves import whole_curve
 from dancetutor_cli.play.engine import Engine, engine_for
 from dancetutor_cli.play.played import Play, Rows
-from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.play.preset import Curve, Preset
 from dancetutor_cli.play.rows import prepare
 from dancetutor_cli.play.store import Found
 from dancetutor_cli.play.techniques import EventNames
@@ -82,7 +84,14 @@ def _confidence(rows: Rows, preset: Preset, margin: NDArray[np.int64]) -> NDArra
     """How likely people step each row this way, (n,); None if nobody has measured it for the preset."""
     if not preset.confidence:
         return None
-    curve = whole_curve(preset.confidence)
-    sure = np.where(margin < 0, 1.0, curve[np.minimum(np.maximum(margin, 0), len(curve) - 1)] / 1000)
-    sure[~rows.steps.any(axis=1)] = np.nan
-    return np.asarray(sure)
+    curve = _shares(preset.confidence)
+    sure: NDArray[np.float64] = curve[np.minimum(margin, len(curve) - 2)]
+    if rows.mines.any():  # else every row has a step
+        sure[~rows.steps.any(axis=1)] = np.nan
+    return sure
+
+
+@lru_cache(maxsize=16)
+def _shares(confidence: Curve) -> NDArray[np.float64]:
+    """A curve of confidence as shares of 1; behind it, so that it is what margin -1 finds, that of the only way: 1."""
+    return np.append(whole_curve(confidence) / 1000, 1.0)
