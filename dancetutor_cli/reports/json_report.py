@@ -9,6 +9,7 @@ from typing import IO, Any
 
 import dancetutor_cli
 from dancetutor_cli.jobs.result import ChartResult, FileResult
+from dancetutor_cli.lint.chart_figures import Cause
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.meter.bill import Estimate
 from dancetutor_cli.reports.tally import Tally
@@ -77,7 +78,7 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
     tail = {
         "findings": [finding_object(finding) for finding in chart.findings],
         "preset": chart.preset,
-        "doublesteps": [asdict(cause) for cause in chart.causes or ()],
+        "doublesteps": [_cause_object(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
@@ -85,6 +86,17 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
     yield f'{before}{{{_members(head)}, "rows": '
     yield chart.rows or "[]"
     yield f", {_members(tail)}}}"
+
+
+def _cause_object(cause: Cause) -> dict[str, Any]:
+    """One entry of `doublesteps`; ten times quicker than `asdict`, and there are many."""
+    return {
+        "beat": cause.beat,
+        "forced": cause.forced,
+        "cause": cause.cause,
+        "at_beat": cause.at_beat,
+        "column": cause.column,
+    }
 
 
 def _estimate_object(estimate: Estimate) -> dict[str, Any]:
