@@ -134,7 +134,7 @@ def test_a_bad_character_is_one_line_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("work began")
 
-    monkeypatch.setattr("dancetutor_cli.play.solver.solve_chart", work)
+    monkeypatch.setattr("dancetutor_cli.play.solver.solve", work)
     monkeypatch.setattr("dancetutor_cli.bake.bake", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())

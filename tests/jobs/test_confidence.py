@@ -31,12 +31,12 @@ def song(tmp_path: Path) -> Path:
 
 def knows(monkeypatch: pytest.MonkeyPatch, sure: NDArray[np.float64] | None) -> None:
     """What the solver would say of the rows."""
-    solve: Callable[..., Play] = solver.solve_chart
+    solve: Callable[..., Play] = solver.solve
 
-    def solve_chart(*words: Any, **named: Any) -> Play:
+    def told(*words: Any, **named: Any) -> Play:
         return replace(solve(*words, **named), confidence=sure)
 
-    monkeypatch.setattr(solver, "solve_chart", solve_chart)
+    monkeypatch.setattr(solver, "solve", told)
 
 
 def run(*words: object) -> str:

@@ -52,7 +52,7 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pyte
     assert set(case) <= KNOWN
     if "confidence" in case:
         sure = np.array([float(one) for one in case["confidence"]]) / 100
-        monkeypatch.setattr(solver, "solve_chart", _with(solver.solve_chart, sure))
+        monkeypatch.setattr(solver, "solve", _with(solver.solve, sure))
     for name, content in case.get("files", {}).items():
         (tmp_path / name).write_text(content)
     path = tmp_path / "case.sm"
