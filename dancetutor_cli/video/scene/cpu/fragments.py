@@ -113,6 +113,7 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
     """
     rows, places, vertex = some.rows, some.places, light.vertex
     meshes, textures, near = surface.meshes, surface.textures, light.toon[PER_METRE]
+    cast = light.toon[_CAST] > _NONE
     for n in range(count):
         i = uint64(n)
         t = uint64(some.triangle[i])
@@ -129,11 +130,13 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
         to_light = vertex[a, TO_LIGHT] * w0 + vertex[b, TO_LIGHT] * w1 + vertex[c, TO_LIGHT] * w2
         facing = vertex[a, FACING] * w0 + vertex[b, FACING] * w1 + vertex[c, FACING] * w2
         up = vertex[a, UP] * w0 + vertex[b, UP] * w1 + vertex[c, UP] * w2
-        su = vertex[a, SU] * w0 + vertex[b, SU] * w1 + vertex[c, SU] * w2
-        sv = vertex[a, SV] * w0 + vertex[b, SV] * w1 + vertex[c, SV] * w2
-        height = vertex[a, HEIGHT] * w0 + vertex[b, HEIGHT] * w1 + vertex[c, HEIGHT] * w2
         u = vertex[a, U] * w0 + vertex[b, U] * w1 + vertex[c, U] * w2
         v = vertex[a, V] * w0 + vertex[b, V] * w1 + vertex[c, V] * w2
+        if cast:
+            su = vertex[a, SU] * w0 + vertex[b, SU] * w1 + vertex[c, SU] * w2
+            sv = vertex[a, SV] * w0 + vertex[b, SV] * w1 + vertex[c, SV] * w2
+            height = vertex[a, HEIGHT] * w0 + vertex[b, HEIGHT] * w1 + vertex[c, HEIGHT] * w2
+            rows[_LEFT + i], rows[_TOP + i], rows[_HIGH + i] = su, sv, height
         m = uint64(int(vertex[a, MATERIAL] + _HALF))
         # The image of the texture in which a texel is about a pixel.
         dense, image = float32(0.7) * surface.density[t], uint64(int(meshes[m, 3]))
@@ -144,7 +147,6 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
         least, red, green, blue = meshes[m, 4], meshes[m, 0], meshes[m, 1], meshes[m, 2]
         first, width, tall = textures[image, 0], textures[image, 1], textures[image, 2]
         rows[_LIT + i], rows[_FACE + i], rows[_UPWARD + i] = to_light, facing, up
-        rows[_LEFT + i], rows[_TOP + i], rows[_HIGH + i] = su, sv, height
         rows[_ACROSS + i], rows[_ALONG + i], rows[_LEAST + i] = u, v, least
         rows[_TINT_RED + i], rows[_TINT_GREEN + i], rows[_TINT_BLUE + i] = red, green, blue
         places[_FIRST + i], places[_WIDTH + i], places[_TALL + i] = first, width, tall
