@@ -9,12 +9,14 @@ from typing import Any
 import numba
 import numpy as np
 from llvmlite import binding, ir
+from numba.core.compiler_lock import global_compiler_lock
 
 from dancetutor_cli.kernel_door import ARGUMENTS, INNER, RESULTS, Code
 from dancetutor_cli.kernels import uncounted
 
 _numba: Any = numba
 _types: Any = numba.types
+_lock: Any = global_compiler_lock
 _WORD = ir.IntType(64)
 _STATUS = ir.IntType(32)
 _HELPERS = ("NRT_", "numba", "Py")  # of numba's and Python's, which only numba's own loader knows
@@ -58,15 +60,16 @@ def _like(argument: Any) -> Any:
 
 def _code(function: FunctionType, signature: tuple[Any, ...]) -> Code:
     kernel = uncounted(function, no_cpython_wrapper=True)
-    kernel.compile(signature)
-    made = kernel.overloads[signature]
+    with _lock:  # as far as to machine code, which nobody else asks for
+        kernel.compile(signature)
+        made = kernel.overloads[signature]
+        (_, _, (code, _)) = made.library.serialize_using_object_code()
     declared = [one.name for one in made.library._final_module.functions if one.is_declaration]
     assert not any(name.startswith(_HELPERS) for name in declared), declared
     results = _count(made.signature.return_type)
     entry = f"door_{function.__name__}"
     door = _door(entry, made, signature)
     machine = made.library.codegen._tm
-    (_, _, (code, _)) = made.library.serialize_using_object_code()
     return Code(entry, results, (code, machine.emit_object(binding.parse_assembly(door))))
 
 

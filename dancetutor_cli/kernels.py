@@ -66,12 +66,11 @@ F = TypeVar("F")
 
 
 def inner_kernel(function: F) -> F:
-    """A kept kernel that only kernels call, never Python: there it would crash.
+    """A kernel that only kernels call, never Python: there it would crash.
 
-    It gets no door for Python, whose making is a part of what compiling it takes. tests/test_kernels.py looks at all
-    modules for such calls.
+    It is compiled into each of them, and they are kept. tests/test_kernels.py looks at all modules for such calls.
     """
-    made: F = _njit(cache=True, no_cpython_wrapper=True)(function)
+    made: F = _njit(no_cpython_wrapper=True)(function)
     return made
 
 
@@ -114,6 +113,7 @@ class _NoCollecting(event.Listener):  # type: ignore[misc]
         """It is done, or has failed."""
         self._depth -= 1
         if self._depth == 0 and self._was_on:
+            gc.freeze()  # to look through all that for garbage takes a tenth of the time that compiling took
             gc.enable()
 
 

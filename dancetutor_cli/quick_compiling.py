@@ -82,6 +82,81 @@ def compile_quicker() -> None:
             return
     except (ImportError, AttributeError):
         return
+    _link_without_machine_code()
+    _optimize_what_there_is()
     options.values = _values
     ir.Inst._rec_list_vars = _quick_listing(listed, variable)
     function.get_call_type = _remembered_types(asked, numbers, flags_now)
+
+
+def _link_without_machine_code() -> None:
+    """A function that only kernels call goes into them as it is written: it is optimised there, once.
+
+    numba optimises it alone, too, and makes machine code of it that nobody ever calls.
+    """
+    try:
+        codegen: Any = import_module("numba.core.codegen")
+        kind, maker = codegen.JITCodeLibrary, codegen.JITCPUCodegen
+        asked, closed, told = kind.get_pointer_to_function, kind.add_linking_library, maker.set_env
+        parts = "_ensure_finalized", "_finalize_dynamic_globals", "_get_module_for_linking"
+        if not all(callable(getattr(kind, part)) for part in parts):
+            return
+    except (ImportError, AttributeError):
+        return
+
+    def get_pointer_to_function(self: Any, name: str) -> Any:
+        """Nothing is compiled to find out that a function has no door for Python."""
+        if not self._finalized and not any(one.name == name for one in self._final_module.functions):
+            return 0
+        return asked(self, name)
+
+    def add_linking_library(self: Any, library: Any) -> None:
+        if not library._finalized:
+            _close(library)
+        closed(self, library)
+
+    def set_env(self: Any, name: str, env: Any) -> None:
+        """What a function raises is told where there is machine code of it."""
+        if self._engine.is_symbol_defined(name):
+            told(self, name, env)
+
+    kind.get_pointer_to_function, kind.add_linking_library = get_pointer_to_function, add_linking_library
+    maker.set_env = set_env
+
+
+def _optimize_what_there_is() -> None:
+    """Of seven functions that a module names six are only declared: for each of these, too, numba makes all passes."""
+    try:
+        codegen: Any = import_module("numba.core.codegen")
+        kind, asked = codegen.JITCodeLibrary, codegen.JITCodeLibrary._optimize_functions
+        if not callable(codegen.create_pass_builder):  # before that the passes want the module itself
+            return
+    except (ImportError, AttributeError):
+        return
+    kind._optimize_functions = lambda self, module: asked(self, _Defined(module))
+
+
+class _Defined:
+    """A module of LLVM's with the functions that it defines."""
+
+    def __init__(self, module: Any) -> None:
+        self._module = module
+
+    @property
+    def functions(self) -> list[Any]:
+        """Those that have code."""
+        return [one for one in self._module.functions if not one.is_declaration]
+
+    def _lay_out(self, data_layout: str) -> None:
+        self._module.data_layout = data_layout
+
+    data_layout = property(None, _lay_out)
+
+
+def _close(library: Any) -> None:
+    """Nothing is added to a library any more; it can be linked."""
+    for other in dict.fromkeys(library._linking_libraries):
+        library._reload_init.update(other._reload_init)
+        library._final_module.link_in(other._get_module_for_linking(), preserve=True)
+    library._finalize_dynamic_globals()
+    library._finalized = True

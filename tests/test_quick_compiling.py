@@ -85,10 +85,46 @@ from dancetutor_cli import quick_compiling
 quick_compiling.compile_quicker()
 assert before == (BaseFunction.get_call_type, targetconfig.TargetConfig.values)
 """
+LINKED = """
+import numpy as np
+from dancetutor_cli.kernels import inner_kernel, njit
+
+@inner_kernel
+def deep(x):
+    return x / 3
+
+@inner_kernel
+def below(x, least):
+    if x > 90:
+        raise ValueError("much")
+    return max(deep(x) + 1, least)
+
+@njit
+def total(values):
+    found = 0.0
+    for value in values:
+        found += below(value, 1.5)
+    return found, values + values
+
+values = np.arange(5.0)
+found, twice = total(values)
+assert found == sum(max(value / 3 + 1, 1.5) for value in values) and (twice == 2 * values).all()
+try:
+    total(np.array([99.0]))
+    raise AssertionError("no exception")
+except ValueError as error:
+    assert str(error) == "much"
+libraries = {one.__name__: next(iter(one.overloads.values())).library for one in (deep, below, total)}
+made = [name for name, library in libraries.items() if library._compiled_object is not None]
+assert made == ["total"], made
+assert libraries["below"].get_pointer_to_function("nothing") == 0
+"""
 
 
 @pytest.mark.parametrize(
-    "what", [SAME_OPTIONS, SAME_NAMES, SAME_TYPES, OTHER_NUMBA], ids=["options", "names", "types", "other"]
+    "what",
+    [SAME_OPTIONS, SAME_NAMES, SAME_TYPES, OTHER_NUMBA, LINKED],
+    ids=["options", "names", "types", "other", "linked"],
 )
 def test_it_says_what_numba_says(what: str) -> None:
     ran = subprocess.run([sys.executable, "-c", BEFORE + what], capture_output=True, text=True)

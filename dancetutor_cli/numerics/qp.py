@@ -111,18 +111,6 @@ class _Rows(NamedTuple):
 
 
 @inner_kernel
-def _times_band(bands: Array, x: Array) -> Array:
-    n, reach = bands.shape
-    out = np.zeros(n)
-    for i in range(n):
-        out[i] += bands[i, 0] * x[i]
-        for k in range(1, min(reach, n - i)):
-            out[i] += bands[i, k] * x[i + k]
-            out[i + k] += bands[i, k] * x[i]
-    return out
-
-
-@inner_kernel
 def _times_rows(limits: _Rows, x: Array) -> Array:
     start, width, rows = limits.start, limits.width, limits.rows
     out = np.zeros(len(start))
@@ -134,15 +122,52 @@ def _times_rows(limits: _Rows, x: Array) -> Array:
     return out
 
 
-@inner_kernel
-def _add_transposed(limits: _Rows, z: Array, out: Array) -> None:
-    start, width, rows = limits.start, limits.width, limits.rows
+@njit(cache=True)
+def _slack(limits: _Rows, x: Array, least: float) -> Array:
+    """How far each limit is from being reached, at least so much."""
+    out = _times_rows(limits, x)
+    for r in range(len(out)):
+        out[r] = max(limits.high[r] - out[r], least)
+    return out
+
+
+@njit(cache=True)
+def _residuals(bands: Array, right: Array, limits: _Rows, x: Array, s: Array, z: Array) -> tuple[Array, Array]:
+    """What is missing from the sum's derivative to nothing (n,), and from the limits with their slack (m,)."""
+    start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
+    n, reach = bands.shape
+    dual = np.zeros(n)
+    for i in range(n):
+        dual[i] += bands[i, 0] * x[i]
+        for k in range(1, min(reach, n - i)):
+            dual[i] += bands[i, k] * x[i + k]
+            dual[i + k] += bands[i, k] * x[i]
+    for i in range(n):
+        dual[i] -= right[i]
     for r in range(len(start)):
         for i in range(width[r]):
-            out[start[r] + i] += rows[r, i] * z[r]
+            dual[start[r] + i] += rows[r, i] * z[r]
+    primal = _times_rows(limits, x)
+    for r in range(len(start)):
+        primal[r] = primal[r] + s[r] - give[r] * z[r] - high[r]
+    return dual, primal
 
 
-@inner_kernel
+@njit(cache=True)
+def _system(bands: Array, limits: _Rows, s: Array, z: Array) -> Array:
+    """Factor of the matrix of Newton's step, `bands` with the limits by their weight; `bands` is overwritten."""
+    start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
+    for r in range(len(start)):
+        w = z[r] / (s[r] + give[r] * z[r])
+        for i in range(width[r]):
+            weighted = w * rows[r, i]
+            if weighted != 0.0:  # in a programme of two coordinates every other one
+                for j in range(i, width[r]):
+                    bands[start[r] + i, j - i] += weighted * rows[r, j]
+    return _factor(bands)
+
+
+@njit(cache=True)
 def _longest_step(value: Array, change: Array) -> float:
     step = 1.0
     for i in range(len(value)):
@@ -151,14 +176,16 @@ def _longest_step(value: Array, change: Array) -> float:
     return step
 
 
-@inner_kernel
+@njit(cache=True)
 def _direction(
     factor: Array, limits: _Rows, dual: Array, primal: Array, slack: tuple[Array, Array], aim: Array
 ) -> tuple[Array, Array, Array]:
     """Newton step for residuals `dual`, `primal` and wanted products s z = aim; slack : s and z"""
     start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
     s, z = slack
-    right = -dual
+    right = np.empty_like(dual)
+    for i in range(len(dual)):
+        right[i] = -dual[i]
     for r in range(len(start)):
         push = (aim[r] - s[r] * z[r] + z[r] * primal[r]) / (s[r] + give[r] * z[r])
         for i in range(width[r]):
@@ -174,37 +201,28 @@ def _direction(
     return dx, ds, dz
 
 
-@njit(cache=True)
 def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float, most: int) -> tuple[Array, bool, int]:
-    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own."""
-    start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
+    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own.
+
+    Not a kernel: numpy does as well with whole arrays, and numba takes long to compile such sums.
+    """
     x = _solve_one(_factor(bands), right)
-    m = len(high)
+    m, give = len(limits.high), limits.give
     if m == 0:
         return x, True, 0
-    s = np.maximum(high - _times_rows(limits, x), 0.1)
+    s = _slack(limits, x, 0.1)
     z = np.full(m, 0.1)
     scale = 1.0 + np.abs(right).max()
     for done in range(most):
-        dual = _times_band(bands, x) - right
-        _add_transposed(limits, z, dual)
-        primal = _times_rows(limits, x) + s - give * z - high
-        mu = (s * z).sum() / m  # no np.dot: it is BLAS, which loads scipy, and a Ctrl-C in there is fatal
+        dual, primal = _residuals(bands, right, limits, x, s, z)
+        mu = _total(s * z) / m
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, done
-        system = bands.copy()
-        for r in range(m):
-            w = z[r] / (s[r] + give[r] * z[r])
-            for i in range(width[r]):
-                weighted = w * rows[r, i]
-                if weighted != 0.0:  # in a programme of two coordinates every other one
-                    for j in range(i, width[r]):
-                        system[start[r] + i, j - i] += weighted * rows[r, j]
-        factor = _factor(system)
+        factor = _system(bands.copy(), limits, s, z)
         dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
-        after = ((s + ap * ds) * (z + ad * dz)).sum() / m
-        centre = (after / mu) ** 3
+        after = _total((s + ap * ds) * (z + ad * dz)) / m / mu
+        centre = after * (after * after)
         dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
         if give.max() > 0.0:
@@ -213,3 +231,8 @@ def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float,
         s += ap * ds
         z += ad * dz
     return x, False, most
+
+
+def _total(values: Array) -> float:
+    """The sum, one after the other. No np.dot: it is BLAS, in which a Ctrl-C is fatal."""
+    return float(np.add.accumulate(values)[-1])

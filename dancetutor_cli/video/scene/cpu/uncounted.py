@@ -22,5 +22,5 @@ def kernel(function: F) -> F:
 
 def inner_kernel(function: F) -> F:
     """The same, one that only kernels call; see `kernels.inner_kernel`."""
-    made: F = uncounted(function, cache=True, error_model="numpy", no_cpython_wrapper=True)
+    made: F = uncounted(function, error_model="numpy", no_cpython_wrapper=True)
     return made
