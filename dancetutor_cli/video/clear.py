@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.clock import Moment, Pass
 from dancetutor_cli.video.layout import Layout, PixelBox
-from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.notes import Callout, Presses
 
 CALLS_FROM, CALLS_HIGH = 0.5, 150.0  # where calls begin at the leftmost, share of her box; pixels of their box
 CALLS_WIDE, CALLS_OFF = 140.0, 8.0  # pixels that they need at least, and to her head and feet
@@ -55,6 +55,18 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
             step = max(STEP, sum(high - low for low, high in spans) / MOST)
             seconds = np.unique(np.concatenate([np.arange(low, high, step) for low, high in spans]))
             found += [Moment(second, rate) for second in seconds[:MOST].tolist()]
+    return found
+
+
+def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
+    """Moments from the first to the last step of a pass, of one of each rate."""
+    first, last = float(presses.start.min()), float(presses.end.max())
+    found: list[Moment] = []
+    for rate, one in {one.rate: one for one in passes}.items():
+        low, high = max(first, one.start), min(last, one.end)
+        if low < high:
+            step = max(STEP, (high - low) / MOST)
+            found += [Moment(second, rate) for second in np.arange(low, high, step)[:MOST].tolist()]
     return found
 
 

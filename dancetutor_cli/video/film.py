@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, moments
+from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, dancing, moments
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
@@ -27,7 +27,7 @@ from dancetutor_cli.video.overlay.diagram import (
     PadMap,
     PadView,
 )
-from dancetutor_cli.video.overlay.header import Header, Words
+from dancetutor_cli.video.overlay.header import Header, Room, Words
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -162,7 +162,8 @@ class Film:
         if (part := self.layout.header) is None:
             return None
         scale = self.scale * part.text
-        return Header(self.plan.words, self._box("header"), scale, self.face, self.style, part.room)
+        room = Room(part.room, self._heads())
+        return Header(self.plan.words, self._box("header"), scale, self.face, self.style, room)
 
     @cached_property
     def _legend(self) -> captions.Legend | None:
@@ -221,9 +222,18 @@ class Film:
         """Where these are in the picture while moves are called out, (n, 4), a little larger."""
         if not self.plan.motions:
             return np.zeros((0, 4))
+        return self._beside(self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes)))
+
+    def _heads(self) -> NDArray[np.float64]:
+        """The same all the time that she dances; feet are below what stands there."""
+        if not (self.layout.dancer and self.plan.motions and len(self.plan.presses)):
+            return np.zeros((0, 4))
+        return self._beside(self._dancer.heads_and_feet(dancing(self.plan.presses, self.plan.clock.passes)))
+
+    def _beside(self, seen: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Places of the dancer's box in the picture, with an edge around them."""
         left, top, _, _ = self._box("dancer")
         edge = CALLS_OFF * self.scale
-        seen = self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes))
         return np.asarray(seen + np.array([left - edge, top - edge, left + edge, top + edge]))
 
     @cached_property

@@ -91,3 +91,28 @@ def test_calls_cover_neither_head_nor_feet(layout: str, camera: str | None) -> N
     within = (seen[:, 0] < box[2]) & (seen[:, 2] > box[0]) & (seen[:, 1] < box[3]) & (seen[:, 3] > box[1])
     assert not within.any()
     assert box[0] >= 0 and box[2] <= film.size[0]
+
+
+@pytest.mark.parametrize(
+    "words", [("Unity", "Simple Crossovers Edition"), ("A Title of Many Words", ""), ("Adore", "")]
+)
+@pytest.mark.parametrize(("layout", "camera"), [("side-by-side", None), ("side-by-side", "front"), ("vertical", None)])
+def test_the_songs_words_end_before_her_head(layout: str, camera: str | None, words: tuple[str, str]) -> None:
+    """As she crosses over to the left and jumps; a title of one line stands above her."""
+    film = jumping(layout, camera)
+    title, subtitle = words
+    told = replace(
+        film.plan.words, title=title, subtitle=subtitle, artist="Somebody & Others", detail="pump-single · 90 BPM"
+    )
+    motion = film.plan.motions[1.0]
+    root = motion.root * [1.4, 1.0, 1.0] - [0.0, 0.06, 0.0]
+    film = Film(replace(film.plan, words=told, motions={1.0: replace(motion, root=root)}))
+    left, top, _, _ = film._box("dancer")
+    seen = film._dancer.heads_and_feet([film.plan.clock.moment(k) for k in range(6, 42)]) + np.array([left, top] * 2)
+    assert film._header is not None
+    for number, (ink, x, y) in enumerate(film._header.lines):
+        if number == 0 and film._header._always:
+            continue
+        within = (seen[:, 0] < x + ink.shape[1] - 6 * film.scale) & (seen[:, 2] > x)
+        within &= (seen[:, 1] < y + 0.8 * ink.shape[0]) & (seen[:, 3] > y + 0.2 * ink.shape[0])
+        assert not within.any(), number

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit
@@ -13,6 +17,8 @@ from dancetutor_cli.video.overlay.text import LONGEST, Typeface, fitted, in_line
 from dancetutor_cli.video.picture import Frame
 
 BESIDE = 0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+LINE = 1.25  # height of a line, in sizes of its letters
+NARROWEST = 0.45  # of the room that lines have at least, wherever she is
 SUBTITLE = 0.68  # size of a subtitle that stands below its title, in the title's
 TIGHT = 0.2  # of a line's size that the next one of a title is nearer than the font has it
 _BRACKETED = re.compile(r"(.*?\S)(?:\s+(?=[(\[~～〜])|\s*(?=[（【「]))(.*[)\]~～〜）】」])")
@@ -37,23 +43,36 @@ class Words:
     subtitle: str = ""
 
 
+class Room(NamedTuple):
+    """What of a header's box is for its words. share : of the width, beside her head
+
+    taken : float64 (n, 4), where heads come as they dance, left, top, right and bottom in pixels: lines end before
+    """
+
+    share: float = 1.0
+    taken: NDArray[np.float64] = np.zeros((0, 4))
+
+
+ALL = Room()
+
+
 class Header:
     """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
 
-    room : share of the box's width for all of it, beside her head; the title is written smaller and in up to four
-    lines, the artist in two, then they end at a word, with an ellipsis; the credit needs room above the box's end
+    The title is written smaller and in up to four lines, the artist in two, then they end at a word, with an ellipsis;
+    the credit needs room above the box's end
     title_end : right and bottom of the title, pixels
     """
 
     def __init__(
-        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: float = 1.0
+        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: Room = ALL
     ) -> None:
         self.lines: list[tuple[Sprite, float, float]] = []
-        self._scale, self._face = scale, face
-        self._left, self._right = box[0], box[0] + room * (box[2] - box[0])
+        self._scale, self._face, self._taken = scale, face, room.taken
+        self._left, self._right = box[0], box[0] + room.share * (box[2] - box[0])
         title_size, small = 33 * scale, 19 * scale
         self.bottom = float(box[1])
-        self._title(words, title_size, 0.97 * (self._right - box[0]))
+        self._title(words, title_size)
         self._always = 1 if len(self.lines) == 1 else 0  # a title of one line is above her head, even as she walks on
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
@@ -63,12 +82,13 @@ class Header:
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
             x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
-            end = self._right if room == 1 else box[0] + BESIDE * (self._right - box[0])
+            end = self._right if room.share == 1 else box[0] + BESIDE * (self._right - box[0])
+            end = min(end, self._left + self._width(-badge.shape[0]))
             if face.width(words.detail, size) <= end - x:
                 ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)
                 self.lines.append((ink, x, top + (badge.shape[0] - ink.shape[0]) / 2))
             else:
-                self._line(words.detail, size, 3 * scale)
+                self._detail(words.detail, size)
         if words.credit and self.bottom + 3 * scale + 1.3 * 0.85 * small <= box[3]:
             self._line(words.credit, small * 0.85, 3 * scale)
 
@@ -76,9 +96,16 @@ class Header:
         self.lines.append((sprite, x, self.bottom + gap))
         self.bottom += gap + sprite.shape[0]
 
-    def _title(self, words: Words, size: float, width: float) -> None:
+    def _width(self, height: float) -> float:
+        """Pixels that lines have which take so many below the last one (negative: its own); beside the heads there."""
+        low, high = sorted((self.bottom, self.bottom + height))
+        here = self._taken[(self._taken[:, 1] < high) & (self._taken[:, 3] > low)]
+        room = self._right - self._left
+        return float(max(NARROWEST * room, min(room, here[:, 0].min(initial=np.inf) - self._left)))
+
+    def _title(self, words: Words, size: float) -> None:
         """All in one line; or the title, and below it, smaller, the subtitle or what stands in brackets at its end."""
-        face, name, rest = self._face, words.title, words.subtitle
+        face, name, rest, width = self._face, words.title, words.subtitle, 0.97 * self._width(LINE * size)
         lines, fits = _fits(f"{name} {rest}".strip(), size, width, face, TITLE_FITS)
         if len(lines) > 1 and (found := _BRACKETED.fullmatch(name[:LONGEST])) and not rest:
             name, rest = found[1], found[2]
@@ -86,10 +113,14 @@ class Header:
             lines, fits = _fits(name, size, width, face, TITLE_FITS)
         else:
             rest = ""
+        lower = 0.97 * self._width(len(lines) * LINE * fits)
+        if len(lines) > 1 and lower < width:  # these are beside her head
+            lines, fits = _fits(name, size, lower, face, TITLE_FITS)
         for number, line in enumerate(lines):
             ink = face.sprite(line, fits, WHITE, weight=fits / 60, shadow=2 * self._scale)
             self._add(ink, self._left, -TIGHT * fits if number else 0)
         if rest:
+            width = 0.97 * self._width(LINE * SUBTITLE * size)
             lines, fits = _fits(rest, SUBTITLE * size, width, face, SUBTITLE_FITS)
             for line in lines:
                 ink = face.sprite(line, fits, WHITE, weight=fits / 80, shadow=1.5 * self._scale)
@@ -97,12 +128,19 @@ class Header:
 
     def _artist(self, text: str, size: float) -> None:
         """In one line, a little smaller, or in two."""
-        lines, size = _fits(text, size, self._right - self._left, self._face, ARTIST_FITS)
+        lines, size = _fits(text, size, self._width(LINE * size), self._face, ARTIST_FITS)
         for number, line in enumerate(lines):
             self._line(line, size, -0.1 * size if number else self._scale, weight=0.25)
 
+    def _detail(self, text: str, size: float) -> None:
+        """In one line, or parted where it has a point, where she leaves no more room."""
+        width, gap = self._width(2 * LINE * size), 3 * self._scale
+        parts = text.split(" · ") if 0.8 * self._face.width(text[:LONGEST], size) > width else [text]
+        for number, part in enumerate(parts):
+            self._line(part, size, -0.1 * size if number else gap)
+
     def _line(self, text: str, size: float, gap: float, weight: float = 0.0) -> None:
-        text, size = self._face.shrink(text, size, self._right - self._left)
+        text, size = self._face.shrink(text, size, self._width(LINE * size))
         ink = self._face.sprite(text, size, SOFT, weight * self._scale, shadow=1.5 * self._scale)
         self._add(ink, self._left, gap)
 
