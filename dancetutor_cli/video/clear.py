@@ -17,7 +17,7 @@ CALLS_WIDE, CALLS_OFF = 140.0, 8.0  # pixels that they need at least, and to her
 STEP, MOST = 0.1, 400  # seconds between the moments that are looked at, and how many at most
 
 
-class Room(NamedTuple):
+class CallsRoom(NamedTuple):
     """Where calls may stand, pixels, and how large they are."""
 
     box: PixelBox
@@ -26,7 +26,7 @@ class Room(NamedTuple):
 
 def calls_room(
     layout: Layout, box_of: Callable[[str], PixelBox], scale: float, title_end: tuple[float, float] | None
-) -> Room:
+) -> CallsRoom:
     """The box of what is called out: the layout's, else at the top right of the dancer's; below a long title.
 
     title_end : right and bottom of the song's title
@@ -35,14 +35,14 @@ def calls_room(
         left, top, right, bottom = box_of("calls")
         if title_end is not None and title_end[0] > left:
             top = min(max(top, round(title_end[1])), bottom)
-        return Room((left, top, right, bottom), scale * part.text)
+        return CallsRoom((left, top, right, bottom), scale * part.text)
     left, top, right, _ = box_of("dancer")
     scale *= layout.header.text if layout.header is not None else 1.0
     gap = round(22 * scale)
     left, right, top = left + round(CALLS_FROM * (right - left)), right - gap, top + gap
     if title_end is not None and title_end[0] > left:
         top = max(top, round(title_end[1]) + gap // 2)
-    return Room((left, top, right, top + round(CALLS_HIGH * scale)), scale)
+    return CallsRoom((left, top, right, top + round(CALLS_HIGH * scale)), scale)
 
 
 def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]:
