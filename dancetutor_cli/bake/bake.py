@@ -25,6 +25,7 @@ from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.fingers import add_fingers, curls, hand_use
 from dancetutor_cli.motion.layers.gaze import look
+from dancetutor_cli.motion.layers.glances import glances_at
 from dancetutor_cli.motion.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings, WalkSettings, default_settings
@@ -196,10 +197,12 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
     feet, waiting = both_feet(plan.feet, at, context.settings), waiting_at(plan, at, context)
     hands = hand_use(plan, body, at, waiting, context)
+    glances = glances_at(plan, body, at, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
     doing = Doing(
-        stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting
-    )
+        stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting,
+        glances,
+    )  # fmt: skip
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)

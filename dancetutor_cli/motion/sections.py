@@ -155,6 +155,28 @@ class LookSettings:
     bent_yaw: float
     bent_from: float
     bent_to: float
+    chin: float
+
+
+@dataclass(frozen=True, slots=True)
+class GlanceSettings:
+    """Glances away from the screen where there is time."""
+
+    every: float
+    lasts: float
+    yaw: float
+    pitch: float
+    tilt: float
+    turn: float
+    eyes: float
+    eyes_ahead: float
+    quick: float
+    slow: float
+    around: float
+    hand: float
+    jump: float
+    neck_room: float
+    eyes_room: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,6 +272,11 @@ class WaitSettings:
     shift_time: float
     stays: float
     lean: float
+    turn: float
+    turn_time: float
+    held_from: float
+    held_up: float
+    held_ahead: float
     every: float
     lasts: float
     shakes: float
@@ -262,6 +289,14 @@ class WaitSettings:
     shrug: float
     neck: float
     heel: float
+    stretch: float
+    stretch_other: float
+    stretch_out: float
+    stretch_up: float
+    pump_time: float
+    pump_up: float
+    pump_ahead: float
+    pump: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from dancetutor_cli.motion.sections import (
     BarSettings,
     BodySettings,
     FingerSettings,
+    GlanceSettings,
     GrooveSettings,
     HairSettings,
     HandSettings,
@@ -49,6 +50,7 @@ __all__ = [
     "BarSettings",
     "BodySettings",
     "FingerSettings",
+    "GlanceSettings",
     "GrooveSettings",
     "HairSettings",
     "HandSettings",
@@ -84,6 +86,7 @@ class MotionSettings:
     knees: KneeSettings
     mines: MineSettings
     look: LookSettings
+    glance: GlanceSettings
     inertia: InertiaSettings
     layers: LayerSettings
     groove: GrooveSettings

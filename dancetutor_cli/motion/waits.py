@@ -17,6 +17,7 @@ from dancetutor_cli.numerics.ease import smooth
 
 Array = NDArray[np.float64]
 SEED = 20190607
+EARLIEST = 0.3  # part of its time in which one thing begins: none runs into the next
 ENDS = 30.0  # seconds of beats that she still has in mind before the first and after the last one
 
 
@@ -26,6 +27,7 @@ class Waiting:
 
     share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips shall be on the left of the middle
     between the feet
+    turn : (n,) radians that her chest is turned to the left
     hands : (n, 2, 3) metres that the left and the right hand are elsewhere, in the chest's upright axes
     flap : (n, 2) radians that hands are bent at the wrist; loose : (n, 2) 0 to 1, how much fingers hang
     shrug : (n, 2) radians that shoulders are raised
@@ -34,6 +36,7 @@ class Waiting:
 
     share: Array
     shift: Array
+    turn: Array
     hands: Array
     flap: Array
     loose: Array
@@ -45,7 +48,7 @@ class Waiting:
     def none(cls, count: int) -> Waiting:
         """Nothing, for so many times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
-        return cls(one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
+        return cls(one(), one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
@@ -61,9 +64,14 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
         return out
     first, last = float(times[busy[0]]), float(times[busy[-1]])
     out.shift[:] = plan.hand * out.share * _shift(times, context)
+    slow = [_slowly(plan, times, numbers.turn_time, salt) for salt in range(3)]
+    out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
+    for hand in (0, 1):  # now and then one is held before her for a while
+        up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
+        out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):
         chance = _chance(plan, number)
-        start = numbers.every * (number + chance.uniform(0.0, 0.5))
+        start = numbers.every * (number + chance.uniform(0.0, EARLIEST))
         turn, place = divmod(number, len(_KINDS))  # all of them come by turns, each time in another order
         kind = _KINDS[_chance(plan, turn, 1).permutation(len(_KINDS))[place]]
         end = start + numbers.lasts * chance.uniform(0.8, 1.2)
@@ -114,6 +122,16 @@ def _shift(times: Array, context: Context) -> Array:
     place = numbers.shift * far * np.cumprod(np.where(stays, 1.0, -1.0))
     k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
     share = smooth((times - at[k]) / (at[k + 1] - at[k]))
+    return np.asarray(place[k] + share * (place[k + 1] - place[k]))
+
+
+def _slowly(plan: Plan, times: Array, every: float, salt: int) -> Array:
+    """Something (n,) from -1 to 1 that stays for a while and then is otherwise; salt : another number, another thing"""
+    cell = times / every + salt / 3
+    knots = np.arange(np.floor(cell.min()), np.floor(cell.max()) + 2)
+    place = np.array([_chance(plan, int(knot), 2 + salt).uniform(-1.0, 1.0) for knot in knots])
+    k = np.floor(cell).astype(np.int64) - int(knots[0])
+    share = smooth(2.0 * (cell - np.floor(cell)))
     return np.asarray(place[k] + share * (place[k + 1] - place[k]))
 
 
@@ -171,6 +189,26 @@ def _tap(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
         out.heels[near, side] += np.radians(numbers.heel) * light * act.fade
 
 
+def _stretch(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """Arms go up aside, one over her head and the other not as far, and come down again."""
+    up = np.sin(np.pi * act.times / act.long) ** 2
+    for hand, sign in ((0, 1.0), (1, -1.0)):
+        turn = np.radians(numbers.stretch) * up * (1.0 if hand == act.side else numbers.stretch_other)
+        out.hands[near, hand, 0] += sign * numbers.stretch_out * np.sin(turn)
+        out.hands[near, hand, 1] += numbers.stretch_up * (1.0 - np.cos(turn))
+        out.loose[near, hand] = np.maximum(out.loose[near, hand], 0.5 * up)
+
+
+def _pump(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+    """Forearms are raised before her and dance, one up as the other goes down."""
+    way = np.sin(2 * np.pi * act.times / numbers.pump_time)
+    for hand, sign in ((0, 1.0), (1, -1.0)):
+        turn = way if hand == act.side else -way
+        out.hands[near, hand, 1] += act.fade * (numbers.pump_up + numbers.pump * turn)
+        out.hands[near, hand, 2] += act.fade * (numbers.pump_ahead + 0.5 * numbers.pump * turn)
+        out.hands[near, hand, 0] += act.fade * sign * numbers.aside
+
+
 _KINDS: tuple[Callable[[Waiting, slice, _Act, WaitSettings], None], ...] = (
-    _shake, _swing, _shrug, _loosen, _tap,
+    _shake, _swing, _shrug, _loosen, _tap, _stretch, _pump,
 )  # fmt: skip

@@ -38,7 +38,7 @@ EASINGS = 3  # rounds of turning feet until their ankles are within limits
 GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
 AFTERMATH = 0.3  # seconds over which what befalls her begins to count, and ceases to 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
-PALM_FADE = 0.35  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
+PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
 
 
 @dataclass(frozen=True, slots=True)

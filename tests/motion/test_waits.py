@@ -82,6 +82,7 @@ def test_nothing_repeats(waiting: Waiting) -> None:
 def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
     image = waiting_at(plan_of(chart(), mirrored_play(danced(), SINGLE), pad(), settings=STANDING), TIMES, beaten())
     np.testing.assert_allclose(image.shift, -waiting.shift, atol=1e-12)
+    np.testing.assert_allclose(image.turn, -waiting.turn, atol=1e-12)
     np.testing.assert_allclose(image.tilt, -waiting.tilt, atol=1e-12)
     np.testing.assert_allclose(image.hands, waiting.hands[:, ::-1] * [-1.0, 1.0, 1.0], atol=1e-12)
     for name in ("flap", "loose", "shrug", "heels"):
@@ -107,3 +108,12 @@ def test_a_body_that_waits_keeps_its_balance_and_its_feet() -> None:
         assert np.ptp(hips[:, 0]) > 0.03, f"from {start} s on she hardly moves: {np.ptp(hips[:, 0]):.3f} m"
         if start > 8.0:
             assert np.ptp(hips[:, 0]) < 0.25
+
+
+def test_arms_and_chest_are_held_otherwise_every_few_seconds(waiting: Waiting) -> None:
+    """One hand is before her for a while, then the other or none; the chest turns to a side and back."""
+    inner = (TIMES > 12.0) & (TIMES < 30.0)
+    ahead = waiting.hands[inner, :, 2]
+    assert (ahead.max(axis=0) > 0.08).all() and (ahead.min(axis=0) < 0.02).all()
+    assert np.ptp(np.degrees(waiting.turn[inner])) > 5.0
+    assert np.abs(np.diff(waiting.turn[inner])).max() < np.radians(0.5)  # a frame

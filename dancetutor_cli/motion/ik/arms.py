@@ -41,6 +41,7 @@ WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
+ELBOWS_IN = 0.85  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
@@ -78,7 +79,7 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     wrists += np.abs(inward)[..., None] * ahead[:, None]
     wrists[..., 0] += _on_her_own_pad(wrists[..., 0], context)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
-    elbows[..., 0] += np.clip(inward / GIVEN_WAY, -1.0, 1.0)
+    elbows[..., 0] += ELBOWS_IN * np.clip(inward / GIVEN_WAY, -1.0, 1.0)
     free = np.tile(quat.IDENTITY, (len(at), 2, 1))
     hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
     hold(plan.grips, at, hands, torso, context)

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.full_body import Poses
+from dancetutor_cli.motion.layers.glances import Glances
 from dancetutor_cli.motion.waits import Waiting
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.quaternion import UP
 from dancetutor_cli.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
 from dancetutor_cli.rig.soles import hand_direction, palm_normal
 
@@ -30,7 +32,7 @@ class Doing:
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
     free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
-    beat : (f,) as in `Trajectory`; waiting : at the same times
+    beat : (f,) as in `Trajectory`; waiting, glances : at the same times
     """
 
     stepping: Array
@@ -39,6 +41,7 @@ class Doing:
     last: float
     beat: Array
     waiting: Waiting
+    glances: Glances
 
 
 def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
@@ -64,10 +67,16 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
             np.cross(hand, palm_normal(skeleton, side)),
             (np.radians(settings.wrists) * drop + doing.waiting.flap[:, "lr".index(side)]) * free,
         )
-    bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt
+    glance, neck = doing.glances, context.settings.look.neck_share
+    bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt + glance.tilt
     _turn(skeleton, rotations, "skullbase", FRONT, -bob)
     nod = np.radians(settings.breath_nod) * breath + np.radians(groove.nod) * beat
     _turn(skeleton, rotations, "vc4", ACROSS, nod)
+    for joint, share in (("vc4", neck), ("skullbase", 1.0 - neck)):
+        _turn(skeleton, rotations, joint, UP, share * glance.yaw)
+        _turn(skeleton, rotations, joint, ACROSS, -share * glance.pitch)
+    for side in "lr":
+        _turn(skeleton, rotations, f"{side}_eyeball_joint", UP, glance.eyes)
     closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time, settings.blink)
     for side in "lr":
         _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)

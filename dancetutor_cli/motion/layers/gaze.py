@@ -16,6 +16,7 @@ from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.quaternion import UP, leaning
 
 Array = NDArray[np.float64]
+ACROSS = np.array([1.0, 0.0, 0.0])
 
 
 def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
@@ -30,12 +31,13 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     bent = smooth((np.linalg.norm(tilt, axis=1) - shallow) / (deep - shallow))
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * (head_yaw - chest_yaw)
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
-    whole = quat.multiply(quat.conjugate(chest), leaning(lean[:, None] * tilt, head_yaw))
+    chin = quat.from_axis_angle(ACROSS, -np.radians(settings.look.chin) * (1.0 - bent))
+    whole = quat.multiply(quat.conjugate(chest), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
     neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), settings.look.neck_share))
     rotations[:, skeleton.index("vc4")] = neck
     rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)
-    limit = np.radians(settings.look.eyes_limit)
+    limit = np.radians(np.sqrt(max(settings.look.eyes_limit**2 - settings.look.chin**2, 0.0)))
     gap = (screen_yaw(root[:, [0, 2]], settings) - head_yaw + np.pi) % (2 * np.pi) - np.pi
     eyes = quat.from_axis_angle(UP, np.clip(settings.look.eyes_weight * gap, -limit, limit))
     for side in "lr":
-        rotations[:, skeleton.index(f"{side}_eyeball_joint")] = eyes
+        rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)

@@ -110,6 +110,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     lean = settings.body.lean + settings.body.stream_lean * calm
     lean = np.radians(lean - held * (lean + settings.bar.lean_back))
     tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
+    chest += waiting.turn
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
     chest += np.radians(settings.groove.twist) * groove.sway
