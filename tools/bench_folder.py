@@ -72,7 +72,7 @@ def child(folder: str) -> None:
             at = name.rfind(PACKAGE)
             if at >= 0:
                 room = list(Path(name[at + len(PACKAGE) :]).parts)
-                kernel = room == ["play", "engine.py"] and frame.f_code.co_name in ("_call", "_explore_from")
+                kernel = room == ["kernel_door.py"]
                 rooms["play (kernels)" if kernel else room[0].removesuffix(".py")] += 1
                 return
             frame = frame.f_back
