@@ -17,7 +17,7 @@ LISTED = dict(TABLE.findall((ROOT / "docs" / "architecture.md").read_text(encodi
 ORDER = list(LISTED)
 FRONT = "most above"  # of a room that orders the others
 VIDEO_PARTS = ("overlay", "scene", "media")
-WHOLE = ("film.py", "extras.py")  # that put the parts together, or make something of the whole film
+WHOLE = ("film.py", "plan.py", "extras.py")  # that put the parts together, or make something of the whole film
 
 
 @cache

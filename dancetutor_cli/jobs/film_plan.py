@@ -11,7 +11,6 @@ import numpy as np
 from dancetutor_cli.chart.tempo import fastest_bpm
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.video.ahead import parse_ahead
-from dancetutor_cli.video.film import FilmPlan, turned
 from dancetutor_cli.video.media.clicks import clicks_of
 from dancetutor_cli.video.media.cues import cues_of
 from dancetutor_cli.video.media.sound import SoundPlan
@@ -21,6 +20,7 @@ from dancetutor_cli.video.overlay.captions import SongShape
 from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.titles import title_warnings, words_of
+from dancetutor_cli.video.plan import FilmPlan, turned
 from dancetutor_cli.video.practice import whole_song
 from dancetutor_cli.video.scroll import SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of

@@ -26,8 +26,9 @@ from dancetutor_cli.video.media.film_formats import PICTURES
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
     from dancetutor_cli.video.choices import RendererKind
-    from dancetutor_cli.video.film import Film, FilmPlan
+    from dancetutor_cli.video.film import Film
     from dancetutor_cli.video.picture import Frame
+    from dancetutor_cli.video.plan import FilmPlan
 
 SEGMENT_SECONDS = 4.0  # of film; the same whatever the number of workers, so that the files are the same too
 STATE = ".dancetutor"  # folder beside the films of a batch: what is done, and what is in work

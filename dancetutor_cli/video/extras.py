@@ -13,7 +13,8 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart,
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.files import encoded, write_atomic
 from dancetutor_cli.video.clock import Moments
-from dancetutor_cli.video.film import Film, FilmPlan
+from dancetutor_cli.video.film import Film
+from dancetutor_cli.video.plan import FilmPlan
 
 INDEX = "poses.json"
 

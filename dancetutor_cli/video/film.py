@@ -1,9 +1,8 @@
-"""A film: everything that its frames need, as plain data that pickles, and the drawing of any one frame."""
+"""A film: the drawing of any one frame of its plan."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,36 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, dancing, moments
-from dancetutor_cli.video.clock import Clock
-from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.make_way import Stay, stay
-from dancetutor_cli.video.notes import BeatLines, Callout, Cue, NoteTrack, Presses
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
-from dancetutor_cli.video.overlay.diagram import (
-    DiagramRows,
-    FeetDiagram,
-    NextRows,
-    PadMap,
-    PadView,
-)
-from dancetutor_cli.video.overlay.header import Header, Room, Words
+from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
+from dancetutor_cli.video.overlay.header import Header, Room
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
-from dancetutor_cli.video.scene.camera import seen_from_front
-from dancetutor_cli.video.scene.look import default_look
+from dancetutor_cli.video.plan import FilmPlan, turned
 from dancetutor_cli.video.scene.television import Television
 from dancetutor_cli.video.scroll import parse_scroll
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.baked import Motion
-    from dancetutor_cli.video.picture import PadLike
     from dancetutor_cli.video.scene.dancer import Dancer
 
 BACKGROUND = (12, 14, 26)
@@ -50,49 +36,6 @@ SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, a
 TAG_SEEN = 4.0  # seconds before its row that words beside the notes may be seen
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 BLOCK = 64  # frames whose joints are made at once
-
-
-@dataclass(frozen=True, slots=True)
-class FilmPlan:
-    """All of a film before the first frame; worker processes get it pickled.
-
-    beats : float64 (clock.frames,), the beat each frame shows, as drawn
-    directions : per column, degrees clockwise from up, None for a middle panel
-    character : who dances, the motion is for its skeleton; None for the project's own dancer
-    partners : of a chart for two the motions of the second one; empty for one
-    scroll_bpm : the tempo of which M mods make their speed
-    speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
-    motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
-        the layout has no dancer; rows : the play's, for the next rows' pads
-    callouts : words in the picture; cues : moves for the subtitles
-    """
-
-    look: FilmLook
-    clock: Clock
-    words: Words
-    song: captions.SongShape
-    notes: NoteTrack
-    presses: Presses
-    lines: BeatLines
-    beats: NDArray[np.float64]
-    scroll_bpm: float
-    directions: tuple[float | None, ...]
-    motions: Mapping[float, Motion]
-    pad: PadLike | None
-    rows: DiagramRows | None = None
-    callouts: tuple[Callout, ...] = ()
-    cues: tuple[Cue, ...] = ()
-    speeds: NDArray[np.float64] | None = None
-    character: Character | None = None
-    partners: Mapping[float, Motion] = field(default_factory=dict)
-
-
-def turned(look: FilmLook) -> bool:
-    """Does the dancer of this look face who looks on?"""
-    part = look.layout.dancer
-    if part is None or look.layout.screen is not None:
-        return False
-    return seen_from_front(look.camera or part.camera, default_look())
 
 
 class Film:

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.video.clock import Clock, Pass
-from dancetutor_cli.video.film import FilmPlan
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
 from dancetutor_cli.video.overlay.captions import SongShape
 from dancetutor_cli.video.overlay.header import Words
+from dancetutor_cli.video.plan import FilmPlan
 
 BPM = 120.0
 DIRECTIONS = (270.0, 180.0, 0.0, 90.0)

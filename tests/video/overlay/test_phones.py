@@ -11,7 +11,7 @@ from film_plans import DIRECTIONS, film_plan
 
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.pads import load_pad
-from dancetutor_cli.video.film import Film, turned
+from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.film_formats import FORMATS
@@ -20,6 +20,7 @@ from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.diagram import DiagramRows, NextRows, PadView
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.video.plan import turned
 from dancetutor_cli.video.scene.scene import Scene
 from dancetutor_cli.video.scroll import parse_scroll
 
