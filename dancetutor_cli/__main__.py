@@ -27,9 +27,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _run(arguments: Sequence[str] | None) -> None:
-    from dancetutor_cli.startup import collect_seldom, leave_garbage
+    from dancetutor_cli.startup import collect_seldom, leave_garbage, without_threads
 
     collect_seldom()
+    without_threads()
     import click
 
     from dancetutor_cli.commands import cli

@@ -130,6 +130,20 @@ def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.Monkey
     assert compiled.is_compiled(preset)
 
 
+def test_numpy_makes_no_threads_but_where_somebody_wants_them(tmp_path: Path) -> None:
+    song = tmp_path / "x.sm"
+    song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n;\n")
+    code = (
+        "import os, sys; from dancetutor_cli.__main__ import main\n"
+        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
+        "except SystemExit: print('numpy' in sys.modules, os.environ['OPENBLAS_NUM_THREADS'], file=sys.stderr)"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    for said, wanted in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")):
+        run = subprocess.run([sys.executable, "-c", code], env=environment | said, capture_output=True, text=True)
+        assert run.stderr.split()[-2:] == ["True", wanted]
+
+
 def test_kept_kernels_need_no_numba(tmp_path: Path) -> None:
     song = Path(__file__).parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.ssc"
     code = (
