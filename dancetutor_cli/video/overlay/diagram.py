@@ -156,6 +156,12 @@ def shoe_sprite(
     return out
 
 
+@lru_cache(maxsize=32)
+def _marker(size: int, limb: int, face: Typeface) -> Sprite:
+    """The notes' own mark, painted once: each frame of practice needs several."""
+    return sprites.marker(size, limb, face)
+
+
 class FeetDiagram:
     """The large pad with all feet on it, at any second. rims : of each dancer's feet the colour around them"""
 
@@ -252,7 +258,7 @@ class NextRows:
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:
         """The notes' own mark on a panel; a foot that only stands there is small and faded."""
-        mark = sprites.marker(max(8, round(share * pads.unit)), limb, self.face)
+        mark = _marker(max(8, round(share * pads.unit)), limb, self.face)
         x, y = pads.place(*pads.panels[column])
         at = (round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
         blit(frame, mark, *at, 1.0 if share == STEPPED else 0.6)
