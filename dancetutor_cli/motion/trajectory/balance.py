@@ -1,8 +1,9 @@
 """Where the centre of mass travels over the ground, so that the dancer keeps her balance.
 
 The cart-table model (Kajita 2003): the zero-moment point is  x - y / (y'' + g) x'' . It has to stay under the feet that
-stand, and the pelvis where both legs reach their feet; within that the path has the least jerk. In flight nothing
-pushes sideways, so it is straight. Where a song asks for the impossible, limits give way by as little as they must.
+stand, and the pelvis where both legs reach their feet; within that the pelvis, which swinging legs throw, has the least
+jerk. In flight nothing pushes sideways, so the path is straight. Where a song asks for the impossible, limits give way
+by as little as they must.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one t
 UNIT = 0.03  # metres; scales the programme
 ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # between sides of hulls of so many soles
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
+NEAR, END = 1e-5, 0.1  # how much being over the middle of the soles counts, and at both ends: no drifting off there
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
 
 
@@ -283,15 +285,16 @@ def _solved(
     low, high = (b + want.offset for b in (want.nearest, want.farthest))
     low, high = np.minimum(low, (low + high) / 2), np.maximum(high, (low + high) / 2)
     limits = []
+    near = np.full(n, NEAR)
+    near[[0, -1]] = END
     for a in (0, 1):
         axis = np.eye(2)[a]
         problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], support.middle[k, a, None] / UNIT)
         straight = _both(np.tile(second, (len(fly), 1)), axis)
         problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
-        problem.add(
-            2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), np.full(n, 1e-5), support.middle[:, a, None] / UNIT
-        )
-        problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.zeros((n - 3, 1)))
+        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), near, support.middle[:, a, None] / UNIT)
+        thrown = sum(jerk[:, q] * want.offset[q : n - 3 + q, a] for q in range(4))
+        problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.asarray(thrown)[:, None])
         every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)
         limits.append(Limits(*every, low[:, a] / UNIT, high[:, a] / UNIT, GIVE_REACH))
     for d in range(support.low.shape[1]):
