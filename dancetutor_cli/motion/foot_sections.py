@@ -105,6 +105,9 @@ class JumpSettings:
     far: float
     flight_share: float
     tuck: float
+    tuck_from: float
+    tuck_full: float
+    least: float
     lift_pitch: float
     land_pitch: float
     yaw_to_normal: float
@@ -116,8 +119,10 @@ class JumpSettings:
     lean: float
     push: float
     catch: float
+    reach: float
     drive: float
     quick_flat: float
+    low: float
     crouch_before: float
     crouch_time: float
     follow_after: float

@@ -47,6 +47,12 @@ class Row:
         return float(reduction(self.duration, step.fast, step.longest))
 
     @property
+    def hurry(self) -> float:
+        """How short its time is, from the longest move to a fast one, 0 to 1; `cut` grows as its cube."""
+        step = self.context.settings.step
+        return float(np.clip((step.longest - self.duration) / max(step.longest - step.fast, 1e-9), 0.0, 1.0))
+
+    @property
     def haste(self) -> float:
         """How much faster than fast it is, 0 to 1."""
         step = self.context.settings.step

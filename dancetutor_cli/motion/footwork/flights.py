@@ -24,14 +24,13 @@ Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the l
 class Flight:
     """Both feet in the air from `take_off` to `land`, seconds.
 
-    turned : degrees that the line between them turns; eased : the part of the usual tuck that there is time for
+    turned : degrees that the line between them turns
     first : when each foot leaves the ground, if before the take-off of both
     """
 
     take_off: float
     land: float
     turned: float = 0.0
-    eased: float = 1.0
     first: tuple[float, float] = (np.inf, np.inf)
 
 
@@ -44,7 +43,7 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
     turn = float(np.radians(flight.turned))
     share, aside = jump_ways(starts, before, ends, after, turn, footing.settings)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = flight.eased * tuck_for(far, jump)
+    tuck = tuck_for(far, flight.land - flight.take_off, jump)
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):
         lift = min(flight.first[side], flight.take_off)
@@ -69,11 +68,11 @@ def hop(
     columns : that each foot stands over then; turned : degrees that the line between the feet turns
     """
     jump, step = footing.settings.jump, footing.settings.step
-    eased = 1.0 - jump.quick_flat * row.cut
+    eased = 1.0 - jump.quick_flat * row.hurry
     lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
     heel = Heel((lift, lift, land), (jump.lift_flat, jump.swing_flat))
     pitches = [heel_up(step, row.cut, heel, c) for c in columns]
-    flight = Flight(take_off, row.time, turned, eased, _first(row, footing, take_off, goals))
+    flight = Flight(take_off, row.time, turned, _first(row, footing, take_off, goals))
     return Proposal(flown(footing, flight, goals, pitches), take_off)
 
 
@@ -99,6 +98,12 @@ def take_off_for(footing: Footing, time: float, flight: float) -> float:
     return max(take_off, *(f.rested(time) for f in feet))
 
 
-def tuck_for(distance: float, jump: JumpSettings) -> float:
-    """How much more feet are pulled up that go so far: legs that reach far must not lock."""
-    return jump.tuck * (1.0 + jump.tuck_far * min(distance / jump.far, FARTHER) ** 2)
+def tuck_for(distance: float, seconds: float, jump: JumpSettings) -> float:
+    """How much more feet are pulled up that go so far in a flight of so many seconds: not in short, low ones.
+
+    Knees that fold and open again within a tenth of a second throw the body. In the shortest of all feet rise a little
+    more than the body does, or nobody could say when they come down.
+    """
+    share = float(np.clip((seconds - jump.tuck_from) / max(jump.tuck_full - jump.tuck_from, 1e-3), 0.0, 1.0))
+    more = share * jump.tuck * (1.0 + jump.tuck_far * min(distance / jump.far, FARTHER) ** 2)
+    return max(more, jump.least - GRAVITY * seconds**2 / 8)

@@ -60,7 +60,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
     if isinstance(swing, Jump):
         jump = footing.settings.jump
-        tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), jump)
+        tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), time - lift, jump)
         swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
     return Proposal(footing.with_foot(foot.moved(swing, target, yaw)), lift)
 

@@ -27,7 +27,10 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How much lower (n,) she is before and after jumps, metres: deeper for higher jumps, less if time is short."""
+    """How much lower (n,) she is before and after jumps, metres: deeper for higher jumps, less if time is short.
+
+    A run of quick jumps has no time for that; there she is a little lower all the time.
+    """
     flights = plan.flights
     if not len(flights):
         return np.zeros(len(times))
@@ -37,6 +40,10 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0)
     out = np.zeros(len(times))
     for k in range(len(flights)):
+        run = slice(*np.searchsorted(times, (start[k] - 4 * jump.crouch_time, end[k] + 4 * jump.crouch_time)))
+        away = np.maximum(np.maximum(start[k] - times[run], times[run] - end[k]), 0.0) / jump.crouch_time
+        low = jump.low * (1.0 - max(share[k], share[k + 1]))
+        out[run] = np.maximum(out[run], low * np.exp(-(away**2)))
         for depth, time, width in (
             (jump.crouch * share[k], start[k] - jump.crouch_before, jump.crouch_time),
             (jump.follow * share[k + 1], end[k] + jump.follow_after, jump.follow_time),

@@ -51,7 +51,7 @@ class HeightPath:
 class HeightWish:
     """What is asked of the height of the centre of mass at n even times, metres.
 
-    times : (n,) seconds; wanted : (n,) where it would like to be; highest : (n,) where it may be, ignored in flight
+    times : (n,) seconds; wanted : (n,) where it would like to be; highest : (n,) where it may be
     above : (n,) how far it is over the pelvis, whose jerk on the ground is least
     firm : (n,) how much `wanted` counts at take-offs and landings: elsewhere it always counts 1
     """
@@ -80,9 +80,8 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
         inner[standing] - 1, acceleration[standing],
         np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0), GIVE_FORCE,
     )  # fmt: skip
-    ground = np.flatnonzero(~(np.concatenate(([True], flying)) & np.concatenate((flying, [True]))))
-    top = np.interp(nodes[ground], times, wish.highest)
-    room = Limits(ground, np.full((len(ground), 1), 1 / UNIT), np.full(len(ground), -np.inf), top / UNIT, GIVE_ROOM)
+    every, top = np.arange(len(nodes)), np.interp(nodes, times, wish.highest)
+    room = Limits(every, np.full((len(nodes), 1), 1 / UNIT), np.full(len(nodes), -np.inf), top / UNIT, GIVE_ROOM)
     solution = solve_surely(problem, [force, room], f"the height of her body {span(times)}")
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
 

@@ -100,6 +100,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
+    most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
     legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch))
     mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
