@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,30 +65,51 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
         return out
     first, last = float(times[busy[0]]), float(times[busy[-1]])
     out.shift[:] = plan.hand * out.share * _shift(times, context)
-    slow = [_slowly(plan, times, numbers.turn_time, salt) for salt in range(3)]
+    song = _song(plan)
+    slow = [_slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
     out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
     for hand in (0, 1):  # now and then one is held before her for a while
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):
-        chance = _chance(plan, number)
-        start = numbers.every * (number + chance.uniform(0.0, EARLIEST))
-        turn, place = divmod(number, len(_KINDS))  # all of them come by turns, each time in another order
-        kind = _KINDS[_chance(plan, turn, 1).permutation(len(_KINDS))[place]]
-        end = start + numbers.lasts * chance.uniform(0.8, 1.2)
+        act = _drawn(song, number)
+        start = numbers.every * (number + act.late)
+        end = start + numbers.lasts * act.long
         if any(a <= start and end <= b for a, b in spans):
             near = slice(*np.searchsorted(times, (start, end)).tolist())
-            side = int(chance.integers(2)) ^ plan.lead
-            kind(out, near, _Act(times[near] - start, end - start, side), numbers)
+            side = act.side ^ plan.lead
+            _KINDS[act.kind](out, near, _Act(times[near] - start, end - start, side), numbers)
     if plan.lead:
         out.tilt[:] *= -1.0
     return out
 
 
-def _chance(plan: Plan, *numbers: int) -> np.random.Generator:
-    """What chance says of something in this song; the same for its mirror image, and for a piece of it."""
-    song = round(1000 * plan.first), round(1000 * plan.last)
+def _song(plan: Plan) -> tuple[int, int]:
+    """What chance knows a song by; the same for its mirror image, and for a piece of it."""
+    return round(1000 * plan.first), round(1000 * plan.last)
+
+
+def _chance(song: tuple[int, int], *numbers: int) -> np.random.Generator:
+    """What chance says of something in this song."""
     return np.random.default_rng([SEED, *(number & 0xFFFFFFFF for number in (*song, *numbers))])
+
+
+class _Drawn(NamedTuple):
+    """What chance says of one thing: when it begins and how long it lasts, as parts of their times; side; kind."""
+
+    late: float
+    long: float
+    side: int
+    kind: int
+
+
+@lru_cache(maxsize=1024)
+def _drawn(song: tuple[int, int], number: int) -> _Drawn:
+    """The thing of this number, for which each round of a bake asks; all kinds come by turns, in ever other orders."""
+    chance = _chance(song, number)
+    turn, place = divmod(number, len(_KINDS))
+    kind = int(_chance(song, turn, 1).permutation(len(_KINDS))[place])
+    return _Drawn(chance.uniform(0.0, EARLIEST), chance.uniform(0.8, 1.2), int(chance.integers(2)), kind)
 
 
 def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
@@ -125,14 +147,20 @@ def _shift(times: Array, context: Context) -> Array:
     return np.asarray(place[k] + share * (place[k + 1] - place[k]))
 
 
-def _slowly(plan: Plan, times: Array, every: float, salt: int) -> Array:
+def _slowly(song: tuple[int, int], times: Array, every: float, salt: int) -> Array:
     """Something (n,) from -1 to 1 that stays for a while and then is otherwise; salt : another number, another thing"""
     cell = times / every + salt / 3
     knots = np.arange(np.floor(cell.min()), np.floor(cell.max()) + 2)
-    place = np.array([_chance(plan, int(knot), 2 + salt).uniform(-1.0, 1.0) for knot in knots])
+    place = np.array([_knot(song, int(knot), salt) for knot in knots])
     k = np.floor(cell).astype(np.int64) - int(knots[0])
     share = smooth(2.0 * (cell - np.floor(cell)))
     return np.asarray(place[k] + share * (place[k + 1] - place[k]))
+
+
+@lru_cache(maxsize=1024)
+def _knot(song: tuple[int, int], number: int, salt: int) -> float:
+    """Where `_slowly` is then; each round of a bake asks again."""
+    return float(_chance(song, number, 2 + salt).uniform(-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)

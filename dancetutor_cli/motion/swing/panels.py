@@ -64,6 +64,7 @@ def room_on(panels: Array, column: int, step: StepSettings) -> Array:
 
 def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
     """The place of a ball (2,) near this one from which it and the middle of the sole are where they may be."""
-    ball = np.clip(ball, spot.centre - spot.room, spot.centre + spot.room)
-    middle = np.clip(middle_of(ball, toes), spot.centre - spot.middle_room, spot.centre + spot.middle_room)
-    return ball_of(middle, toes)
+    centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
+    ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
+    low, high = centre - spot.middle_room, centre + spot.middle_room
+    return np.asarray(np.minimum(np.maximum(ball - ahead, low), high) + ahead)
