@@ -17,7 +17,7 @@ from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
-from dancetutor_cli.video.overlay.header import Header, Room
+from dancetutor_cli.video.overlay.header import Header, WordsRoom
 from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -105,7 +105,7 @@ class Film:
         if (part := self.layout.header) is None:
             return None
         scale = self.scale * part.text
-        room = Room(part.room, self._heads())
+        room = WordsRoom(part.room, self._heads())
         return Header(self.plan.words, self._box("header"), scale, self.face, self.style, room)
 
     @cached_property

@@ -43,7 +43,7 @@ class Words:
     subtitle: str = ""
 
 
-class Room(NamedTuple):
+class WordsRoom(NamedTuple):
     """What of a header's box is for its words. share : of the width, beside her head
 
     taken : float64 (n, 4), where heads come as they dance, left, top, right and bottom in pixels: lines end before
@@ -53,7 +53,7 @@ class Room(NamedTuple):
     taken: NDArray[np.float64] = np.zeros((0, 4))
 
 
-ALL = Room()
+ALL = WordsRoom()
 
 
 class Header:
@@ -65,7 +65,7 @@ class Header:
     """
 
     def __init__(
-        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: Room = ALL
+        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: WordsRoom = ALL
     ) -> None:
         self.lines: list[tuple[Sprite, float, float]] = []
         self._scale, self._face, self._taken = scale, face, room.taken

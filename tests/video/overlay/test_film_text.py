@@ -17,7 +17,7 @@ from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.overlay import text
 from dancetutor_cli.video.overlay.captions import Legend
 from dancetutor_cli.video.overlay.fonts import system_fonts
-from dancetutor_cli.video.overlay.header import Header, Room, Words
+from dancetutor_cli.video.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface, clean, fitted, in_lines, parts_of, wrapped
 
@@ -115,7 +115,7 @@ def test_titles_and_artists_are_not_cut(name: str, title: str, artist: str, colu
     words = Words(title, artist, "Hard 8", "Hard", "dance-double · 128-164 BPM", "steps by somebody")
     assert layout.header is not None
     box = layout.box("header", layout.size, columns)
-    header = Header(words, box, layout.header.text, Typeface(), highway_style(), Room(layout.header.room))
+    header = Header(words, box, layout.header.text, Typeface(), highway_style(), WordsRoom(layout.header.room))
     all_of_it = "".join(written).replace(" ", "")
     assert all_of_it.startswith((title + artist + "Hard 8").replace(" ", ""))
     assert header.right <= box[0] + layout.header.room * (box[2] - box[0]) + 10 * layout.header.text
