@@ -26,12 +26,14 @@ class Flight:
 
     turned : degrees that the line between them turns
     first : when each foot leaves the ground, if before the take-off of both
+    mined : mines pass meanwhile, over which feet are pulled up however short the flight
     """
 
     take_off: float
     land: float
     turned: float = 0.0
     first: tuple[float, float] = (np.inf, np.inf)
+    mined: bool = False
 
 
 def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) -> Footing:
@@ -43,7 +45,7 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
     turn = float(np.radians(flight.turned))
     share, aside = jump_ways(starts, before, ends, after, turn, footing.settings)
     far = float(np.linalg.norm(ends - starts, axis=1).max())
-    tuck = tuck_for(far, flight.land - flight.take_off, jump)
+    tuck = tuck_for(far, jump.tuck_full if flight.mined else flight.land - flight.take_off, jump)
     middles = pair(starts.mean(axis=0)), pair(ends.mean(axis=0))
     for side, foot in enumerate(feet):
         lift = min(flight.first[side], flight.take_off)
@@ -72,8 +74,15 @@ def hop(
     lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
     heel = Heel((lift, lift, land), (jump.lift_flat, jump.swing_flat))
     pitches = [heel_up(step, row.cut, heel, c) for c in columns]
-    flight = Flight(take_off, row.time, turned, _first(row, footing, take_off, goals))
+    flight = Flight(take_off, row.time, turned, _first(row, footing, take_off, goals), _mined(row, footing, take_off))
     return Proposal(flown(footing, flight, goals, pitches), take_off)
+
+
+def _mined(row: Row, footing: Footing, take_off: float) -> bool:
+    """Whether mines pass from a little before a take-off until the row's landing, or a little after it."""
+    rows, around = row.play.rows, footing.settings.mines.before
+    near = slice(*np.searchsorted(rows.second, (take_off - around, row.time + around)).tolist())
+    return bool(rows.mines[near].any())
 
 
 def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[float, float]:
