@@ -148,8 +148,13 @@ def test_blur_is_the_mean_of_a_square():
     mask = rng.random((30, 30)).astype(np.float32)
     padded = np.pad(mask.astype(np.float64), 2)
     expected = sum(padded[i : i + 30, j : j + 30] for i in range(5) for j in range(5)) / 25
-    blur(mask, 2, np.empty_like(mask))
+    whole = np.full((36, 40), 7.0, np.float32)
+    whole[3:33, 4:34] = mask
+    blur(mask, (0, 0, 30, 30), 2, np.empty_like(mask))
     np.testing.assert_allclose(mask, expected, atol=1e-5)
+    blur(whole, (4, 3, 34, 33), 2, np.empty_like(whole))
+    np.testing.assert_array_equal(whole[3:33, 4:34], mask)
+    assert (whole != 7.0).sum() == 900 and (whole[:3] == 7.0).all(), "what is around a part stays"
 
 
 def test_dither_keeps_the_mean():

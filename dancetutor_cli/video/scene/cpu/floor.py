@@ -27,8 +27,10 @@ def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
 
 
 @njit(cache=True)
-def blur(mask: Any, radius: int, spare: Any) -> None:  # pragma: no cover
-    """Box blur of a picture in place, both ways; `spare` has its shape. Beyond its borders it counts as 0."""
+def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no cover
+    """Box blur of a picture's part x0, y0, x1, y1 in place, both ways; `room` has its shape. Beyond it counts as 0."""
+    left, top, right, bottom = box
+    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # as wide as the picture, too: one kernel
     height, width = mask.shape
     share = 1.0 / (2 * radius + 1)
     for row in range(height):

@@ -114,11 +114,10 @@ class CpuRenderer:
         left, top, right, bottom = occupied(self._shadow, self._mask)
         radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
         reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
-        left, top, right, bottom = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
-        part = slice(top, bottom), slice(left, right)
+        box = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
         for _ in range(2):
-            blur(self._mask[part], radius, self._spare[part])
-        return Shadow(self._mask, (left, top, right, bottom), cast, self._scene.look.light.shadow)
+            blur(self._mask, box, radius, self._spare)
+        return Shadow(self._mask, box, cast, self._scene.look.light.shadow)
 
     def _draw_ground(self, state: FrameState, background: Background, shift: int, shade: Shadow) -> None:
         look, cast = self._scene.look, shade.cast
