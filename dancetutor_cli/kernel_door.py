@@ -1,9 +1,9 @@
 """Kernels that Python calls without numba, where their machine code is kept: `Door`.
 
-To import numba takes longer than all else that a command does for a chart. A door writes the addresses and shapes of a
-call's arrays into a row of numbers; machine code of two parts takes it from there: the kernel, and a small function
-that reads the numbers and calls it. Both are kept in one file. Only what is not kept is compiled, by numba, as
-`kernel_making` says; LLVM alone loads it in a few milliseconds.
+To import numba takes longer than all else that a command does for a chart. A door hands a call's objects to machine
+code of two parts: the kernel, and a small function that takes addresses and shapes out of the objects and calls it.
+Both are kept in one file. Only what is not kept is compiled, by numba, as `kernel_making` says; LLVM alone loads it in
+a few milliseconds. Where none of that goes, numba calls the kernel in its ordinary way, or Python does.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from threading import Lock
 from types import FunctionType
@@ -25,13 +24,15 @@ from typing import Any, TypeVar
 import numpy as np
 
 from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.kernel_arguments import HEAD, ITEMS, is_known, kinds_of, plain, table_of
 from dancetutor_cli.kernel_folder import CHECKSUM, SUFFIX, head, kernel_folder, places_of, shipped_folder
 from dancetutor_cli.kernel_target import target
 
-_BYTE: Any = ctypes.c_char
-RESULTS = 2  # words in which a kernel's results stand, at most
-ARGUMENTS = RESULTS + 1  # the first word of the arguments, behind one for numba's word about an exception
-
+RESULTS = 2  # words in which a kernel's results stand, at most; behind them numba's word about an exception
+MISFIT = -1000  # what the reading function gives if an object is not of the kind that it was made for
+_OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
+_Results: Any = ctypes.c_int64 * (RESULTS + 1)
+Run = Callable[[Any, Any, Any], int]
 
 INNER: dict[FunctionType, dict[str, Any]] = {}  # kernels that kernels call, with options for `kernels.uncounted`
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,14 +47,19 @@ def inner(function: F, **options: Any) -> F:
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """Machine code as it is kept. entry : name of the function that reads the words; results : how many it gives
+    """Machine code as it is kept. entry : name of the function that reads the objects; results : how many it gives
 
-    parts : object files, which call each other
+    needs : names of the functions that it calls and that this process must have; parts : object files
     """
 
     entry: str
     results: int
+    needs: tuple[str, ...]
     parts: tuple[bytes, ...]
+
+
+class Unfit(Exception):  # noqa: N818 - never leaves a door
+    """Machine code that cannot be called here."""
 
 
 class Door:
@@ -63,53 +69,87 @@ class Door:
     nothing, a whole number, or a tuple of two.
     """
 
-    def __init__(self, function: FunctionType, lasting: tuple[int, ...], stamp: Callable[[], str]) -> None:
-        """lasting : places of the arguments whose arrays stay where and as long as they are while the tuple is used
-
-        stamp : a digest of the kernel's source and of what goes into it
-        """
+    def __init__(self, function: FunctionType, stamp: Callable[[], str]) -> None:
+        """stamp : a digest of the kernel's source and of what goes into it."""
         self.function = function
         self._stamp = stamp
-        self._lasting = frozenset(lasting)
-        self._codes: dict[str, tuple[Callable[[int], int], int, Any]] = {}
-        self._told: dict[int, tuple[Any, str, list[int]]] = {}  # of the last of the lasting arguments
-        self._words = (ctypes.c_int64 * 0)()
-        self._lock = Lock()  # two threads share the words
+        self._last: tuple[Run, Any, int] = (_misfit, None, 0)
+        self._codes: dict[str, tuple[Run, Any, int]] = {}
+        self._alive: list[Any] = []  # what machine code and its tables need
+        self._ordinary: Callable[..., Any] | None = None
+        self._lock = Lock()
 
     def __call__(self, *args: Any) -> Any:
         """What the kernel gives. DancetutorError if it raises: it cannot say what."""
+        results = _Results()
+        run, table, count = self._last
+        status = run(table, results, args)
+        if status == MISFIT:
+            return self._otherwise(args)
+        if status:
+            raise self._error(status)
+        return (results[0], results[1]) if count == 2 else (results[0] if count else None)
+
+    def _otherwise(self, args: tuple[Any, ...]) -> Any:
+        """A call with objects of another kind than the last one, or where there is no machine code to call."""
+        kinds, args, results = "".join(map(kinds_of, args)), plain(args), _Results()
+        if self._ordinary is None:
+            try:
+                with self._lock:
+                    opened = self._codes.get(kinds) or self._open(kinds, args)
+            except Unfit:
+                return self._call_ordinary(args)
+            run, table, count = self._last = opened
+            status = run(table, results, args)
+            if status not in (0, MISFIT):
+                raise self._error(status)
+            if status == 0:
+                return (None, results[0], tuple(results[:2]))[count]
+        return self._call_ordinary(args)
+
+    def _error(self, status: object) -> DancetutorError:
+        return DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({status})")
+
+    def _call_ordinary(self, args: tuple[Any, ...]) -> Any:
+        """As numba calls kernels, or Python: slower, but with the same results."""
+        self._last = (_misfit, None, 0)
         with self._lock:
-            kinds = ""
-            words: list[int] = []
-            for place, argument in enumerate(args):
-                kind, numbers = self._told_of(place, argument)
-                kinds += kind
-                words += numbers
-            run, results, _ = self._codes.get(kinds) or self._open(kinds, args)
-            if len(self._words) < ARGUMENTS + len(words):
-                self._words = (ctypes.c_int64 * (ARGUMENTS + len(words)))()
-            self._words[ARGUMENTS : ARGUMENTS + len(words)] = words  # type: ignore[assignment]
-            if status := run(ctypes.addressof(self._words)):
-                raise DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({status})")
-            return (None, self._words[0], tuple(self._words[:2]))[results]
+            if self._ordinary is None:
+                try:
+                    from dancetutor_cli.kernel_making import ordinary
 
-    def _told_of(self, place: int, argument: Any) -> tuple[str, list[int]]:
-        if place not in self._lasting:
-            return told_of(argument)
-        if place not in self._told or self._told[place][0] is not argument:
-            self._told[place] = (argument, *told_of(argument))
-        return self._told[place][1:]
+                    self._ordinary = ordinary(self.function, args)
+                except Exception:  # whatever numba and LLVM raise
+                    self._ordinary = self.function
+        try:
+            with np.errstate(over="ignore"):  # numbers of hash functions wrap round
+                return self._ordinary(*args)
+        except Exception as error:
+            raise self._error(error) from error
 
-    def _open(self, kinds: str, args: tuple[Any, ...]) -> tuple[Callable[[int], int], int, Any]:
-        digest = hashlib.sha256(f"{kinds}|{target()}".encode()).hexdigest()[:8]
-        code = next(self._kept(digest), None)
-        if code is None:
+    def _open(self, kinds: str, args: tuple[Any, ...]) -> tuple[Run, Any, int]:
+        """Fetch or make machine code for such arguments. Unfit if neither goes."""
+        if not is_known():
+            raise Unfit
+        digest = hashlib.sha256(f"{kinds}|{HEAD}|{ITEMS}|{sys.platform}|{target()}".encode()).hexdigest()[:8]
+        for code in self._kept(digest):
+            with suppress(Exception):  # made on another system, maybe
+                return self._entered(kinds, args, code)
+        try:
             from dancetutor_cli.kernel_making import machine_code
 
             code = machine_code(self.function, args)
-            self._keep(digest, code)
+            opened = self._entered(kinds, args, code)
+        except Exception as error:  # whatever numba and LLVM raise
+            raise Unfit from error
+        self._keep(digest, code)
+        return opened
+
+    def _entered(self, kinds: str, args: tuple[Any, ...], code: Code) -> tuple[Run, Any, int]:
         run, engine = _loaded(code)
-        self._codes[kinds] = run, code.results, engine
+        table, kept = table_of(args)
+        self._alive += [engine, kept]
+        self._codes[kinds] = run, table, code.results
         return self._codes[kinds]
 
     def _kept(self, digest: str) -> Iterator[Code]:
@@ -146,38 +186,8 @@ class Door:
             yield shipped
 
 
-def told_of(argument: Any) -> tuple[str, list[int]]:
-    """What kind of thing an argument is, and the words that tell a kernel of it. TypeError if there are none."""
-    if isinstance(argument, np.ndarray):
-        if argument.flags.c_contiguous:
-            return _kind(argument.dtype, argument.ndim), [_address(argument), *argument.shape]
-        return f"{argument.dtype.str}{argument.ndim}A ", [_address(argument), *argument.shape, *argument.strides]
-    if isinstance(argument, tuple):
-        kinds, all_words = "(", []
-        for one in argument:
-            kind, words = told_of(one)
-            kinds += kind
-            all_words += words
-        return kinds + ")", all_words
-    if isinstance(argument, int | np.integer):
-        return "i ", [int(argument)]
-    raise TypeError(f"a kernel behind a door takes no {type(argument).__name__}")
-
-
-@cache
-def _kind(dtype: np.dtype[Any], dimensions: int) -> str:
-    return f"{dtype.str}{dimensions} "
-
-
-def _address(array: np.ndarray[Any, Any]) -> int:
-    """Where an array lies, 0 if it is empty. Its buffer tells in a third of the time, unless it is only to be read."""
-    if not array.size:
-        return 0
-    try:
-        return ctypes.addressof(_BYTE.from_buffer(array))
-    except (TypeError, ValueError):
-        address: int = array.__array_interface__["data"][0]
-        return address
+def _misfit(table: Any, results: Any, args: Any) -> int:
+    return MISFIT
 
 
 def is_sound(data: bytes, stamp: str) -> bool:
@@ -187,8 +197,8 @@ def is_sound(data: bytes, stamp: str) -> bool:
 
 
 def _packed(code: Code, stamp: str) -> bytes:
-    about = json.dumps({"entry": code.entry, "results": code.results, "parts": [len(part) for part in code.parts]})
-    body = head(stamp) + about.encode() + b"\n" + b"".join(code.parts)
+    about = {"entry": code.entry, "results": code.results, "needs": code.needs, "parts": [*map(len, code.parts)]}
+    body = head(stamp) + json.dumps(about).encode() + b"\n" + b"".join(code.parts)
     return hashlib.sha256(body).digest() + body
 
 
@@ -198,11 +208,11 @@ def _unpacked(data: bytes) -> Code:
     for size in about["parts"]:
         parts.append(rest[:size])
         rest = rest[size:]
-    return Code(about["entry"], about["results"], tuple(parts))
+    return Code(about["entry"], about["results"], tuple(about["needs"]), tuple(parts))
 
 
-def _loaded(code: Code) -> tuple[Callable[[int], int], Any]:
-    """The function that reads the words, and what must live as long as it."""
+def _loaded(code: Code) -> tuple[Run, Any]:
+    """The function that reads the objects, and what must live as long as it. Unfit if this process lacks a function."""
     from llvmlite import binding
 
     binding.initialize_native_target()
@@ -210,8 +220,15 @@ def _loaded(code: Code) -> tuple[Callable[[int], int], Any]:
     triple = binding.get_process_triple()
     machine = binding.Target.from_triple(triple).create_target_machine(jit=True)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(f'target triple = "{triple}"'), machine)
+    is_whole = all(part.startswith(_OBJECT_FILES) for part in code.parts)
+    if not is_whole or not all(map(binding.address_of_symbol, code.needs)):  # LLVM would end the process
+        raise Unfit
     for part in code.parts:
         engine.add_object_file(binding.ObjectFileRef.from_data(part))
     engine.finalize_object()
-    kind = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)  # other threads of Python wait, as with numba
-    return kind(engine.get_function_address(code.entry)), engine
+    address = engine.get_function_address(code.entry)
+    if not address:
+        raise Unfit
+    # other threads of Python wait, as with numba: the objects stay what they are
+    kind = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.py_object)
+    return kind(address), engine

@@ -1,8 +1,9 @@
-"""Compiles, by numba, what `kernel_door` calls: a kernel, and the function that hands it what a row of numbers says."""
+"""Compiles, by numba, what `kernel_door` calls: a kernel, and the function that hands it what objects hold."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FunctionType
 from typing import Any
 
@@ -11,23 +12,40 @@ import numpy as np
 from llvmlite import binding, ir
 from numba.core.compiler_lock import global_compiler_lock
 
-from dancetutor_cli.kernel_door import ARGUMENTS, INNER, RESULTS, Code
+from dancetutor_cli import kernel_arguments as places
+from dancetutor_cli.kernel_door import INNER, MISFIT, RESULTS, Code, Unfit
 from dancetutor_cli.kernels import uncounted
 
 _numba: Any = numba
 _types: Any = numba.types
 _lock: Any = global_compiler_lock
-_WORD = ir.IntType(64)
-_STATUS = ir.IntType(32)
+_NUMBER, _WORD = ir.IntType(32), ir.IntType(64)
 _HELPERS = ("NRT_", "numba", "Py")  # of numba's and Python's, which only numba's own loader knows
 _made: dict[FunctionType, Any] = {}
 
 
 def machine_code(function: FunctionType, args: tuple[Any, ...]) -> Code:
-    """Compile a kernel for arguments like these.
+    """Compile a kernel for arguments like these."""
+    with _inner_kernels(function):
+        return _code(function, tuple(_numba.typeof(_like(one)) for one in args))
 
-    The inner kernels that it calls are plain functions for everybody else: here they are what numba makes of them.
-    """
+
+def ordinary(function: FunctionType, args: tuple[Any, ...]) -> Callable[..., Any]:
+    """A kernel that numba itself calls; compiled for arguments like these, and for others when they come."""
+    kernel: Any = uncounted(function)
+
+    def call(*args: Any) -> Any:
+        with _inner_kernels(function):
+            return kernel(*args)
+
+    with _inner_kernels(function):
+        kernel.compile(tuple(_numba.typeof(_like(one)) for one in args))
+    return call
+
+
+@contextmanager
+def _inner_kernels(function: FunctionType) -> Iterator[None]:
+    """Inner kernels are plain functions for everybody else: meanwhile they are what numba makes of them."""
     for one, options in INNER.items():
         if one not in _made:
             _made[one] = uncounted(one, **options)
@@ -41,7 +59,7 @@ def machine_code(function: FunctionType, args: tuple[Any, ...]) -> Code:
     for space, name, value in replaced:
         space[name] = _made[value]
     try:
-        return _code(function, tuple(_numba.typeof(_like(one)) for one in args))
+        yield
     finally:
         for space, name, value in replaced:
             space[name] = value
@@ -54,7 +72,7 @@ def _like(argument: Any) -> Any:
             return np.empty((1,) * argument.ndim, argument.dtype)
         return np.empty((2,) * (argument.ndim + 1), argument.dtype)[..., 0]
     if isinstance(argument, tuple):
-        return type(argument)._make(map(_like, argument))  # type: ignore[attr-defined]
+        return places.remade(argument, map(_like, argument))
     return int(argument)
 
 
@@ -65,12 +83,14 @@ def _code(function: FunctionType, signature: tuple[Any, ...]) -> Code:
         made = kernel.overloads[signature]
         (_, _, (code, _)) = made.library.serialize_using_object_code()
     declared = [one.name for one in made.library._final_module.functions if one.is_declaration]
-    assert not any(name.startswith(_HELPERS) for name in declared), declared
+    needs = tuple(sorted(name for name in declared if not name.startswith("llvm.")))
+    if any(name.startswith(_HELPERS) for name in needs):
+        raise Unfit(needs)
     results = _count(made.signature.return_type)
     entry = f"door_{function.__name__}"
     door = _door(entry, made, signature)
     machine = made.library.codegen._tm
-    return Code(entry, results, (code, machine.emit_object(binding.parse_assembly(door))))
+    return Code(entry, results, needs, (code, machine.emit_object(binding.parse_assembly(door))))
 
 
 def _count(given: Any) -> int:
@@ -84,63 +104,96 @@ def _count(given: Any) -> int:
 
 
 def _door(entry: str, made: Any, signature: tuple[Any, ...]) -> str:
-    """The function that reads words and calls the kernel, in LLVM's language. It gives numba's status, 0 if all went
-    well; results go into the first words."""
+    """The function that reads the tuple of a call's objects and calls the kernel, in LLVM's language.
+
+    Its arguments: a table to compare with, words for the results, the tuple. It gives numba's status, 0 if all went
+    well, or MISFIT.
+    """
     context = made.target_context
     kernel_type = context.call_conv.get_function_type(made.fndesc.restype, made.fndesc.argtypes)
     module = ir.Module(entry)
     module.triple = binding.get_process_triple()
     kernel = ir.Function(module, kernel_type, made.fndesc.llvm_func_name)
-    door = ir.Function(module, ir.FunctionType(_STATUS, [_WORD.as_pointer()]), entry)
+    door = ir.Function(module, ir.FunctionType(_NUMBER, [_WORD] * 3), entry)
     builder = ir.IRBuilder(door.append_basic_block())
-    words = _Words(builder, door.args[0])
-    given = [words.place(0), words.place(RESULTS)]
-    words.at = ARGUMENTS
-    for one in signature:
-        given += _leaves(words, builder, one)
+    table, results, arguments = door.args
+    given = [results, builder.add(results, _WORD(8 * RESULTS))]
+    reader = _Reader(builder, table)
+    given += reader.leaves(_types.Tuple(signature), arguments)
     cast = []
     for value, wanted in zip(given, kernel_type.args, strict=True):
         is_pointer = isinstance(wanted, ir.PointerType)
         cast.append(builder.inttoptr(value, wanted) if is_pointer else value)
     builder.ret(builder.call(kernel, cast))
+    reader.end()
     return str(module)
 
 
-class _Words:
-    """Takes one word after the other."""
+class _Reader:
+    """Writes the code that takes objects apart, if they are what the table says."""
 
-    def __init__(self, builder: ir.IRBuilder, first: Any) -> None:
-        self._builder, self._first, self.at = builder, first, 0
+    def __init__(self, builder: ir.IRBuilder, table: Any) -> None:
+        self._builder, self._table, self._next = builder, table, places.COMMON
+        self._reader, self._array, self._number = (self._load(table, 8 * n) for n in range(places.COMMON))
+        self._misfit = builder.function.append_basic_block()
+        with builder.goto_entry_block():
+            self._overflow = builder.alloca(_NUMBER)
 
-    def next(self) -> Any:
-        """The next word."""
-        self.at += 1
-        return self._builder.load(self._builder.gep(self._first, [_WORD(self.at - 1)]))
+    def end(self) -> None:
+        """To be called last."""
+        self._builder.position_at_end(self._misfit)
+        self._builder.ret(_NUMBER(MISFIT))
 
-    def place(self, at: int) -> Any:
-        """The address of a word, as a number."""
-        return self._builder.ptrtoint(self._builder.gep(self._first, [_WORD(at)]), _WORD)
+    def leaves(self, kind: Any, at: Any) -> Iterator[Any]:
+        """What numba hands on for an object, as whole numbers."""
+        if isinstance(kind, _types.BaseTuple):
+            self._expect(self._load(at, places.TYPE), self._word())
+            self._expect(self._load(at, places.LENGTH), _WORD(len(kind)))
+            for n, one in enumerate(kind):
+                yield from self.leaves(one, self._load(at, places.ITEMS + 8 * n))
+        elif isinstance(kind, _types.Array):
+            yield from self._array_leaves(kind, at)
+        else:
+            self._expect(self._load(at, places.TYPE), self._number)
+            reads = ir.FunctionType(_WORD, [_WORD, _NUMBER.as_pointer()]).as_pointer()
+            value = self._builder.call(self._builder.inttoptr(self._reader, reads), [at, self._overflow])
+            self._expect(self._builder.load(self._overflow), _NUMBER(0))
+            yield value
 
+    def _array_leaves(self, kind: Any, at: Any) -> Iterator[Any]:
+        """What owns an array (nothing), how many items there are, how long each is, where they lie, shape, strides."""
+        builder, in_a_row = self._builder, kind.layout == "C"
+        self._expect(self._load(at, places.TYPE), self._array)
+        self._expect(self._load(at, places.DIMENSIONS, _NUMBER), _NUMBER(kind.ndim))
+        flags = builder.and_(self._load(at, places.FLAGS, _NUMBER), _NUMBER(places.IN_A_ROW | places.ALIGNED))
+        self._expect(flags, _NUMBER(places.ALIGNED | (places.IN_A_ROW if in_a_row else 0)))
+        numbers = self._load(self._load(at, places.NUMBERS), places.KIND)
+        self._expect(builder.and_(numbers, _WORD(places.KIND_MASK)), self._word())
+        shape_at = self._load(at, places.SHAPE)
+        shape = [self._load(shape_at, 8 * n) for n in range(kind.ndim)]
+        size = _WORD(np.dtype(str(kind.dtype)).itemsize)
+        items = _WORD(1)
+        for length in shape:
+            items = builder.mul(items, length)
+        if in_a_row:
+            strides = [size]
+            for length in reversed(shape[1:]):
+                strides.insert(0, builder.mul(strides[0], length))
+        else:
+            strides_at = self._load(at, places.STRIDES)
+            strides = [self._load(strides_at, 8 * n) for n in range(kind.ndim)]
+        yield from (_WORD(0), _WORD(0), items, size, self._load(at, places.DATA), *shape, *strides)
 
-def _leaves(words: _Words, builder: ir.IRBuilder, kind: Any) -> Iterator[Any]:
-    """What numba hands on for an argument, as whole numbers: of an array what owns it (nothing), how many items there
-    are and how long each is, where they lie, shape and strides."""
-    if isinstance(kind, _types.BaseTuple):
-        for one in kind:
-            yield from _leaves(words, builder, one)
-        return
-    if not isinstance(kind, _types.Array):
-        yield words.next()
-        return
-    size = _WORD(np.dtype(str(kind.dtype)).itemsize)
-    data, shape = words.next(), [words.next() for _ in range(kind.ndim)]
-    items = _WORD(1)
-    for length in shape:
-        items = builder.mul(items, length)
-    if kind.layout == "C":
-        strides = [size]
-        for length in reversed(shape[1:]):
-            strides.insert(0, builder.mul(strides[0], length))
-    else:
-        strides = [words.next() for _ in range(kind.ndim)]
-    yield from (_WORD(0), _WORD(0), items, size, data, *shape, *strides)
+    def _word(self) -> Any:
+        """The next word of the table."""
+        self._next += 1
+        return self._load(self._table, 8 * (self._next - 1))
+
+    def _load(self, at: Any, offset: int, kind: ir.IntType = _WORD) -> Any:
+        return self._builder.load(self._builder.inttoptr(self._builder.add(at, _WORD(offset)), kind.as_pointer()))
+
+    def _expect(self, found: Any, wanted: Any) -> None:
+        """Go on only if two numbers are the same."""
+        fits = self._builder.function.append_basic_block()
+        self._builder.cbranch(self._builder.icmp_signed("==", found, wanted), fits, self._misfit)
+        self._builder.position_at_end(fits)

@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import Any
 
 COMPILERS = ("numba", "llvmlite")
-_FORM = 5  # of what `kernels` writes, and of the options by which it compiles; count it up with either
+_FORM = 6  # of what `kernels` writes, and of the options by which it compiles; count it up with either
 LEVEL = "x86-64-v3"  # LLVM's name of the processor
 _ABILITIES = (
     *("avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf"),

@@ -1,7 +1,8 @@
-"""What a kernel behind a door is told of a call's arrays, and what is kept of it."""
+"""What a kernel behind a door sees of a call's arrays, what is kept of it, and what happens where it cannot be had."""
 
 from __future__ import annotations
 
+import pickle
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,9 +15,10 @@ import pytest
 from module_file import loaded
 from numpy.typing import NDArray
 
-from dancetutor_cli import kernel_door, kernel_folder, kernel_making, kernel_target
+from dancetutor_cli import kernel_arguments, kernel_door, kernel_folder, kernel_making, kernel_target
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.kernel_door import Door, told_of
+from dancetutor_cli.kernel_arguments import kinds_of
+from dancetutor_cli.kernel_door import Code, Door
 
 MODULE = """
 from dancetutor_cli.kernel_door import inner
@@ -74,7 +76,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def door(folder: Path, name: str = "sums", stamp: str = "ab" * 32) -> Door:
     """A door as a new process has it."""
-    return Door(getattr(loaded(folder.parent / "some_kernels.py"), name), (0,), lambda: stamp)
+    return Door(getattr(loaded(folder.parent / "some_kernels.py"), name), lambda: stamp)
 
 
 def test_a_kernel_sees_the_arrays_as_they_are(folder: Path, compiled: list[str]) -> None:
@@ -144,8 +146,120 @@ def test_an_exception_is_told_of(folder: Path) -> None:
 
 
 def test_what_a_kernel_does_not_take_is_refused() -> None:
-    with pytest.raises(TypeError, match="takes no float"):
-        told_of(0.5)
+    unaligned = np.zeros(17, dtype=np.uint8)[1:].view(np.float64)
+    for argument, what in ((0.5, "float"), (1 << 63, "int"), (np.array(["a"]), "arrays of <U1"), (unaligned, "arrays")):
+        with pytest.raises(TypeError, match=f"takes no {what}"):
+            kinds_of(argument)
+
+
+class Swapped(NamedTuple):
+    """The same by other names."""
+
+    marked: NDArray[Any]
+    cells: NDArray[np.bool_]
+
+
+class Own(np.ndarray[Any, Any]):
+    """A kind of array that machine code does not know."""
+
+
+def test_no_object_is_taken_for_what_it_is_not(folder: Path, compiled: list[str]) -> None:
+    sums, out = door(folder), np.zeros(4)
+    cells = np.arange(12, dtype=np.int32).reshape(4, 3)
+    marked = np.zeros(4, dtype=np.bool_)
+    for _ in range(2):  # after each kind of thing each other one
+        assert sums(Pair(cells, marked), 1, out) == (132, 4)
+        for other in (
+            cells.astype(np.int64),
+            cells.astype(np.float32).astype(np.int16),
+            cells[:, ::-1],
+            cells.T[:, :3],
+        ):
+            assert sums(Pair(other, marked), 1, out) == (2 * int(other.sum()), 4)
+        assert sums(Pair(cells[:0], marked), 1, out) == (0, 4)
+        assert sums(Pair(cells, marked), np.int8(-0), out) == (0, 4)
+        assert sums(Pair(cells, marked), True, out) == (132, 4)
+        assert sums(Pair(cells, marked), 1 << 40, out) == (132 << 40, 4)
+        assert sums(Pair(cells.view(Own), marked), 1, out) == (132, 4)
+        assert sums(Pair(pickle.loads(pickle.dumps(cells)), marked), 1, out) == (132, 4)  # has a dtype of its own
+        with pytest.raises(TypeError):
+            sums(Pair([1], marked), 1, out)
+    assert len(compiled) == 4  # those of each dtype, and of those with steps between
+    flat = np.zeros(6, dtype=np.int32)
+    with pytest.raises(DancetutorError, match="the kernel sums"):
+        door(folder)(Pair(flat, marked), 1, out)  # has one dimension: no kernel can be made of that
+    with pytest.raises(DancetutorError, match="the kernel sums"):
+        door(folder)(Swapped(cells, marked), 1, out)
+    with pytest.raises(DancetutorError, match="the kernel sums"):
+        door(folder)(Pair(cells, marked), 1)
+
+
+def test_a_number_keeps_its_place_while_an_array_grows(folder: Path) -> None:
+    enter, values = door(folder, "enter"), np.zeros(3)
+    enter(values)
+    values.resize(1 << 20, refcheck=False)
+    values[:] = 0
+    enter(values)
+    assert values[0] == 7
+
+
+def fails(*args: object) -> Any:
+    """What LLVM or numba may do on another system."""
+    raise RuntimeError("no such processor")
+
+
+def lacking(function: FunctionType, args: tuple[Any, ...]) -> Code:
+    """Machine code that calls what no process has."""
+    return Code("door_sums", 2, ("no_such_function",), (b"",))
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "instead"),
+    [
+        (kernel_making, "machine_code", fails),
+        (kernel_making, "machine_code", lacking),
+        (kernel_door, "_loaded", fails),
+        (kernel_door, "is_known", lambda: False),
+        (kernel_making, "_door", fails),
+        (kernel_making, "_door", lambda *_: "what LLVM does not understand"),
+    ],
+)
+@pytest.mark.parametrize("by_numba", [True, False])
+def test_where_no_door_can_be_made_the_kernel_runs_all_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, instead: Any, by_numba: bool
+) -> None:
+    monkeypatch.setattr(module, name, instead)
+    if not by_numba:
+        monkeypatch.setattr(kernel_making, "uncounted", fails)
+    sums, out = door(folder), np.zeros(2)
+    pair = Pair(np.arange(6, dtype=np.int32).reshape(2, 3), np.array([True, False]))
+    assert sums(pair, 3, out) == (2 * 15 * 3, 2)
+    assert out.tolist() == [1.5, 12.0]
+    assert sums(pair._replace(cells=pair.cells.astype(np.int8)), np.int64(1), out) == (30, 2)
+    assert (sums._ordinary is sums.function) is not by_numba
+    assert not list(folder.rglob("*.door"))
+    with pytest.raises(DancetutorError, match="the kernel sums raised"):
+        sums(pair, -1, out)
+
+
+def test_what_is_kept_but_cannot_be_loaded_is_made_again(folder: Path, compiled: list[str]) -> None:
+    values = np.zeros(3)
+    door(folder, "enter")(values)
+    (path,) = folder.rglob("*.door")
+    for n, (needs, part) in enumerate(((("no_such_function",), b""), ((), b"no machine code")), 2):
+        path.write_bytes(kernel_door._packed(Code("door_enter", 0, needs, (part,)), "ab" * 32))
+        for _ in range(2):  # and kept
+            values[0] = 0
+            door(folder, "enter")(values)
+            assert values[0] == 7 and compiled == ["enter"] * n
+
+
+def test_objects_are_known_only_if_they_are_as_machine_code_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert kernel_arguments.is_known()
+    for name in ("TYPE", "LENGTH", "ITEMS", "DATA", "DIMENSIONS", "NUMBERS", "FLAGS", "KIND"):
+        with monkeypatch.context() as moved:
+            moved.setattr(kernel_arguments, name, getattr(kernel_arguments, name) + 8)
+            assert not kernel_arguments.is_known.__wrapped__(), name
 
 
 def test_threads_do_not_disturb_each_other(folder: Path) -> None:

@@ -21,10 +21,6 @@ def uncounted(function: Any = None, **options: Any) -> Any:
     return inner(function, **options) if function else lambda later: inner(later, **options)
 
 
-def door(*lasting: int) -> Callable[[Any], Callable[..., Any]]:
-    """A kernel that Python calls; lasting : see `kernel_door.Door`."""
-
-    def made(function: Any) -> Callable[..., Any]:
-        return function if INTERPRETED else Door(function, lasting, source_stamp)
-
-    return made
+def door(function: Any) -> Callable[..., Any]:
+    """A kernel that Python calls."""
+    return function if INTERPRETED else Door(function, source_stamp)

@@ -100,7 +100,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
 
     own = FunctionType(solve.__code__, {**globals(), "find_way": _way_finder(rules_of_model)}, name)
     own.__qualname__ = name
-    return door(0, 2, 4, 5)(own)
+    return door(own)
 
 
 Solver = Callable[..., tuple[int, int]]

@@ -257,7 +257,7 @@ def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
     return np.int64(number)
 
 
-@door()
+@door
 def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
     """Enter the first `count` keys into an empty hash table of their numbers."""
     for number in range(count):
@@ -267,7 +267,7 @@ def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door()
+@door
 def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
     """The same for row patterns."""
     for number in range(count):
@@ -277,7 +277,7 @@ def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door()
+@door
 def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
     """The same for costs by term."""
     for number in range(count):
@@ -287,7 +287,7 @@ def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door()
+@door
 def fill_pairs(old, new):  # type: ignore[no-untyped-def]
     """Move all pairs into a larger empty table."""
     for i in range(len(old)):
