@@ -20,6 +20,7 @@ from dancetutor_cli.motion.bar import bar_of, holding
 from dancetutor_cli.motion.context import Context, context_of
 from dancetutor_cli.motion.footwork import plan_footwork
 from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.ik.arms import free_hands
 from dancetutor_cli.motion.ik.full_body import Poses, solve
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
@@ -173,6 +174,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
     rate = settings.sampling.work_rate
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
     body = settle(plan, grid, both_feet(plan.feet, grid, settings), context).trajectory
+    body = replace(body, hands=free_hands(plan, body, context))  # all keys ask for them, and each round of more keys
     at = key_times(plan, piece.fps, *piece.baked)
     keys = (at, *posed(plan, body, at, context))
     for _ in range(REFINEMENTS):
@@ -206,9 +208,10 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     dressed = Poses(poses.rotations.copy(), poses.root)
     look(dressed, body, at, context)
     add_layers(dressed, at, doing, context)
-    head = mass_of(skeleton, dressed) - mass_of(skeleton, poses)  # hardly changes as the body is moved
-    for _ in range(CORRECTIONS):
-        targets = moved(targets, goal - head - mass_of(skeleton, poses))
+    mass = mass_of(skeleton, poses)
+    head = mass_of(skeleton, dressed) - mass  # hardly changes as the body is moved
+    for k in range(CORRECTIONS):
+        targets = moved(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
         poses = solve(skeleton, targets, reach, 0.0)
     ease_ankles(skeleton, poses.rotations, feet)
     look(poses, body, at, context)

@@ -215,13 +215,13 @@ def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float,
     scale = 1.0 + np.abs(right).max()
     for done in range(most):
         dual, primal = _residuals(bands, right, limits, x, s, z)
-        mu = _total(s * z) / m
+        mu = float((s * z).sum()) / m  # no np.dot: it is BLAS, in which a Ctrl-C is fatal
         if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
             return x, True, done
         factor = _system(bands.copy(), limits, s, z)
         dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), np.zeros(m))
         ap, ad = _longest_step(s, ds), _longest_step(z, dz)
-        after = _total((s + ap * ds) * (z + ad * dz)) / m / mu
+        after = float(((s + ap * ds) * (z + ad * dz)).sum()) / m / mu
         centre = after * (after * after)
         dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), centre * mu - ds * dz)
         ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
@@ -231,8 +231,3 @@ def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float,
         s += ap * ds
         z += ad * dz
     return x, False, most
-
-
-def _total(values: Array) -> float:
-    """The sum, one after the other. No np.dot: it is BLAS, in which a Ctrl-C is fatal."""
-    return float(np.add.accumulate(values)[-1])

@@ -57,7 +57,7 @@ class Below:
 def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Below, context: Context) -> HandTargets:
     """Targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
     lean, upright = quat.swing_twist(torso.chest, UP)
-    hang, lag, held = (sample_path(p, body.times, at) for p in _free_hands(plan, body, context))
+    hang, lag, held = (sample_path(p, body.times, at) for p in body.hands or free_hands(plan, body, context))
     arms = context.settings.arms
     # in a deep bend the other arm goes some way with the chest, its hand to the knees
     first, last = np.radians((arms.bend_from, arms.bend_full))
@@ -111,7 +111,7 @@ def _on_her_own_pad(x: Array, context: Context) -> Array:
     return np.asarray(outward * ASIDE_SOFT * np.logaddexp(0.0, -inside / ASIDE_SOFT))
 
 
-def _free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
+def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
     """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
     Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of

@@ -46,6 +46,7 @@ class Trajectory:
     the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
+    hands : what `ik.arms.free_hands` says of it, if somebody has asked already
     """
 
     times: Array
@@ -62,6 +63,7 @@ class Trajectory:
     beat: Array
     sway: Array
     softened: tuple[str, ...] = ()
+    hands: tuple[Array, Array, Array] | None = None
 
 
 @dataclass(frozen=True, slots=True)
