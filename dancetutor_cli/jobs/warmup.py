@@ -70,12 +70,12 @@ def _draw(prepared: Prepared, quality: Quality) -> None:
 
     from dancetutor_cli.video.film import Film
     from dancetutor_cli.video.media.yuv import yuv420
-    from dancetutor_cli.video.overlay.blit import strip
+    from dancetutor_cli.video.overlay.blit import Run, strip
 
     look = replace(prepared.plan.look, quality=quality)
     film = Film(replace(prepared.plan, look=look))
     width, height = look.size
     for number in (0, 1):
         frame = film.frame(number)
-        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, (0, 8, 0))  # the body of a hold: none is seen here
+        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # the body of a hold: none is seen here
         yuv420(frame, np.empty(width * height * 3 // 2, dtype=np.uint8))
