@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run `dancetutor`; ends the process with 0, 1 (findings) or 2 (something could not be read or run)."""
+    """Run `dancetutor`; ends the process with an exit status of the README's table."""
     if sys.stderr is None:  # closed, as by `2>&-`
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
     if sys.stdout is None:
@@ -37,6 +37,7 @@ def _run(arguments: Sequence[str] | None) -> None:
     from dancetutor_cli.errors import DancetutorError
 
     sys.unraisablehook = _interrupt_again
+    output = sys.stdout
     try:
         status = cli.main(arguments, prog_name="dancetutor", standalone_mode=False)
         sys.stdout.flush()
@@ -52,9 +53,11 @@ def _run(arguments: Sequence[str] | None) -> None:
         _say(str(error))
         status = error.exit_status
     except BrokenPipeError:
-        # The reader of a pipe has gone (`| head`); nothing to say, and nobody to say it to.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = 141
+        status = _reader_gone()
+    except SystemExit:
+        if sys.stdout is output:
+            raise
+        status = _reader_gone()  # click has seen it, put another stream here and made 1 of it, which means findings
     except MemoryError:
         _say("out of memory")
         status = 2
@@ -63,8 +66,8 @@ def _run(arguments: Sequence[str] | None) -> None:
         _say(f"{where}{error.strerror or error}")
         status = 2
     except Exception as error:
-        if isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt):
-            _say("interrupted")  # the Ctrl-C fell into a kernel as it came back
+        if _is_interruption(error):
+            _say("interrupted")
             sys.exit(130)
         # A mistake of the program, not of the user: still one line, with the way to the whole story.
         if os.environ.get("DANCETUTOR_TRACEBACK"):
@@ -73,6 +76,19 @@ def _run(arguments: Sequence[str] | None) -> None:
         status = 2
     leave_garbage()
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _reader_gone() -> int:
+    """The reader of a pipe has gone (`| head`); nobody is left to be told. A shell makes this of SIGPIPE."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 141
+
+
+def _is_interruption(error: BaseException | None) -> bool:
+    """Whether a Ctrl-C fell into a kernel as it came back; Python then tells of a fault that came of it."""
+    if not isinstance(error, SystemError):
+        return isinstance(error, KeyboardInterrupt)
+    return _is_interruption(error.__cause__) or _is_interruption(error.__context__)
 
 
 def _say_what_it_can(stream: object) -> None:

@@ -128,12 +128,20 @@ def _leave(_number: int, _frame: object) -> None:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """A process started in here never hears of Ctrl-C: while it imports, it would print a traceback."""
+    """A process started in here never hears of Ctrl-C: while it imports, it would print a traceback.
+
+    Who starts it does, once it has left here.
+    """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    from multiprocessing import resource_tracker
+
+    # started with the first process, it would have this process hear of Ctrl-C again, and what is started after it
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     try:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
@@ -170,7 +178,7 @@ def _server(common: str) -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["dancetutor_cli.jobs.preload"])
     try:
-        with _uninterrupted(), _nothing_from_here(), _said(SHARED, common):
+        with _nothing_from_here(), _said(SHARED, common), _uninterrupted():
             forkserver.ensure_running()
     except OSError:  # it needs a place for a socket
         return None
@@ -244,7 +252,7 @@ class ProcessWorkers:
     def _started(self, context: Any, guard: contextlib.AbstractContextManager[None]) -> None:
         ours, theirs = context.Pipe()
         process = context.Process(target=_worker, args=(theirs, self.common), daemon=True)
-        with guard, _nothing_from_here():
+        with _nothing_from_here(), guard:
             process.start()
         theirs.close()
         self._workers.append(_Worker(process, ours))

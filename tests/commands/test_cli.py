@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.commands import COMMANDS
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.commands import COMMANDS, cli
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 DANCETUTOR = Path(sys.executable).with_name("dancetutor.exe" if os.name == "nt" else "dancetutor")
@@ -145,9 +146,63 @@ def test_ctrl_c_ends_a_render_and_leaves_nothing(tmp_path: Path) -> None:
     assert files_of(tmp_path) == {}
 
 
-@pytest.mark.skipif(os.name == "nt", reason="needs a pipe that closes early")
-def test_a_reader_that_leaves_early_is_no_error(tmp_path: Path) -> None:
-    command = f'"{DANCETUTOR}" analyze --format json "{SONG}" | head -c 10 >/dev/null; exit ${{PIPESTATUS[0]}}'
-    result = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)
-    assert "Traceback" not in result.stderr
-    assert "Exception" not in result.stderr
+@pytest.mark.skipif(os.name == "nt", reason="needs a pipe that nobody reads")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--help"],
+        ["doctor"],
+        ["analyze", "--explain", "all"],
+        ["analyze", "--format", "json", SONG],
+        ["analyze", SONG],
+        ["annotate", "--diff", SONG],
+    ],
+    ids=lambda arguments: " ".join(map(str, arguments[:2])),
+)
+def test_a_reader_that_leaves_early_is_no_error_and_no_finding(arguments: list[object], tmp_path: Path) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    command = [str(DANCETUTOR), *map(str, arguments)]
+    try:
+        result = subprocess.run(command, cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, text=True, timeout=240)
+    finally:
+        os.close(write)
+    assert (result.returncode, result.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("how", ["cause", "context", "twice"])
+def test_ctrl_c_within_a_kernel_is_an_interruption(
+    how: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As Python tells of it: a result with an exception set; through several kernels several times."""
+    fault = SystemError("CPUDispatcher(...) returned a result with an exception set")
+    if how == "cause":
+        fault.__cause__ = KeyboardInterrupt()
+    else:
+        fault.__context__ = KeyboardInterrupt()
+    if how == "twice":
+        outer = SystemError("<built-in function f> returned a result with an exception set")
+        outer.__cause__ = fault
+        fault = outer
+    assert interrupted_by(fault, monkeypatch, capsys) == (130, "dancetutor: interrupted\n")
+
+
+def test_another_fault_is_not(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    fault = SystemError("a result with an exception set")
+    fault.__cause__ = ValueError("x")
+    status, said = interrupted_by(fault, monkeypatch, capsys)
+    assert status == 2
+    assert "internal error: SystemError" in said
+
+
+def interrupted_by(
+    fault: Exception, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> tuple[object, str]:
+    def fail(*_: object, **__: object) -> None:
+        raise fault
+
+    monkeypatch.delenv("DANCETUTOR_TRACEBACK", raising=False)
+    monkeypatch.setattr(cli, "main", fail)
+    with pytest.raises(SystemExit) as stop:
+        main([])
+    return stop.value.code, capsys.readouterr().err

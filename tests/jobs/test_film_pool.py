@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -43,6 +44,11 @@ def die(report: Report, marker: Path | None) -> str:
             marker.touch()
         os._exit(9)
     return "survived"
+
+
+def hears(report: Report | None) -> bool:
+    """Whether Ctrl-C was let through to this process as it began."""
+    return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def has_imported(report: Report, name: str) -> bool:
@@ -143,6 +149,27 @@ def test_a_server_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch
         assert [done.result for done in workers.done()] == [2]
     finally:
         workers.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals to block")
+@pytest.mark.parametrize("common", ["", "hit"])
+def test_workers_and_their_server_hear_of_no_ctrl_c_from_their_start(tmp_path: Path, common: str) -> None:
+    """A Ctrl-C falls into what the server imports; the first process of a program was to hear of it."""
+    (tmp_path / "hit.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n", encoding="utf-8")
+    program = (
+        "import signal\n"
+        "from tests.jobs.test_film_pool import Task, hears, open_workers\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        f"workers = open_workers(2, lambda key, n: None, {common!r})\n"
+        "workers.submit(Task(1, hears))\n"
+        "workers.submit(Task(2, hears))\n"
+        "print(*[done.result for done in workers.done()], hears(None))\n"
+        "workers.close()\n"
+    )
+    path = os.pathsep.join([str(Path(__file__).parents[2]), str(tmp_path)])
+    command, env = [sys.executable, "-c", program], {**os.environ, "PYTHONPATH": path}
+    run = subprocess.run(command, capture_output=True, text=True, env=env, timeout=120)
+    assert (run.stdout, run.stderr) == ("False False True\n", "")
 
 
 @pytest.mark.parametrize("common", ["", COMMON])
