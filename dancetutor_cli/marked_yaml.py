@@ -79,6 +79,9 @@ def _parsed(content: bytes, path: Path) -> tuple[Any, dict[tuple[str | int, ...]
             return loader.construct_document(node), lines
         finally:
             loader.dispose()
+    except yaml.reader.ReaderError as error:  # bytes that are no text
+        line = content.count(b"\n", 0, error.position) + 1
+        raise FileError(path, f"not YAML: {error.reason}", line) from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or "not YAML"

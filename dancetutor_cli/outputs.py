@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from dancetutor_cli.errors import FileError, UsageError
+
+_DENIED = os.strerror(errno.EACCES)
 
 
 def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
@@ -19,6 +23,14 @@ def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():
         raise FileError(path, f"its folder '{path.parent}' does not exist; make it first")
+    if path.is_file() or not path.exists():  # a device or a pipe is written where it is
+        folder = (path.resolve() if path.is_symlink() else path).parent
+        if folder.is_dir() and not _can_be_written(folder):
+            raise FileError(path, f"its folder '{folder}' cannot be written: {_DENIED}")
+
+
+def _can_be_written(folder: Path) -> bool:
+    return os.access(folder, os.W_OK | os.X_OK)
 
 
 def one_of(names: Iterable[str]) -> str:
@@ -28,11 +40,16 @@ def one_of(names: Iterable[str]) -> str:
 
 
 def check_folder(path: Path) -> None:
-    """Raise if no folder can be here, because a file is in its place or above it; nothing is made."""
+    """Raise if no folder can be here or be filled: a file is in its place or above it, or nobody may write there.
+
+    Nothing is made.
+    """
     for one in (path, *path.parents):
         if one.exists():
             if not one.is_dir():
                 raise FileError(path, "is a file; give a folder" if one == path else f"'{one}' is a file, not a folder")
+            if not _can_be_written(one):
+                raise FileError(path, f"cannot be used as a folder: {_DENIED}")
             return
 
 

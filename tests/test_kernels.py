@@ -284,3 +284,17 @@ def test_a_kernel_is_compiled_once_for_all_numbers_that_stand_in_its_calls(tmp_p
     assert kernels_of.sums(np.arange(5.0)) == 0 + 1 + 10.0 + 2 * 3 + 7
     (signature,) = kernels_of.plus.signatures
     assert [str(one) for one in signature] == ["int64", "int64"]
+
+
+def test_doctor_counts_the_kernels_of_each_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package, mine = tmp_path / "package", tmp_path / "mine"
+    for folder in (package, mine):
+        folder.mkdir()
+    monkeypatch.setattr("dancetutor_cli.resources.PACKAGE", package)
+    monkeypatch.setattr(kernel_folder, "PACKAGE", package)
+    monkeypatch.setattr(kernel_folder, "kernel_folder", lambda: kernel_folder.KernelFolder(mine, True, ""))
+    for name in ("a.nbi", "b.nbi"):
+        (package / name).touch()
+    assert _cache().message == f"2 kernels compiled here, in {package}, new ones go into {mine}"
+    (mine / "c.nbi").touch()
+    assert _cache().message == f"1 kernel compiled here, in {mine}, 2 kernels compiled here, in {package}"

@@ -77,7 +77,7 @@ def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
     assert hits(source_of(package)) and mine(package) == []
     assert kernels.is_kept(loaded(source_of(package)).double)
     assert kernel_folder.came_compiled()
-    assert _cache().state == "ok" and _cache().message.startswith("1 kernels came compiled, ")
+    assert _cache().state == "ok" and _cache().message.startswith("1 kernel came compiled, ")
 
 
 @able

@@ -21,7 +21,7 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.records import into
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
@@ -135,7 +135,10 @@ def _pages(task: PageTask, folder: Path, jobs: int, quiet: bool) -> None:
     wanted, bad = page_jobs(task, folder)
     if not wanted and not bad:
         raise UsageError(f"{task.bake.path}: no chart here matches")
-    make_folder(folder)
+    if not wanted and [path for path, _ in bad] == [task.bake.path]:  # a folder without chart files, or a closed one
+        raise DancetutorError(bad[0][1])
+    if wanted:
+        make_folder(folder)
     outcomes = {}
     for number, one in enumerate(make_all(wanted, jobs), 1):
         outcomes[one.job.target] = one
@@ -144,9 +147,10 @@ def _pages(task: PageTask, folder: Path, jobs: int, quiet: bool) -> None:
             said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
             click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
     ordered = [outcomes[job.target] for job in wanted]
-    write_index(folder, ordered, task.bake.path.resolve().name)
+    if wanted:
+        write_index(folder, ordered, task.bake.path.resolve().name)
     failed = [(str(one.job.task.bake.path), one.job.entry.label, one.error) for one in ordered if one.error]
-    if not quiet:
+    if wanted and not quiet:
         made = len(ordered) - len(failed)
         click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")
     if failed or bad:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import click
 
 from dancetutor_cli.commands.film_options import film_request
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.files import encoded
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
@@ -43,7 +43,10 @@ def render_batch(
     films, unreadable, without = film_list(batch)
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches, so there is nothing to render")
-    make_folder(batch.folder)
+    if not films and [bad.path for bad in unreadable] == [path]:  # a folder without chart files, or a closed one
+        raise DancetutorError(unreadable[0].error)
+    if films:
+        make_folder(batch.folder)
     outcomes: list[FilmOutcome] = []
     jobs = options["jobs"] or default_jobs()
     with ExitStack() as stack:

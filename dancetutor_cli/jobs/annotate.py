@@ -13,6 +13,7 @@ from dancetutor_cli.errors import FileError, NoChartsError
 from dancetutor_cli.files import ChangedError, back_up, remove_leftovers, write_atomic
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint.presets import mismatch, preset_for
+from dancetutor_cli.outputs import make_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -249,7 +250,8 @@ class _Work:
         """Bring one change to the disk; with -o also what is the same as before, so that the copy is whole."""
         if self._in_place and not change.needed:
             return
-        change.path.parent.mkdir(parents=True, exist_ok=True)
+        if not change.path.parent.is_dir():
+            make_folder(change.path.parent)
         if self.order.backup and change.path.exists():
             back_up(change.path)
         if change.new is None:

@@ -116,18 +116,29 @@ def _cache() -> Check:
 
     folder, came = kernel_folder(), shipped_root()
     shipped = set(kernels_in(came))
-    count = len({path for root in (PACKAGE, folder.root or PACKAGE) for path in kernels_in(root)} - shipped)
+    kept_in = folder.root or PACKAGE
+    here = {kept_in: set(kernels_in(kept_in)) - shipped}
+    here.setdefault(PACKAGE, set(kernels_in(PACKAGE)) - shipped - here[kept_in])
     used = len(shipped) if came_compiled() else 0
-    found = [f"{used} kernels came compiled"] if used else []
-    found += [f"{count} kernels compiled here"] if count else [] if used else [_NOTHING]
-    message = f"{', '.join(found)}, {f'in {folder.root or PACKAGE}' if folder.kept else 'and none can be kept'}"
+    found = [f"{_kernels(used)} came compiled"] if used else []
+    found += [f"{_kernels(len(paths))} compiled here, in {place}" for place, paths in here.items() if paths]
+    found = found or [_NOTHING]
+    if not folder.kept:
+        found.append("and none can be kept")
+    elif not here[kept_in]:
+        found.append(f"new ones go into {kept_in}")
+    message = ", ".join(found)
     if shipped and not used:
         message = f"those of the package are for {_made_by(came)}: not used; {message}"
     if folder.fault:
         mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
         return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
-    there = bool(count or used)
+    there = bool(used or any(here.values()))
     return Check("numba cache", "ok" if there else "without", message, "" if there else "dancetutor warmup")
+
+
+def _kernels(count: int) -> str:
+    return f"{count} kernel{'' if count == 1 else 's'}"
 
 
 def _made_by(shipped: Path) -> str:

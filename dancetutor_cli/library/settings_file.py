@@ -27,8 +27,8 @@ class SettingError(Exception):
 
 
 def find_settings_file(start: Path) -> Path | None:
-    """The nearest dancetutor.yaml in the folder of `start` or above it."""
-    return next((Path(place) for place in _places(start) if os.path.isfile(place)), None)  # noqa: PTH113 (quicker)
+    """The nearest dancetutor.yaml in the folder of `start` or above it; whoever reads it says so if it is no file."""
+    return next((Path(place) for place in _places(start) if os.path.exists(place)), None)  # noqa: PTH110 (quicker)
 
 
 def check_not_a_link_out(path: Path) -> None:

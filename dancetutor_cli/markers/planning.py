@@ -163,7 +163,7 @@ def _tell_measures(plan: MarkerPlan, song: Song, chart: Chart, states: Sequence[
             text = text if len(found) > 1 else text.replace("have", "has", 1)
             plan.lacks.append(Lack(f"{chart.label}: {number} {text}", found[0].line))
     if found := by_state.get(State.IMPOSSIBLE):
-        plan.notes.append(
-            f"{song.path}:{found[0].line}: {chart.label}: {len(found)} measures begin on the line of their comma; "
-            "they are left alone"
-        )
+        single = len(found) == 1
+        text = "1 measure begins on the line of its" if single else f"{len(found)} measures begin on the line of their"
+        left = "it is" if single else "they are"
+        plan.notes.append(f"{song.path}:{found[0].line}: {chart.label}: {text} comma; {left} left alone")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from dancetutor_cli.jobs.result import FileResult
 
@@ -16,6 +17,7 @@ class Tally:
 
     fail_on : "error", "warning" or "never"; the least severity that fails the run
     exit_zero : findings do not fail the run whatever they are; unreadable files still do
+    folders : that gave no file, because none is in them or they cannot be read; they are unreadable, and no files
     page : lines about all files together, to stand above the summary
     """
 
@@ -24,6 +26,7 @@ class Tally:
     files: int = 0
     charts: int = 0
     unreadable: int = 0
+    folders: int = 0
     severities: Counter[str] = field(default_factory=Counter)
     rules: Counter[str] = field(default_factory=Counter)
     unselected: list[str] = field(default_factory=list)
@@ -32,7 +35,9 @@ class Tally:
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
-        self.files += 1
+        is_folder = result.error is not None and Path(result.path).is_dir()
+        self.folders += is_folder
+        self.files += not is_folder
         self.charts += len(result.charts)
         self.unreadable += result.error is not None
         self.unselected += result.unselected
@@ -65,7 +70,9 @@ class Tally:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
         found = [_plural(self.severities[name], name) for name in reversed(_RANK) if self.severities[name]]
         text = f"{_plural(self.files, 'file')}, {_plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
-        return text + (f"; {_plural(self.unreadable, 'file')} could not be read" if self.unreadable else "")
+        if files := self.unreadable - self.folders:
+            text += f"; {_plural(files, 'file')} could not be read"
+        return text + (f"; no file to read in {_plural(self.folders, 'folder')}" if self.folders else "")
 
 
 def _plural(count: int, noun: str) -> str:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -111,3 +114,71 @@ def test_a_batch_says_which_songs_have_no_such_chart(demo: Path, capsys: pytest.
     assert capsys.readouterr().err.splitlines()[-1] == "1 done, 1 song has no such chart"
     assert run("render", Path(), *options, "--shard", "2/2") in (0, 2)
     assert "no such chart" not in capsys.readouterr().err
+
+
+@pytest.fixture
+def closed(demo: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder that nobody may write into; simulated, as root may write everywhere."""
+    folder = Path("ro")
+    folder.mkdir()
+    real = os.access
+
+    def access(path: Any, mode: int, **options: Any) -> bool:
+        return not (Path(path).name == "ro" and mode & os.W_OK) and real(path, mode, **options)
+
+    monkeypatch.setattr(os, "access", access)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "name"),
+    [
+        ("animate", "-o", "ro/dance.glb"),
+        ("page", "-o", "ro/page.html"),
+        ("render", "-o", "ro/film.mp4"),
+        ("analyze", "--sheet", "ro/sheet.html"),
+        ("analyze", "--report-html", "ro/pack.html"),
+        ("analyze", "--update-baseline --baseline", "ro/known.json"),
+    ],
+)
+@pytest.mark.usefixtures("closed")
+def test_a_folder_that_is_closed_is_told_before_the_work(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str, name: str
+) -> None:
+    which = ONE if command != "analyze" else ()
+    assert run(command, demo, *which, *option.split(), name) == 2
+    said = capsys.readouterr()
+    assert said.out == "", "the work was done, and then there was no place for it"
+    lines = [line for line in said.err.splitlines() if line.startswith("dancetutor:")]
+    assert lines == [f"dancetutor: {Path(name)}: its folder 'ro' cannot be written: {os.strerror(errno.EACCES)}"]
+
+
+@pytest.mark.parametrize(("command", "option"), [("annotate", "-o"), ("render", "--frames"), ("page", "-o")])
+def test_a_folder_that_cannot_be_made_is_the_one_that_is_named(
+    demo: Path, closed: Path, capsys: pytest.CaptureFixture[str], command: str, option: str
+) -> None:
+    path = demo.parent if command == "page" else demo
+    assert run(command, path, *(() if command == "page" else ONE), option, closed / "out") == 2
+    denied = os.strerror(errno.EACCES)
+    assert capsys.readouterr().err.endswith(f"dancetutor: {closed / 'out'}: cannot be used as a folder: {denied}\n")
+
+
+@pytest.mark.parametrize("command", ["render", "page"])
+def test_a_folder_without_charts_is_one_line_and_makes_nothing(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    Path("empty").mkdir()
+    assert run(command, "empty", "-o", "out") == 2
+    said = capsys.readouterr()
+    lines = [line for line in said.err.splitlines() if "compil" not in line]
+    assert (said.out, lines) == ("", ["dancetutor: empty: no .sm or .ssc file in this folder or below it"])
+    assert not Path("out").exists()
+    (Path("empty") / "bad.sm").write_text("no tags")
+    assert run(command, "empty", "-o", "out") == 2
+    assert "bad.sm" in capsys.readouterr().err and not Path("out").exists()
+
+
+def test_a_folder_in_place_of_the_settings_is_told(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (demo.parent / "dancetutor.yaml").mkdir()
+    assert run("analyze", demo) == 2
+    assert "dancetutor.yaml: is a folder; it cannot be read as a file" in capsys.readouterr().err

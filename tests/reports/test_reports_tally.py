@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
 from dancetutor_cli.jobs.result import FileResult
@@ -52,3 +55,10 @@ def test_summary_counts() -> None:
     tally.add(result(error="x"))
     assert tally.summary() == "2 files, 0 charts: 1 error, 2 warnings; 1 file could not be read"
     assert Tally().summary() == "0 files, 0 charts: no findings"
+
+
+def test_a_folder_is_no_file(tmp_path: Path) -> None:
+    tally = Tally()
+    tally.add(replace(result(error="x"), path=str(tmp_path)))
+    assert tally.summary() == "0 files, 0 charts: no findings; no file to read in 1 folder"
+    assert tally.exit_status == 2
