@@ -70,10 +70,10 @@ class Engine:
         told : whether to tell what each row costs and what happens in it
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
-        found = self._found(n, c, margins=margins)
-        found = self._to_be_told(found) if told else found
-        self._run(arrays, found)
-        return found
+        found, at_once = self._found(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT
+        found = self._to_be_told(found) if at_once else found
+        self._run(arrays, found)  # of a long chart the nodes are gone before there is room for what it costs
+        return self.told(rows, found) if told and not at_once else found
 
     def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
         """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
@@ -184,8 +184,8 @@ class Engine:
             self._numbers.clear()
 
     def _room(self, n: int, c: int) -> RowStates:
-        wanted_nodes = n * (_NODES_A_ROW + c) + 2 * MOST_MOVES
-        return _nodes(n, self._node if wanted_nodes <= _NODES_KEPT else np.empty(wanted_nodes, dtype=np.int64))
+        wanted = _nodes_of(n, c)
+        return _nodes(n, self._node if wanted <= _NODES_KEPT else np.empty(wanted, dtype=np.int64))
 
     def _is_full(self) -> bool:
         counts = self.tables.counts
@@ -230,6 +230,11 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
         np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32), np.empty(rows.steps.shape[1], dtype=np.int64),
         rows.second,
     )  # fmt: skip
+
+
+def _nodes_of(rows: int, columns: int) -> int:
+    """How many words for nodes a chart is first given room for."""
+    return rows * (_NODES_A_ROW + columns) + 2 * MOST_MOVES
 
 
 def _nodes(rows: int, node: NDArray[np.int64]) -> RowStates:
