@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from dancetutor_cli.marked_yaml import MarkedYaml, read
+from dancetutor_cli.motion.arm_sections import ArmSettings, BarSettings, FingerSettings, HandSettings
 from dancetutor_cli.motion.foot_sections import (
     AsideSettings,
     HomeSettings,
@@ -18,14 +19,10 @@ from dancetutor_cli.motion.foot_sections import (
 )
 from dancetutor_cli.motion.forms import USUAL, form_file
 from dancetutor_cli.motion.sections import (
-    ArmSettings,
-    BarSettings,
     BodySettings,
-    FingerSettings,
     GlanceSettings,
     GrooveSettings,
     HairSettings,
-    HandSettings,
     InertiaSettings,
     KneeSettings,
     LayerSettings,

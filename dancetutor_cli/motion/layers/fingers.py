@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.motion.arm_sections import FingerSettings
 from dancetutor_cli.motion.bar import hold_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.arms import lately
 from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.motion.plan import Plan
-from dancetutor_cli.motion.sections import FingerSettings
 from dancetutor_cli.motion.trajectory.crouch import tempo_factor
 from dancetutor_cli.motion.trajectory.posture import Trajectory
 from dancetutor_cli.motion.waits import Waiting
