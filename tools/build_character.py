@@ -45,7 +45,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     if part.skin == "heat":
         normals = gradient(part.on, points) if part.on else normals
         out = skin.at(points, normals)
-        return _with_ankles(out, points) if part.ankles else _with_fingers(out, points)
+        return _with_fingers(_with_ankles(out, points) if part.ankles else out, points)
     if part.skin == "foot":
         toes = _smooth((points[:, 2] - 0.078) / 0.040)
         shin = _smooth((points[:, 1] - 0.072) / 0.090)
@@ -84,18 +84,21 @@ def _with_ankles(weights: Array, points: Array) -> Array:
 
 
 def _with_fingers(weights: Array, points: Array) -> Array:
-    """The left hand's fingers, all but the thumb, bend at the knuckles and at their middle joints."""
-    away = points - body.SHOULDER
-    along, aside = away @ body.ARM - body.WRIST_ALONG, away @ body.FRONT - body.WRIST_AHEAD
+    """Fingers, all but thumbs, bend at the knuckles and at their middle joints."""
     across = [row[1] for row in body.HAND[::-1]]
-    knuckle, middle = (np.interp(aside, across, at) for at in body.finger_joints())
-    no_thumb = _smooth((0.048 - aside) / 0.006)
-    finger = _smooth((along - knuckle + 0.010) / 0.020) * no_thumb * (points[:, 0] > 0)
-    tip = _smooth((along - middle + 0.007) / 0.014)
-    hand, first, second = (ORDER[f"l_{name}"] for name in ("radiocarpal", KNUCKLES, FINGERS))
-    whole = weights[:, hand].copy()
-    weights[:, hand] = whole * (1 - finger)
-    weights[:, first], weights[:, second] = whole * finger * (1 - tip), whole * finger * tip
+    for side, sign in (("l", 1.0), ("r", -1.0)):
+        hand, first, second = (ORDER[f"{side}_{name}"] for name in ("radiocarpal", KNUCKLES, FINGERS))
+        here = np.flatnonzero(weights[:, hand] > 0.0)
+        on_left = points[here] * [sign, 1.0, 1.0]
+        away = on_left - body.SHOULDER
+        along, aside = away @ body.ARM - body.WRIST_ALONG, away @ body.FRONT - body.WRIST_AHEAD
+        knuckle, middle = (np.interp(aside, across, at) for at in body.finger_joints())
+        no_thumb = _smooth(0.5 + (body.thumb()(on_left) - body.fingers()(on_left)) / 0.005)
+        finger = _smooth((along - knuckle + 0.010) / 0.020) * no_thumb
+        tip = _smooth((along - middle + 0.009) / 0.018)
+        whole = weights[here, hand].copy()
+        weights[here, hand] = whole * (1 - finger)
+        weights[here, first], weights[here, second] = whole * finger * (1 - tip), whole * finger * tip
     return weights
 
 

@@ -108,41 +108,50 @@ def leggings() -> Shape:
 
 
 # fingers, the first one first: knuckle along the hand and towards the thumb, lengths of the three bones, spread in
-# degrees, radius
+# degrees, radius. One joint bends all knuckles and one all middle joints: both are on a line square to none of them.
 HAND = (
-    (0.080, 0.0290, (0.037, 0.023, 0.018), 7, 0.0098),
-    (0.085, 0.0098, (0.042, 0.026, 0.019), 1.5, 0.0102),
-    (0.080, -0.0096, (0.038, 0.024, 0.018), -4, 0.0098),
-    (0.070, -0.0275, (0.029, 0.018, 0.016), -11, 0.0088),
+    (0.081, 0.0285, (0.0385, 0.023, 0.018), 3.5, 0.0100),
+    (0.083, 0.0098, (0.0405, 0.026, 0.019), 1, 0.0103),
+    (0.079, -0.0092, (0.0385, 0.024, 0.018), -2, 0.0099),
+    (0.073, -0.0270, (0.0345, 0.017, 0.015), -5, 0.0089),
 )
 WRIST_ALONG, WRIST_AHEAD = 0.492, 0.008  # from the shoulder
+THUMB = ((0.012, 0.022, 0.006), (0.038, 0.044, 0.014), (0.064, 0.053, 0.020), (0.089, 0.054, 0.023))
 
 
 def finger_joints() -> tuple[list[float], list[float]]:
     """How far along the hand knuckles and middle joints are, of the last finger first."""
-    return [along for along, *_ in HAND[::-1]], [along + 0.95 * bones[0] for along, _, bones, *_ in HAND[::-1]]
+    return [along for along, *_ in HAND[::-1]], [along + 0.98 * bones[0] for along, _, bones, *_ in HAND[::-1]]
 
 
-def hand() -> Shape:
-    """The left hand, slightly curled as a relaxed hand is; thumb to the front, palm to the thigh."""
-    wrist = WRIST_ALONG
-    palm: list[Shape] = []
-    fingers: list[Shape] = []
+def fingers() -> Shape:
+    """The left hand's four fingers, nearly straight and beside each other; what they do bends them."""
+    rows: list[Shape] = []
     for k, (along, aside, bones, spread, radius) in enumerate(HAND):
-        knuckle = on_arm(wrist + along, aside + 0.008, palm=-0.002)
-        palm.append(cone(on_arm(wrist - 0.005, aside * 0.45 + 0.008), knuckle, 0.0155, 0.0125))
-        points, bend = [knuckle], 14.0 + 4 * k
+        points, bend = [on_arm(WRIST_ALONG + along, aside + WRIST_AHEAD, palm=-0.002)], 6.0 + 3 * k
         for bone in bones:
             a, s = np.radians(bend), np.radians(spread)
             points.append(points[-1] + bone * (np.cos(a) * (np.cos(s) * ARM + np.sin(s) * FRONT) + np.sin(a) * PALM))
-            bend += 17 + 2 * k
-        fingers.append(tube(points, [radius * f for f in (1.06, 1.0, 0.94, 0.82)], steps=3))
-    thumb_at = [(0.012, 0.016, 0.006), (0.040, 0.044, 0.015), (0.066, 0.056, 0.021), (0.090, 0.062, 0.023)]
-    thumb = tube(
-        [on_arm(wrist + a, f + 0.006, palm=n) for a, f, n in thumb_at], [0.0165, 0.0142, 0.0112, 0.0085], steps=3
-    )
-    inner = cone(on_arm(wrist + 0.03, -0.012, palm=0.008), on_arm(wrist + 0.062, 0.010, palm=0.006), 0.012, 0.012)
-    whole = blend(0.010, blend(0.014, *palm, inner), blend(0.0015, *fingers), thumb)
+            bend += 13 + k
+        rows.append(tube(points, [radius * f for f in (1.06, 1.0, 0.94, 0.82)], steps=3))
+    return blend(0.0015, *rows)
+
+
+def thumb() -> Shape:
+    """The left thumb, at the side of the first finger, where it is at rest as well as on a loose fist."""
+    points = [on_arm(WRIST_ALONG + a, f + WRIST_AHEAD, palm=n) for a, f, n in THUMB]
+    return tube(points, [0.0165, 0.0142, 0.0115, 0.0090], steps=3)
+
+
+def hand() -> Shape:
+    """The left hand; thumb to the front, palm to the thigh."""
+    palm: list[Shape] = []
+    for along, aside, *_ in HAND:
+        knuckle = on_arm(WRIST_ALONG + along, aside + WRIST_AHEAD, palm=-0.002)
+        palm.append(cone(on_arm(WRIST_ALONG - 0.005, aside * 0.45 + WRIST_AHEAD), knuckle, 0.0155, 0.0125))
+    at = WRIST_ALONG
+    inner = cone(on_arm(at + 0.03, -0.012, palm=0.008), on_arm(at + 0.062, 0.010, palm=0.006), 0.012, 0.012)
+    whole = blend(0.010, blend(0.014, *palm, inner), fingers(), thumb())
     return near(whole, (0.46, 0.86, -0.06), (0.68, 1.07, 0.10))
 
 

@@ -114,11 +114,16 @@ def _on_left(p: Array) -> Array:
 
 
 def arm_mesh(size: Size) -> Lofted:
-    """The arm, its fingers lit and outlined as one hand: at publishing size each by itself is a speckle."""
+    """The arm, its hand lit and outlined as one: at publishing size each finger or tendon by itself is a speckle."""
     shape = body.arm()
     points, normals, triangles = surface(shape, (0.15, 0.84, -0.07), (0.67, 1.39, 0.09), 0.0032, size)
-    finger = 0.75 * np.clip((_along_arm(points) - 0.54) / 0.03, 0, 1)
-    return points, softer(normals, gradient(shape, points, 0.014), finger), triangles
+    along = _along_arm(points)
+    normals = softer(normals, gradient(shape, points, 0.030), 0.85 * np.clip((along - 0.47) / 0.03, 0, 1))
+    return (
+        points,
+        softer(normals, gradient(shape, points, 0.014), 0.6 * np.clip((along - 0.58) / 0.03, 0, 1)),
+        triangles,
+    )
 
 
 def face_mesh() -> Lofted:
@@ -238,7 +243,7 @@ def _sock() -> Callable[[], Lofted]:
 
 def mannequin_parts() -> list[Part]:
     """A plain figure that shows the pose: one skin with its joints marked, and the limbs' colours."""
-    fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0105, 0.0085], lambda p: np.abs(p[:, 0]))
+    fine = ramp([0.30, 0.50, 0.56, 0.62], [0.0215, 0.0150, 0.0095, 0.0078], lambda p: np.abs(p[:, 0]))
     make = of_shape(body.figure(), ((-0.68, 0.05, -0.18), (0.68, 1.76, 0.16)), 0.0055, fine_between_legs(fine))
     figure = Part("figure", make, "heat", 700, paint.figure, shade=0.0, ankles=True, socks=body.SOCKS)
     return [figure, *_limb_parts(surfaces()["shoe"])]

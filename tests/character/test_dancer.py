@@ -15,8 +15,10 @@ from dancetutor_cli.character import dressed, load_character, load_dancer
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.motion.layers.fingers import finger_axis
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import EYELID_CLOSING, dancer_skeleton
+from dancetutor_cli.rig.skeleton import EYELID_CLOSING, FINGERS, KNUCKLES, dancer_skeleton
+from dancetutor_cli.rig.soles import hand_direction
 from dancetutor_cli.video.scene.geometry import pack
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -151,6 +153,25 @@ def test_nothing_tears_or_collapses_at_120_degrees(
         if near.sum() > 20 and joint != "hip":
             reach = np.linalg.norm(moved[near] - centre, axis=1) / np.linalg.norm(mesh.positions[near] - centre, axis=1)
             assert np.median(reach) > 0.75, f"{mesh.name} is pinched at the {joint}"
+
+
+@pytest.mark.parametrize("side", ["l", "r"])
+def test_fingers_make_a_fist_without_a_thorn(character: Character, side: str) -> None:
+    """What stuck to the thumb's side and fingers that bent beside their own joints were claws."""
+    body = mesh_named(character, "body")
+    across = finger_axis(character.skeleton, side)
+    turns = {f"{side}_{name}": quat.from_axis_angle(across, np.asarray(np.radians(72))) for name in (KNUCKLES, FINGERS)}
+    moved = skinned(character, turns, body)
+    edges = np.unique(np.sort(body.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    hand = np.abs(body.positions[edges[:, 0], 0]) > 0.57
+    before, after = (np.linalg.norm(p[edges[hand, 0]] - p[edges[hand, 1]], axis=1) for p in (body.positions, moved))
+    assert hand.sum() > 500
+    assert (after - before).max() < 0.012
+    wrist = character.skeleton.rest[character.skeleton.index(f"{side}_radiocarpal")]
+    along = hand_direction(character.skeleton, side)
+    tips = ((body.positions - wrist) @ along > 0.15) & (body.positions[:, 0] * wrist[0] > 0.3)
+    assert tips.sum() > 20
+    assert ((moved[tips] - wrist) @ along).max() < 0.10, "finger tips come back to the palm"
 
 
 def test_eyes_and_lids_move_by_themselves() -> None:

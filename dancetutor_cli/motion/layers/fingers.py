@@ -22,6 +22,8 @@ from dancetutor_cli.rig.skeleton import FINGERS, KNUCKLES, Skeleton
 from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal
 
 Array = NDArray[np.float64]
+CLOSING = np.array([1.8, 0.8])  # a hand closes from the fingers' middle joints on, knuckles follow: else it is a claw
+SLANT = 0.14  # of the line of the knuckles: so much nearer to the wrist for each metre across the hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +66,7 @@ def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
     for side in (0, 1):
         behind = numbers.behind * (side != use.lead)
         wave = np.sin(2 * np.pi * (times / numbers.wander_time + behind))
-        curl = rest + numbers.wander * wave[:, None] + use.effort[:, None] * (fist - rest)
+        curl = rest + numbers.wander * wave[:, None] + np.clip(use.effort, 0.0, 1.0)[:, None] ** CLOSING * (fist - rest)
         for share, goal in ((use.loose, 0.3 * rest), (use.bar, bar), (use.floor, flat)):
             curl = curl + share[:, side, None] * (goal - curl)
         out[:, side] = curl
@@ -74,8 +76,18 @@ def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
 def add_fingers(skeleton: Skeleton, poses: Poses, bent: Array) -> None:
     """Bend the fingers by (f, 2, 2) as `curls` gives it, in place; nothing for a skeleton without them."""
     for k, side in enumerate(SIDES):
-        axis = np.cross(hand_direction(skeleton, side), palm_normal(skeleton, side))
+        axis = finger_axis(skeleton, side)
         for joint, name in enumerate((KNUCKLES, FINGERS)):
             if f"{side}_{name}" in skeleton.names:
                 j = skeleton.index(f"{side}_{name}")
                 poses.rotations[:, j] = quat.from_axis_angle(axis, bent[:, k, joint])
+
+
+def finger_axis(skeleton: Skeleton, side: str) -> Array:
+    """The unit vector in the rest pose about which fingers bend to the palm: along the knuckles, of which the little
+    finger's is nearest to the wrist; so its tip comes to the ball of the thumb."""
+    along = hand_direction(skeleton, side)
+    across = np.cross(along, palm_normal(skeleton, side))
+    sign = 1.0 if side == "l" else -1.0
+    axis = across - sign * SLANT * along
+    return np.asarray(axis / np.linalg.norm(axis))
