@@ -18,7 +18,8 @@ from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
 from dancetutor_cli.video.overlay.header import Header, WordsRoom
-from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
+from dancetutor_cli.video.overlay.highway import Highway, Score
+from dancetutor_cli.video.overlay.lanes import HighwayGeometry
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame

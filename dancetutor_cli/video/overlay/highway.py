@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -17,45 +16,16 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
+from dancetutor_cli.video.overlay.lanes import NUMBER_EDGE, HighwayGeometry
+from dancetutor_cli.video.overlay.marks import Marks
 from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
 from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
-NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045  # heights of the box beside it, and that three digits take with that
 TURNED = "she faces you: arrows turned with her"
-MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
-
-
-@dataclass(frozen=True, slots=True)
-class HighwayGeometry:
-    """Where the highway lies, in pixels: box (left, top, right, bottom); lane width; y of the receptors' middle.
-
-    directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
-    turned : she faces who looks on; the lanes stand the other way round, and `directions` are as they are seen then
-    tags : words stand beside the notes
-    """
-
-    box: tuple[int, int, int, int]
-    lane: float
-    receptor: float
-    directions: tuple[float | None, ...]
-    down: bool = False
-    turned: bool = False
-    tags: bool = True
-
-    def lane_of(self, column: int) -> int:
-        """Which lane from the left a column has."""
-        return len(self.directions) - 1 - column if self.turned else column
-
-    @property
-    def left(self) -> float:
-        """x of the first lane; where words stand, more room is left for them on the right than for measure numbers."""
-        spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
-        least = 0.2 * self.lane + NUMBER_ROOM * (self.box[3] - self.box[1])
-        return self.box[0] + (min(max(0.26 * spare, least), 0.5 * spare) if self.tags else 0.5 * spare)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +84,7 @@ class Highway:
         body = max(4, round(0.62 * size))
         self.bodies = {k: sprites.hold_body(body, c, k[0] == Kind.ROLL) for k, c in self._hold_colours()}
         self.tails = {k: sprites.hold_tail(body, c) for k, c in self._hold_colours()}
-        least = min(MARK_SHARE * (self.geometry.box[3] - self.geometry.box[1]), MARK_MOST * self.geometry.lane)
-        mark = max(6, round(max(style.mark * self.geometry.lane, least)))
-        self.marks = [sprites.marker(mark, limb, self.face) for limb in (0, 1, 2, 3, -1)]  # -1 is the last one
-        self._danced = bool((self.notes.limb >= 0).any())
-        self.mark_shade = sprites.shade(round(1.35 * mark))
+        self.marks = Marks(self.notes, self.geometry, style, self.face, self.by_time)
 
     def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
         """Sprites of the notes `which`, by direction and place of the colour; only what the chart has."""
@@ -213,13 +179,6 @@ class Highway:
         lines, size = fitted(text, size, room - sprites.FLAG_EDGE * size - 4, self.face)
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
-    def _behind(self, direction: float | None) -> tuple[float, float]:
-        """Where a marker stands on its arrow, pixels from the middle: on a diagonal it would hide which way that is."""
-        if direction is None or direction % 90 == 0:
-            return 0.0, 0.0
-        far = self.style.mark_aside * self.geometry.lane
-        return -far * math.sin(math.radians(direction)), far * math.cos(math.radians(direction))
-
     def _draw_turned(self, frame: Frame) -> None:
         """Say that the arrows stand the other way round, in the gap that notes do not come through."""
         geometry, plate = self.geometry, self._turned
@@ -240,17 +199,13 @@ class Highway:
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
         for column, direction in enumerate(self.geometry.directions):
-            x, y = self._corner(column, self.geometry.receptor, self.size)
+            x, y = self.geometry.corner(column, self.geometry.receptor, self.size)
             blit(frame, self.receptors[direction], x, y, Ink(0.95, pulse), self._rows)
             light, limb = self.lights.at(column, second)
             if light > 0:
                 glow = self.glows[direction, limb if limb >= 0 else 4]
-                gx, gy = self._corner(column, self.geometry.receptor, glow.shape[0])
+                gx, gy = self.geometry.corner(column, self.geometry.receptor, glow.shape[0])
                 blit(frame, glow, gx, gy, light, self._rows)
-
-    def _corner(self, column: int, y: float, size: float) -> tuple[float, float]:
-        lane = self.geometry.lane_of(column)
-        return self.geometry.left + (lane + 0.5) * self.geometry.lane - size / 2, y - size / 2
 
     def _draw_notes(self, frame: Frame, now: _Now) -> None:
         notes, second = self.notes, now.second
@@ -266,14 +221,18 @@ class Highway:
         holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
         for i in shown[holds]:
             self._draw_hold(frame, int(i), self.geometry.receptor if held[i] else y[i], y[i], tail[i], bool(held[i]))
+        heads = np.where(held & (notes.kind != Kind.MINE), self.geometry.receptor, y)
+        places = self.marks.places(now.spacing)
         for i in shown[::-1]:  # the nearest note on top
-            self._draw_head(frame, int(i), self.geometry.receptor if held[i] and notes.kind[i] != Kind.MINE else y[i])
+            self._draw_head(frame, int(i), heads[i])
+        for i in shown[::-1]:  # no arrow covers a mark
+            self.marks.draw(frame, int(i), heads[i], places)
 
     def _draw_hold(self, frame: Frame, i: int, head: float, phase: float, tail: float, active: bool) -> None:
         kind = Kind(int(self.notes.kind[i]))
         whose = int(self.notes.player[i])
         tile, end = self.bodies[kind, whose], self.tails[kind, whose]
-        x, _ = self._corner(int(self.notes.column[i]), 0, tile.shape[1])
+        x, _ = self.geometry.corner(int(self.notes.column[i]), 0, tile.shape[1])
         opacity = 1.0 if active else 0.78
         upper, lower = min(head, tail), max(head, tail)
         strip(frame, tile, x, Run(upper, lower, phase), opacity, self._rows)
@@ -292,13 +251,5 @@ class Highway:
             sprite = self.fakes[direction]
         else:
             sprite = (self.lifts if kind == Kind.LIFT else self.arrows)[direction, q]
-        x, top = self._corner(column, y, self.size)
+        x, top = self.geometry.corner(column, y, self.size)
         blit(frame, sprite, x, top, 1.0 if notes.judged[i] else 0.55, self._rows)
-        limb = int(notes.limb[i])
-        stepped = notes.judged[i] and kind not in (Kind.MINE, Kind.FAKE)
-        if stepped and (limb >= 0 or self._danced):
-            aside, below = self._behind(direction)
-            for mark in (self.mark_shade, self.marks[max(limb, -1)]):
-                mx, my = self._corner(column, y, mark.shape[0])
-                mx, my = mx + aside, my + below
-                blit(frame, mark, mx, my, 1.0, self._rows)

@@ -48,6 +48,7 @@ class HighwayStyle:
     arrow: float
     mark: float
     mark_aside: float
+    mark_diagonal: float
     flash_seconds: float
     panel_seconds: float
     callouts: dict[str, str]

@@ -1,4 +1,4 @@
-"""What is read on a phone: free zones, sizes of pads, badges beside an arrow's tip, arrows that turn with her."""
+"""What is read on a phone: free zones, sizes of pads, words, arrows that turn with her."""
 
 from __future__ import annotations
 
@@ -18,11 +18,9 @@ from dancetutor_cli.video.media.film_formats import FORMATS
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.diagram import DiagramRows, NextRows, PadView
-from dancetutor_cli.video.overlay.highway import Highway, HighwayGeometry, Score
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.plan import turned
 from dancetutor_cli.video.scene.scene import Scene
-from dancetutor_cli.video.scroll import parse_scroll
 
 FACE = Typeface()
 CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
@@ -134,35 +132,6 @@ def test_a_gif_is_at_least_640_pixels_wide() -> None:
     assert min(FORMATS[name].side or 0 for name in ("gif", "webp")) >= 640
 
 
-@pytest.mark.parametrize("direction", [45.0, 135.0, 225.0, 315.0])
-def test_a_badge_leaves_the_tip_of_a_diagonal_arrow_free(direction: float) -> None:
-    """Of the arrow's half towards which it points, at least two thirds are to be seen beside the badge."""
-    plan = film_plan(np.array([1.0]))
-    geometry = HighwayGeometry((0, 0, 100, 100), 80.0, 50.0, (direction,))
-    alone = np.zeros(1, np.int16)
-    score = Score(replace(plan.notes, column=alone), replace(plan.presses, column=alone), plan.lines)
-    highway = Highway(score, geometry, parse_scroll("M300"), 120.0, FACE)
-    alone = np.zeros((100, 100), dtype=bool)
-    arrow = sprites.arrow(highway.size, direction, (200, 60, 60))
-    top = round(50 - highway.size / 2)
-    left = round(geometry.left + 40 - highway.size / 2)
-    alone[top : top + highway.size, left : left + highway.size] = arrow[..., 3] > 128
-    frame = np.zeros((100, 100, 3), dtype=np.uint8)
-    highway._draw_head(frame, 0, 50.0)
-    mark = highway.marks[0]
-    aside, below = highway._behind(direction)
-    y, x = np.mgrid[:100, :100] + 0.5
-    middle = geometry.left + 40
-    badge = np.hypot(x - middle - aside, y - 50 - below) < mark.shape[0] / 2
-    a = np.radians(direction)
-    ahead = (x - middle) * np.sin(a) - (y - 50) * np.cos(a) > 0
-    assert (alone & ahead & ~badge).sum() > 0.66 * (alone & ahead).sum()
-    tail = (y - 50) * np.cos(a) - (x - middle) * np.sin(a) > 0.26 * highway.size
-    assert tail.any()
-    assert not (badge & tail).any()  # the tail's end is seen whole, no crumbs of it
-    assert frame[badge].any()
-
-
 @pytest.mark.parametrize("camera", ["back", "front", "front-high"])
 @pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single"])
 def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: str, steps: str) -> None:
@@ -184,7 +153,7 @@ def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: 
         at = np.asarray(pad.panels[column]) - pad.centre
         middle = np.array([-at[0], 0.0, at[1]]) * 0.28
         places.append(view.project(middle[None], size)[0, 0])
-        lanes.append(film.highway._corner(column, 0.0, 0.0)[0])
+        lanes.append(film.highway.geometry.corner(column, 0.0, 0.0)[0])
         way = np.asarray(pad.arrows[column], dtype=float)
         if not way.any():
             continue
