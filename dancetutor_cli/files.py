@@ -57,7 +57,7 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
     """
     target = _target(path)
     old = _status(path, target)
-    with _explained(path), _locked_temporary(path, target) as (temporary, file):
+    with _explained(path, old is not None), _locked_temporary(path, target) as (temporary, file):
         if old is not None:
             _keep_owner_and_mode(path, target, file.fileno(), old)
         if callable(data):
@@ -160,14 +160,15 @@ def _status(path: Path, target: Path) -> os.stat_result | None:
 
 
 @contextlib.contextmanager
-def _explained(path: Path) -> Iterator[None]:
-    """Turn what the system says into one line about the file that was meant."""
+def _explained(path: Path, is_there: bool) -> Iterator[None]:
+    """Turn what the system says into one line about the file that was meant, and about what is there of it."""
+    unchanged = "; the old file is unchanged" if is_there else ""
     try:
         yield
     except PermissionError as error:
         raise FileError(path, f"cannot be written: {error.strerror} (is its folder read-only?)") from error
     except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}; the old file is unchanged") from error
+        raise FileError(path, f"cannot be written: {error.strerror or error}{unchanged}") from error
 
 
 @contextlib.contextmanager

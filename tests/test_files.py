@@ -242,6 +242,16 @@ def test_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert names(tmp_path) == ["a.sm"]
 
 
+def test_a_full_disk_has_no_old_file_to_speak_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    with pytest.raises(FileError, match=r"cannot be written: No space left on device$"):
+        write_atomic(tmp_path / "a.sm", b"new")
+    assert names(tmp_path) == []
+
+
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Path:
     if not ROOT or not shutil.which("mount"):

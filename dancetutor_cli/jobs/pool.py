@@ -20,7 +20,9 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
 from dancetutor_cli.errors import DancetutorError, UnavailableError
+from dancetutor_cli.interruption import is_interruption
 from dancetutor_cli.startup import collect_seldom, leave_garbage
+from dancetutor_cli.streams import told
 
 Report = Callable[[int], None]
 SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
@@ -82,19 +84,27 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
 
 
 def attempt(task: Task, report: Report) -> Finished:
-    """Do a piece of work; whatever it raises becomes an error that can be sent between processes."""
+    """Do a piece of work; whatever it raises becomes an error that can be sent between processes.
+
+    KeyboardInterrupt if it failed by a Ctrl-C in the middle of it.
+    """
     try:
         return Finished(task.key, task.function(report, *task.arguments))
-    except DancetutorError as error:
-        return Finished(task.key, error=error)
-    except MemoryError:
-        return Finished(task.key, error=UnavailableError("out of memory; try fewer --jobs or a smaller --size"))
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        return Finished(task.key, error=UnavailableError(f"{where}{error.strerror or error}"))
     except Exception as error:
-        said = (str(error).strip().splitlines() or [""])[-1][:300]
-        return Finished(task.key, error=WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}"))
+        if is_interruption(error):
+            raise KeyboardInterrupt from error
+        return Finished(task.key, error=_sendable(error))
+
+
+def _sendable(error: Exception) -> DancetutorError:
+    if isinstance(error, DancetutorError):
+        return error
+    if isinstance(error, MemoryError):
+        return UnavailableError("out of memory; try fewer --jobs or a smaller --size")
+    if isinstance(error, OSError):
+        return UnavailableError(told(error))
+    said = (str(error).strip().splitlines() or [""])[-1][:300]
+    return WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}")
 
 
 class SerialWorkers:

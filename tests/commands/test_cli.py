@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.__main__ import main
-from dancetutor_cli.commands import COMMANDS, cli
+from dancetutor_cli.commands import COMMANDS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 DANCETUTOR = Path(sys.executable).with_name("dancetutor.exe" if os.name == "nt" else "dancetutor")
@@ -168,41 +167,3 @@ def test_a_reader_that_leaves_early_is_no_error_and_no_finding(arguments: list[o
     finally:
         os.close(write)
     assert (result.returncode, result.stderr) == (141, "")
-
-
-@pytest.mark.parametrize("how", ["cause", "context", "twice"])
-def test_ctrl_c_within_a_kernel_is_an_interruption(
-    how: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """As Python tells of it: a result with an exception set; through several kernels several times."""
-    fault = SystemError("CPUDispatcher(...) returned a result with an exception set")
-    if how == "cause":
-        fault.__cause__ = KeyboardInterrupt()
-    else:
-        fault.__context__ = KeyboardInterrupt()
-    if how == "twice":
-        outer = SystemError("<built-in function f> returned a result with an exception set")
-        outer.__cause__ = fault
-        fault = outer
-    assert interrupted_by(fault, monkeypatch, capsys) == (130, "dancetutor: interrupted\n")
-
-
-def test_another_fault_is_not(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    fault = SystemError("a result with an exception set")
-    fault.__cause__ = ValueError("x")
-    status, said = interrupted_by(fault, monkeypatch, capsys)
-    assert status == 2
-    assert "internal error: SystemError" in said
-
-
-def interrupted_by(
-    fault: Exception, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> tuple[object, str]:
-    def fail(*_: object, **__: object) -> None:
-        raise fault
-
-    monkeypatch.delenv("DANCETUTOR_TRACEBACK", raising=False)
-    monkeypatch.setattr(cli, "main", fail)
-    with pytest.raises(SystemExit) as stop:
-        main([])
-    return stop.value.code, capsys.readouterr().err

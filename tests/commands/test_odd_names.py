@@ -62,19 +62,46 @@ def test_a_name_that_is_no_text_has_a_sidecar_and_a_baseline_that_are_read_back(
     assert run("analyze", tmp_path, "--baseline", known).returncode == 0
 
 
+OUTPUTS = ["--help", "doctor", "analyze x.sm", "analyze --format json x.sm", "analyze --format csv x.sm",
+           "analyze --format sarif x.sm", "annotate x.sm", "annotate --diff x.sm"]  # fmt: skip
+
+
+def run_in_shell(command: str, how: str, cwd: Path, **more: str) -> subprocess.CompletedProcess[str]:
+    line = ["sh", "-c", f"{sys.executable} -m dancetutor_cli {command} {how}"]
+    return subprocess.run(line, cwd=cwd, capture_output=True, text=True, timeout=120, env={**os.environ, **more})
+
+
 @pytest.mark.skipif(os.name == "nt", reason="no /dev there")
-@pytest.mark.parametrize("command", ["--help", "analyze x.sm", "analyze --format json x.sm", "annotate x.sm"])
-def test_a_closed_or_full_output_is_one_line(command: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("command", ["--help", "analyze --format json x.sm"])
+def test_a_closed_output_is_one_line(command: str, tmp_path: Path) -> None:
     (tmp_path / "x.sm").write_text(SONG)
-    for how, said in ((">&-", "standard output is closed"), (">/dev/full", "No space left")):
-        if how == ">/dev/full" and not Path("/dev/full").exists():
-            continue
-        ran = subprocess.run(
-            ["sh", "-c", f"{sys.executable} -m dancetutor_cli {command} {how}"],
-            cwd=tmp_path, capture_output=True, text=True, timeout=120,
-        )  # fmt: skip
-        assert ran.returncode == 2 and said in ran.stderr.splitlines()[-1], ran.stderr
-        assert "internal error" not in ran.stderr and "Traceback" not in ran.stderr
+    ran = run_in_shell(command, ">&-", tmp_path)
+    said = "dancetutor: standard output is closed; send it to a file, or to /dev/null\n"
+    assert (ran.returncode, ran.stderr) == (2, said)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full there")
+@pytest.mark.parametrize("command", OUTPUTS)
+def test_a_full_output_is_one_line_that_names_it(command: str, tmp_path: Path) -> None:
+    (tmp_path / "x.sm").write_text(SONG)
+    said = (
+        "dancetutor: standard output: No space left on device; what was written is cut short: make room, or send it "
+        "elsewhere"
+    )
+    for unbuffered in ("", "1") if command == "--help" else ("",):
+        ran = run_in_shell(command, ">/dev/full", tmp_path, PYTHONUNBUFFERED=unbuffered)
+        assert (ran.returncode, ran.stderr.splitlines()) == (2, [said]), ran.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full there")
+def test_where_errors_cannot_be_told_the_run_goes_on(tmp_path: Path) -> None:
+    """A traceback that nobody reads made 1 of it, which means findings."""
+    (tmp_path / "x.sm").write_text(SONG)
+    statuses = {"analyze --exit-zero x.sm": 0, "analyze nothing.sm": 2, "analyze --nothing": 2}
+    for command, status in statuses.items():
+        ran = run_in_shell(command, "2>/dev/full", tmp_path)
+        assert ran.returncode == status, command
+        assert ("1 file" in ran.stdout) == (command != "analyze --nothing")
 
 
 def test_hours_of_motion_are_asked_about(tmp_path: Path) -> None:
