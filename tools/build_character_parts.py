@@ -65,7 +65,15 @@ def leggings_mesh() -> Lofted:
     x, y, z = (points - [0, 0.810, 0]).T
     fold = np.exp(-((x / 0.055) ** 4) - (y / 0.055) ** 4) * np.clip(0.3 + z / 0.03, 0, 1)
     level = np.stack([1 - 0.5 * fold, 1 - fold * (normals[:, 1] < 0), np.ones_like(fold)], axis=1)
-    return points, unit(normals * level), triangles
+    return points, calm_hips(points, unit(normals * level)), triangles
+
+
+def calm_hips(points: Array, normals: Array) -> Array:
+    """Normals of the leggings' upper part that look up no more at one height than at another: no patches of light on
+    belly and hips."""
+    level = normals.copy()
+    level[:, 1] = 0.10 + 0.15 * normals[:, 1]
+    return softer(normals, unit(level), 0.9 * np.interp(points[:, 1], [0.70, 0.82], [0.0, 1.0]))
 
 
 def fine_between_legs(size: Size) -> Size:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -14,7 +15,9 @@ from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.scene.textures import Skins, density, skins_of
 
 F32 = NDArray[np.float32]
-FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
+FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
+LEGS = ("HumanoidRoot", *(f"{side}_{part}" for side in "lr" for part in ("hip", "knee")), *FEET)
+ABOVE = 4.0  # metres: more than she ever has between herself and the light
 OWN, SHARED = (
     0.5,
     0.2,
@@ -31,6 +34,8 @@ class Packed:
     triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
     material : int32 (v,), number of the mesh, whose texture is in `skins`
     density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
+    above : float32 (v,), metres nearer to the light at which a vertex asks for her own shadow: below the waist it is so
+    far that there is none, for a hand's shadow on a thigh is seen as a stain
     patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
     """
 
@@ -43,6 +48,7 @@ class Packed:
     triangles: NDArray[np.int32]
     feet: int
     material: NDArray[np.int32]
+    above: F32
     patch: NDArray[np.int32]
     density: F32
     skins: Skins
@@ -87,6 +93,7 @@ def _packed(character: Character) -> Packed:
         triangles=triangles,
         feet=int(of_feet.sum()),
         material=material,
+        above=(ABOVE * _share(character, joints, weights, LEGS)).astype(np.float32),
         patch=_patches(triangles, len(positions)),
         density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
         skins=skins,
@@ -104,12 +111,17 @@ def _feet(
 
     What goes with the shin in part, as the rim of a high shoe, would leave a dark hole if it were cut off.
     """
-    names = character.skeleton.names
-    ours = [names.index(name) for side in "lr" for part in FOOT if (name := f"{side}_{part}") in names]
-    share = (weights * np.isin(joints, ours)).sum(axis=1)
+    share = _share(character, joints, weights, FEET)
     piece = _pieces(place[triangles], int(place.max()) + 1)[place]
     mean = np.bincount(piece, share) / np.maximum(np.bincount(piece), 1)
     return np.asarray((share > OWN) | (mean[piece] > SHARED))
+
+
+def _share(character: Character, joints: NDArray[np.int32], weights: F32, wanted: Iterable[str]) -> F32:
+    """How much (v,) of each vertex the wanted joints move, 0 to 1."""
+    names = character.skeleton.names
+    ours = [names.index(name) for name in wanted if name in names]
+    return np.asarray((weights * np.isin(joints, ours)).sum(axis=1))
 
 
 def _places(positions: F32, material: NDArray[np.int32]) -> NDArray[np.intp]:

@@ -13,11 +13,13 @@ import pytest
 import renderers_scene as rs
 from PIL import Image, ImageDraw
 
+from dancetutor_cli.character import load_dancer
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.motion.swing.panels import panels_on_ground
 from dancetutor_cli.video.choices import QUALITIES
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import with_pan_range
+from dancetutor_cli.video.scene.geometry import pack
 from dancetutor_cli.video.scene.scene import SOLE_RADIUS, foot_marks, hand_marks
 
 SIZE = (320, 180)
@@ -173,6 +175,15 @@ def test_a_lit_panel_stays_lit_under_her_shadow(scene):
     shaded = [cast[r, c, 0] / bare[r, c, 0] for c, r in lit if 8 < abs(cast[r, c] - bare[r, c]).sum() < 150]
     assert len(shaded) > 5, "her shadow lies on a lit panel"
     assert np.median(shaded) > 0.8
+
+
+def test_no_shadow_of_her_own_lies_on_her_legs():
+    """Of a hand before a thigh it was a stain on the trousers; face and arms keep theirs."""
+    dancer = load_dancer()
+    mesh = pack(dancer)
+    height, side = mesh.positions[:, 1], np.abs(mesh.positions[:, 0])
+    assert mesh.above[height < 0.85].min() > 2.0, "nothing of her is so far between her legs and the light"
+    assert mesh.above[(height > 1.15) | (side > 0.25)].max() < 0.01
 
 
 def test_a_cast_shadow_from_good_on(scene):

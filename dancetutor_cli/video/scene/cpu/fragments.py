@@ -46,6 +46,7 @@ class Surface(NamedTuple):
     """What does not change of the triangles' look; see `geometry.Packed` and `textures.Skins.flat`."""
 
     uv: F32
+    above: F32
     material: NDArray[np.int32]
     patch: NDArray[np.int32]
     density: F32

@@ -60,7 +60,7 @@ class CpuRenderer:
         self._mesh = pack(scene.character)
         mesh = self._mesh
         self._bound = Bound(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights)
-        self._surface = Surface(mesh.uv, mesh.material, mesh.patch, mesh.density, *mesh.skins.flat())
+        self._surface = Surface(mesh.uv, mesh.above, mesh.material, mesh.patch, mesh.density, *mesh.skins.flat())
         self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
         self._world, self._vertex = np.empty((count, 9)), np.zeros((count, 16), np.float32)

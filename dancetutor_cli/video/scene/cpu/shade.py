@@ -76,7 +76,7 @@ def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, o
 
     world (v, 9), points (v, 3) from `raster`; cast : `prepare.Cast`
     """
-    uv, material = surface.uv, surface.material
+    uv, above, material = surface.uv, surface.above, surface.material
     axes, origin, scale = cast.axes, cast.origin, cast.scale
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
@@ -91,7 +91,7 @@ def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, o
         z += nz * OFF_SURFACE[0] + axes[2, 2] * OFF_SURFACE[1]
         out[v, SU] = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
         out[v, SV] = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
-        out[v, HEIGHT] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
+        out[v, HEIGHT] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z + above[v]
         out[v, U], out[v, V], out[v, MATERIAL] = uv[v, 0], uv[v, 1], material[v]
 
 

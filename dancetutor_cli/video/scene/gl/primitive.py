@@ -34,6 +34,7 @@ class SkinnedPrimitive(Primitive):  # type: ignore[misc]
             mesh.uv,
             mesh.joints.astype(np.float32),
             mesh.weights,
+            mesh.above[:, None],
         )
 
     def _add_to_context(self) -> None:

@@ -6,6 +6,7 @@ layout(location = 2) in vec3 hull;
 layout(location = 3) in vec2 texcoord;
 layout(location = 4) in vec4 joints;
 layout(location = 5) in vec4 weights;
+layout(location = 6) in float above;    // metres nearer to the light at which her own shadow is asked for
 
 layout(std140) uniform Joints { vec4 rows[768]; };  // three rows a joint
 uniform mat4 camera;         // world to clip space
@@ -36,7 +37,7 @@ void main() {
     vec3 n = normalize(by_rows(a, b, c, vec4(normal, 0.0)));
     uv = texcoord;
     terms = vec3(dot(n, sun), dot(n, normalize(eye - world)), n.y);
-    place_in_light = (light * vec4(world + n * off_surface.x + sun * off_surface.y, 1.0)).xyz * 0.5 + 0.5;
+    place_in_light = (light * vec4(world + n * off_surface.x + sun * (off_surface.y + above), 1.0)).xyz * 0.5 + 0.5;
     if (to_map > 0.0) {
         gl_Position = light * vec4(world, 1.0);
         return;
