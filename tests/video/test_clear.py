@@ -69,7 +69,7 @@ def jumping(layout: str, camera: str | None) -> Film:
     part = load_layout(layout)
     look = FilmLook(part, part.size, quality="draft", renderer="cpu", camera=camera)
     motion = Motion(skeleton, 20.0, times, rotations, root, ())
-    said = callout(0.0, 1.0, 8.0, "right foot: heel right, toe up ×3, footswitch")
+    said = callout(0.0, 1.0, 8.0, "right foot: heel on right, toe on up ×3, footswitch")
     return Film(replace(plan, look=look, motions={1.0: motion}, pad=load_pad("dance-single"), callouts=(said,)))
 
 

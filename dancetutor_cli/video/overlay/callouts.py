@@ -154,7 +154,7 @@ def _moves(
 
 
 def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
-    """The words of a move with who does it and where: "right foot: heel right, toe up"."""
+    """The words of a move with who does it and where: "right foot: heel on right, toe on up"."""
     limbs = play.limb[row].tolist()
     who = next((limb for limb in range(4) if limbs.count(limb) > 1), -1) if name == "bracket" else -1
     if who < 0:
@@ -163,7 +163,7 @@ def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
     columns = [column for column, limb in enumerate(limbs) if limb == who]
     heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
     parts = [(column != heel, panel_words(pad.names[column], style.turned)) for column in columns]
-    said = [f"{'toe' if toe else 'heel'} {panel}" for toe, panel in sorted(parts)]
+    said = [f"{'toe' if toe else 'heel'} on {panel}" for toe, panel in sorted(parts)]
     if name == "bracket" and len(parts) == 1:  # its other end holds a panel
         said.append("heel stays" if parts[0][0] else "toe stays")
     places = ", ".join(said)

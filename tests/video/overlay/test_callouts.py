@@ -80,21 +80,21 @@ def test_at_a_chart_of_false_tempo_seconds_join_them() -> None:
 def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
     row = (4.0, ("bracket",), {2: 1, 3: 1}, {0: 0, 1: 3})
     (one,) = called(subject(row))
-    assert (one.text, one.tag) == ("right foot: heel right, toe up", "heel right, toe up")
+    assert (one.text, one.tag) == ("right foot: heel on right, toe on up", "heel on right, toe on up")
     (one,) = called(subject(row), turned=True)
-    assert one.text == "right foot: heel left, toe down", "as her panels are seen by whom she faces"
+    assert one.text == "right foot: heel on left, toe on down", "as her panels are seen by whom she faces"
 
 
 def test_a_bracket_over_a_held_panel_says_that_its_other_end_stays() -> None:
     (one,) = called(subject((4.0, ("bracket",), {2: 1}, {0: 0, 1: 3})))
-    assert (one.text, one.tag) == ("right foot: toe up, heel stays", "toe up, heel stays")
+    assert (one.text, one.tag) == ("right foot: toe on up, heel stays", "toe on up, heel stays")
     (one,) = called(subject((4.0, ("bracket",), {3: 1}, {0: 0, 1: 3})))
-    assert one.text == "right foot: heel right, toe stays"
+    assert one.text == "right foot: heel on right, toe stays"
 
 
 def test_panels_of_a_double_have_no_number() -> None:
     (one,) = called(subject((4.0, ("bracket",), {0: 0, 2: 0}, {0: 0, 1: 4}), steps="pump-double"))
-    assert one.text == "left foot: heel down-left, toe centre"
+    assert one.text == "left foot: heel on down-left, toe on centre"
 
 
 def test_the_foot_and_the_hand_are_named() -> None:

@@ -82,7 +82,7 @@ def test_the_label_of_a_run_is_quieter_than_the_feet() -> None:
 
 
 def test_a_call_breaks_where_there_is_a_comma() -> None:
-    said = "left foot: heel centre, toe up-left ×3, left foot: heel down-left, toe centre ×2"
+    said = "left foot: heel on centre, toe on up-left ×3, left foot: heel on down-left, toe on centre ×2"
     lines, size = _phrases(said, 20, (230.0, 94.0), FACE)
     assert " ".join(lines) == said and size >= 15
     assert all(line.endswith(",") for line in lines[:-1])
@@ -125,7 +125,7 @@ def test_calls_stay_in_a_box_of_their_own(name: str) -> None:
     layout = load_layout(name)
     box = layout.box("calls", layout.size, 4)
     assert layout.calls is not None
-    long = "left foot: heel left, toe up ×3, right foot: heel down, toe right"
+    long = "left foot: heel on left, toe on up ×3, right foot: heel on down, toe on right"
     for texts, least in ((("crossover", "spin"), 0.5), ((long, "spin"), 0.4), ((long, long + " ×2"), 0.4)):
         found = tuple(Callout(5.0 + k, 10.0, text, "move", 4.0, 9.0, text) for k, text in enumerate(texts))
         frame = np.zeros((layout.size[1], layout.size[0], 3), dtype=np.uint8)
@@ -145,7 +145,7 @@ def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPat
         return ink(self, text, *rest, **more)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Typeface, "sprite", sprite)
-    said = "right foot: heel down-right, toe centre, footswitch"
+    said = "right foot: heel on down-right, toe on centre, footswitch"
     found = (Callout(5.0, 10.0, said, "move", 4.0, 5.0, said),)
     frame = black()
     Calls(found, (300, 10, 300 + width, 350), 1.0, FACE, highway_style()).draw(frame, 4.5)
