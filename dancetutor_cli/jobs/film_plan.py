@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.tempo import fastest_bpm
+from dancetutor_cli.jobs.counted_in import notes_without, play_without, quiet_in
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.media.clicks import clicks_of
@@ -57,7 +58,8 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     dance = danced(request, subject)
     solved, play, pad = dance.solved, dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
-    track = note_track(chart, play, scrolls)
+    quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls)
+    track = notes_without(whole_track, quiet)
     presses = presses_of(track)
     start, end = clock.passes[0].start, clock.passes[-1].end
     whole = whole_song(chart)
@@ -70,7 +72,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         look=look,
         clock=clock,
         words=words_of(song, chart, request.look.font),
-        song=SongShape(np.unique(presses.start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
+        song=SongShape(np.unique(presses_of(whole_track).start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
         notes=track,
         presses=presses,
         lines=beat_lines(chart, scrolls, end),
@@ -80,7 +82,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         directions=pad.directions,
         motions=motions,
         pad=pad,
-        rows=step_rows(play, _dancers(dance)),
+        rows=step_rows(play_without(play, quiet), _dancers(dance)),
         character=character,
         partners=partners,
         callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
