@@ -93,7 +93,7 @@ def _packed(character: Character) -> Packed:
         triangles=triangles,
         feet=int(of_feet.sum()),
         material=material,
-        above=(ABOVE * _share(character, joints, weights, LEGS)).astype(np.float32),
+        above=(ABOVE * np.clip(2.0 * _share(character, joints, weights, LEGS) - 0.5, 0.0, 1.0)).astype(np.float32),
         patch=_patches(triangles, len(positions)),
         density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
         skins=skins,
