@@ -91,7 +91,11 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     help="Every finding with its rows, or at most a screen for a song and a page for a pack.  "
     "[default: brief at a terminal, full into files and pipes]",
 )
-@click.option("--statistics", is_flag=True, help="Print how often each rule was found; in brief only that.")
+@click.option(
+    "--statistics",
+    is_flag=True,
+    help="Print how often each rule was found; in brief only that. Beside other formats than text: on standard error.",
+)
 @click.option(
     "--sheet",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -238,6 +242,8 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
         if not options["quiet"] or result.error or result.findings or result.charts:
             report.add(result)
     tally.page += pack.lines()
+    if options["statistics"] and options["format_name"] == "text":
+        tally.page += tally.statistics()
     report.end(tally)
     for line in pack.said():
         click.echo(line, err=True)
@@ -272,8 +278,8 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
     """What is said after the results, to standard error: so that the results stay one document."""
-    if options["statistics"]:
-        click.echo(tally.statistics(), err=True, nl=False)
+    for line in tally.statistics() if options["statistics"] and options["format_name"] != "text" else ():
+        click.echo(line, err=True)
     if options["suggest"]:
         click.echo(tally.suggestions(), err=True)
     for line in run.close_baseline():

@@ -47,7 +47,7 @@ class BriefReport:
 
     files : how many there will be
     known : whether findings of a baseline are left out: if nothing is new, one line is enough
-    statistics : only how often each rule was found is wanted, which others print
+    statistics : only how often each rule was found is wanted, which stands on the tally's page
     """
 
     def __init__(self, stream: IO[str], errors: IO[str], files: int, *, known: bool, statistics: bool) -> None:

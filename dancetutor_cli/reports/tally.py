@@ -55,10 +55,10 @@ class Tally:
             return 0
         return int(any(n and _RANK[name] >= _RANK[self.fail_on] for name, n in self.severities.items()))
 
-    def statistics(self) -> str:
+    def statistics(self) -> list[str]:
         """How often each rule was found, one line each, most frequent first."""
         ordered = sorted(self.rules.items(), key=lambda item: (-item[1], item[0]))
-        return "".join(f"{count:7} {rule}\n" for rule, count in ordered)
+        return [f"{count:7} {rule}" for rule, count in ordered]
 
     def suggestions(self) -> str:
         """What --suggest has found, also when that is nothing."""

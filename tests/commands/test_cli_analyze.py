@@ -255,5 +255,16 @@ def test_suggest_says_so_when_it_finds_nothing(faulty: Path) -> None:
     assert "no finding would go away" in run("--suggest", "--select", "DT1", faulty).stderr
 
 
-def test_statistics_count_the_rules(faulty: Path) -> None:
-    assert "      1 DT301 unplayable" in run(faulty, "--statistics").stderr.splitlines()
+def test_statistics_count_the_rules_above_the_summary(faulty: Path) -> None:
+    said, without = run(faulty, "--statistics"), run(faulty)
+    table = said.stdout.removeprefix(without.stdout[: without.stdout.rindex("1 file")]).splitlines()
+    assert table[0] == "" and table[-1].startswith("1 file, ")
+    assert "      1 DT301 unplayable" in table[1:-1]
+    assert said.stderr == ""
+
+
+def test_statistics_leave_a_document_whole(faulty: Path) -> None:
+    for name in ("json", "csv", "sarif"):
+        said, without = (run(faulty, "--format", name, *more) for more in (["--statistics"], []))
+        assert said.stdout == without.stdout
+        assert "      1 DT301 unplayable" in said.stderr.splitlines()

@@ -71,8 +71,9 @@ def test_with_everything_in_the_baseline_it_is_one_line(pack: Path) -> None:
 
 def test_statistics_stand_alone() -> None:
     said = run("--brief", SONG, "--statistics")
-    assert len(said.stdout.splitlines()) == 1
-    assert any("DT2" in line for line in said.stderr.splitlines())
+    *counts, summary = said.stdout.splitlines()
+    assert any("DT2" in line for line in counts) and all(line.split()[0].isdigit() for line in counts)
+    assert summary.startswith("2 files, ") and said.stderr == ""
 
 
 def test_other_formats_are_whole(pack: Path) -> None:
