@@ -17,7 +17,7 @@ from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
-from dancetutor_cli.video.overlay.header import Header, WordsRoom
+from dancetutor_cli.video.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.video.overlay.highway import Highway, Score
 from dancetutor_cli.video.overlay.lanes import HighwayGeometry
 from dancetutor_cli.video.overlay.sprites import highway_style
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 BACKGROUND = (12, 14, 26)
 FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of wide pads; words stand beside them
+ALL_LANES = 0.87  # where none do, but the measures' numbers
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 TAG_SEEN = 4.0  # seconds before its row that words beside the notes may be seen
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
@@ -69,13 +70,15 @@ class Film:
         assert part is not None
         box = self._box("highway")
         scale = 1.0 if self.layout.screen else self.scale
-        share = LANES if self._breadth <= WIDE_PAD else WIDE_LANES
+        share = (LANES if self._breadth <= WIDE_PAD else WIDE_LANES) if part.tags else ALL_LANES
         lane = min(part.lane * scale, share * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
         runs = plan.clock.passes
-        tags = any(one.start <= told.second <= one.end + TAG_SEEN for one in runs for told in plan.callouts)
+        tags = part.tags and any(
+            one.start <= told.second <= one.end + TAG_SEEN for one in runs for told in plan.callouts
+        )
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
@@ -207,7 +210,7 @@ class Film:
             return None, None
         large, small = None, None
         view = PadView(plan.pad, self._directions, self.turned)
-        if feet:
+        if feet and (feet.wide or self._breadth <= WIDE_PAD):
             pads = PadMap(view, self._box("feet"))
             rims = self.style.players if plan.partners else (captions.WHITE,)
             large = FeetDiagram(pads, self.lights, self.face, rims)
@@ -231,7 +234,7 @@ class Film:
             large.draw(picture, second, self._dancer.feet(self._joints(number)))
         if small:
             small.draw(picture, second)
-        for words in (self._header, self._legend):
+        for words in (*(self._header.parts if self._header else ()), self._legend):
             if words:
                 words.draw(picture, self._stay(words, run).opacity(second))
         for moving in (self._progress, self._calls):
@@ -240,7 +243,7 @@ class Film:
         self._runs.draw(picture, second, run, self._stay(self._runs, run).opacity(second))
         return picture
 
-    def _stay(self, words: Header | captions.Legend | Runs, run: int) -> Stay:
+    def _stay(self, words: Lines | captions.Legend | Runs, run: int) -> Stay:
         """When these words are in the picture: not while she walks through them."""
         if (key := (id(words), run)) not in self._stays:
             self._stays[key] = self._passed(words.boxes, run)

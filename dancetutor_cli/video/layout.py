@@ -26,13 +26,17 @@ class DancerPart:
 
 @dataclass(frozen=True, slots=True)
 class HighwayPart:
-    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : "C600"."""
+    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : "C600"
+
+    tags : moves are named beside their rows, too
+    """
 
     box: Box
     lane: float
     receptor: float = 0.135
     scroll: str = "M480"
     down: bool = False
+    tags: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +45,14 @@ class TextBox:
 
     box: Box
     text: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class FeetPart:
+    """The feet from above. box : share of the picture; wide : on pads of several squares, too."""
+
+    box: Box
+    wide: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +122,7 @@ class Layout:
     legend: TextBox | None = None
     progress: TextBox | None = None
     screen: ScreenPart | None = None
-    feet: TextBox | None = None
+    feet: FeetPart | None = None
     next: NextPart | None = None
     practice: PracticePart | None = None
     wide: WideBoxes | None = None
@@ -174,8 +186,8 @@ def _check_numbers(path: Path, layout: Layout) -> None:
     for where, pair in sides:
         if not all(LEAST_SIDE <= side <= MOST_SIDE for side in pair):
             raise FileError(path, f"{where}: {pair[0]}x{pair[1]} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels")
-    parts = (layout.header, layout.calls, layout.runs, layout.count, layout.legend, layout.progress, layout.feet)
-    names = ("header", "calls", "runs", "count", "legend", "progress", "feet")
+    parts = (layout.header, layout.calls, layout.runs, layout.count, layout.legend, layout.progress)
+    names = ("header", "calls", "runs", "count", "legend", "progress")
     ranges: list[tuple[str, float, float, float]] = [
         (f"{name}.text", part.text, 0.1, 10) for name, part in zip(names, parts, strict=True) if part is not None
     ]

@@ -115,28 +115,45 @@ def test_what_is_called_out_on_a_phone_does_not_cover_her_head() -> None:
     joints, who = film._joints(20), film._dancer
     outline = Silhouette(who.scene.character)
     assert not outline.behind([box], joints, who.camera, (right - left, bottom - top))
-    assert box[0] + left >= max(line[2] for line in film._header.boxes)
+    assert box[0] + left >= max(line[2] for part in film._header.parts for line in part.boxes)
 
 
 def test_a_title_of_one_line_is_always_there() -> None:
     film = walked("side-by-side", 1.1, away=False)
-    header = film._header
-    assert header is not None
-    picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    header.draw(picture, 0.0)
-    assert picture.any()
-    assert not picture[round(header.boxes[0][1]) + 4 :].any()
+    assert film._header is not None
+    title, below = film._header.parts
+    assert len(title.lines) == 1 and film._stay(title, 0).opacity(0.0) == 1
+    assert film._stay(below, 0).opacity(0.0) == 0
+
+
+def titled(layout: str) -> Film:
+    film = walked(layout, 1.1 if layout == "side-by-side" else 0.55, away=False)
+    words = replace(film.plan.words, title="A Title of Many Words That Go On and On and On")
+    look = replace(film.plan.look, size=(270, 480)) if layout == "vertical" else film.plan.look
+    return Film(replace(film.plan, words=words, look=look))
 
 
 def test_a_title_of_several_lines_makes_way_for_her() -> None:
     """Its second line would go through her head as she walks on."""
-    film = walked("side-by-side", 1.1, away=False)
-    words = replace(film.plan.words, title="A Title of Many Words That Go On")
-    header = Film(replace(film.plan, words=words))._header
-    assert header is not None
-    assert header.boxes[0][1] == header.top
+    film = titled("side-by-side")
+    assert film._header is not None
+    title, _ = film._header.parts
+    assert len(title.lines) > 1
+    assert title.boxes[0][1] == film._header.top
+    stays = film._stay(title, 0)
+    assert stays.opacity(0.0) == 0 and stays.opacity(5.0) == 1
     picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    header.draw(picture, 0.0)
+    title.draw(picture, 0.0)
     assert not picture.any()
-    header.draw(picture, 1.0)
-    assert picture[: round(header.title_end[1])].any()
+    title.draw(picture, 1.0)
+    assert picture[: round(film._header.title_end[1])].any()
+
+
+def test_on_a_phone_a_title_stands_from_the_first_picture_on() -> None:
+    """It stands above her head even in two lines; what is below it waits until she has walked past."""
+    film = titled("vertical")
+    assert film._header is not None
+    title, below = film._header.parts
+    assert len(title.lines) > 1
+    assert film._stay(title, 0).opacity(0.0) == 1
+    assert film._stay(below, 0).opacity(0.0) == 0

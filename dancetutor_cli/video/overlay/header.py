@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -56,6 +57,21 @@ class WordsRoom(NamedTuple):
 ALL = WordsRoom()
 
 
+class Lines(NamedTuple):
+    """Words that come and go together. lines : each with its left top corner, pixels
+
+    boxes : where those stand that make way for her: left, top, right, bottom
+    """
+
+    lines: list[tuple[Sprite, float, float]]
+    boxes: list[Box]
+
+    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
+        """Lay them over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y), opacity)
+
+
 class Header:
     """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
 
@@ -73,7 +89,7 @@ class Header:
         title_size, small = 33 * scale, 19 * scale
         self.bottom = float(box[1])
         self._title(words, title_size)
-        self._always = 1 if len(self.lines) == 1 else 0  # a title of one line is above her head, even as she walks on
+        self._titled = len(self.lines)
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._artist(words.artist, small)
@@ -154,15 +170,13 @@ class Header:
         """x behind the longest line."""
         return float(max(x + ink.shape[1] for ink, x, _ in self.lines))
 
-    @property
-    def boxes(self) -> list[Box]:
-        """Where the lines stand that make way for her, all but a title of one line: left, top, right, bottom."""
-        return [box_of(*line) for line in self.lines[self._always :]]
-
-    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
-        """Lay the words over the picture, those that make way for her by `opacity`."""
-        for number, (sprite, x, y) in enumerate(self.lines):
-            blit(frame, sprite, x, round(y), opacity if number >= self._always else 1.0)
+    @cached_property
+    def parts(self) -> tuple[Lines, Lines]:
+        """The title, and what stands below it. A title of one line is above her head, even as she walks on."""
+        title, below = self.lines[: self._titled], self.lines[self._titled :]
+        return Lines(title, [box_of(*line) for line in title[len(title) == 1 :]]), Lines(
+            below, [box_of(*x) for x in below]
+        )
 
 
 def _fits(

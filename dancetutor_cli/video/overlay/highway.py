@@ -166,6 +166,8 @@ class Highway:
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
         """Words beside the rows they are about, on the right of the lanes."""
+        if not self.geometry.tags:
+            return
         y = self._y(self._callout_seconds, self._callout_beats, now)
         x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
         for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):

@@ -31,7 +31,7 @@ def test_vertical_keeps_free_what_short_video_apps_lay_buttons_over(columns: int
     """The right 0.12 and the lower 0.18 have buttons and captions, the upper 0.07 tabs: no words or receptors there."""
     layout = load_layout("vertical")
     width, height = layout.size
-    for name in ("header", "calls", "legend", "progress", "count"):
+    for name in ("header", "calls", "legend", "progress", "count", "feet"):
         _, top, right, bottom = layout.box(name, layout.size, columns)
         assert top >= 0.07 * height and bottom <= 0.82 * height and right <= 0.88 * width, name
     _, top, right, bottom = layout.box("highway", layout.size, columns)
@@ -98,7 +98,7 @@ def test_marks_of_the_next_rows_are_as_large_as_their_panels(steps: str) -> None
 @pytest.mark.parametrize(
     ("name", "size", "columns", "least"),
     [("side-by-side", (1280, 720), 4, 15), ("side-by-side", (1280, 720), 8, 12), ("side-by-side", (640, 360), 4, 10),
-     ("vertical", (1080, 1920), 4, 24), ("practice", (1280, 720), 4, 12)],
+     ("television", (1280, 720), 4, 10), ("practice", (1280, 720), 4, 12)],
 )  # fmt: skip
 @pytest.mark.parametrize("said", ["crossover ×12", "footswitch", "full crossover ×2", "left foot again"])
 def test_the_tags_beside_the_notes_can_be_read(
@@ -202,7 +202,7 @@ def test_a_note_that_no_foot_is_left_for_has_a_mark_of_its_own() -> None:
     assert grey.sum() > 100
 
 
-@pytest.mark.parametrize("name", ["side-by-side", "vertical", "practice"])
+@pytest.mark.parametrize("name", ["side-by-side", "television", "practice"])
 def test_without_words_beside_them_the_lanes_stand_in_the_middle(name: str) -> None:
     plan = film_plan(np.arange(1.0, 5.0))
     layout = load_layout(name)
