@@ -112,11 +112,12 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
 
 def _page(task: PageTask, output: Path | None, quiet: bool) -> None:
     from dancetutor_cli.files import write_atomic
-    from dancetutor_cli.jobs.page import make_page
+    from dancetutor_cli.jobs.page import ask_page, pack_page
 
-    page = make_page(task)
-    target = output or Path(_default_name(page.title, page.label))
+    asked = ask_page(task)
+    target = output or Path(_default_name(asked.title, asked.label))
     check_file(target, SUFFIXES)
+    page = pack_page(asked)
     write_atomic(target, page.html)
     _warn(page.warnings)
     if not quiet:

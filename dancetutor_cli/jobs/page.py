@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.jobs.bake import Asked
+    from dancetutor_cli.jobs.page_two import Pair
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.page import Content
     from dancetutor_cli.play.played import Play
@@ -52,12 +53,35 @@ class Page:
     sizes: dict[str, int]
 
 
+@dataclass(frozen=True, slots=True)
+class AskedPage:
+    """A page that can be made: its chart is read and solved. pair : both plays of a chart for two"""
+
+    task: PageTask
+    character: Character
+    asked: Asked
+    pair: Pair | None
+
+    @property
+    def title(self) -> str:
+        """Of the song; that of its file where it has none."""
+        return self.asked.song.title or self.asked.song.path.stem
+
+    @property
+    def label(self) -> str:
+        """Of the chart, for people."""
+        return self.asked.chart.label
+
+
 def make_page(task: PageTask) -> Page:
     """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
+    return pack_page(ask_page(task))
+
+
+def ask_page(task: PageTask) -> AskedPage:
+    """The quick part of `make_page`: read and solve."""
     from dancetutor_cli.character import dressed, load_character
     from dancetutor_cli.character.feet import with_foot_colours
-    from dancetutor_cli.lint.presets import choice_for, preset_for
-    from dancetutor_cli.page import document, pack_content
 
     character = with_foot_colours(load_character(dressed(task.character, task.bake.gait)))
     tasks = tasks_of(task.bake)
@@ -66,11 +90,19 @@ def make_page(task: PageTask) -> Page:
         raise UsageError(
             f"{task.bake.path}: --beside is for one dancer, and the chart is for two: choose with --player"
         )
-    asked = ask(task.bake) if pair is None else pair.both
+    return AskedPage(task, character, ask(task.bake) if pair is None else pair.both, pair)
+
+
+def pack_page(page: AskedPage) -> Page:
+    """The rest of it: bake and pack."""
+    from dancetutor_cli.lint.presets import choice_for, preset_for
+    from dancetutor_cli.page import document, pack_content
+
+    task, character, asked, pair = page.task, page.character, page.asked, page.pair
     preset = preset_for(asked.chart, task.bake.path, choice_for(task.bake.path, task.bake.preset))
     music, warnings = _music(asked.song, asked.chart) if task.music else (None, ())
     beside = _beside(task, asked, preset)
-    motions = pair.motions if pair else [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
+    motions = pair.motions() if pair else [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
     warnings = (*asked.notes, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [_retargeted(motion, character) for motion in motions]
     content = _content(task, (asked, beside), preset, character, fitted, music)
@@ -79,8 +111,7 @@ def make_page(task: PageTask) -> Page:
         content = replace(content, findings=found, passages=passages_of_two(pair), pair=True)
     doc, blob = pack_content(content)
     html = document(doc, blob, music[1] if music else None)
-    title = asked.song.title or asked.song.path.stem
-    return Page(html, title, asked.chart.label, warnings, _sizes(blob.sizes, music))
+    return Page(html, page.title, page.label, warnings, _sizes(blob.sizes, music))
 
 
 def _beside(task: PageTask, asked: Asked, preset: Preset) -> Asked | None:

@@ -20,18 +20,27 @@ if TYPE_CHECKING:
 class Pair:
     """Both who dance. both : the chart as it is written, with what both play of it on the pad of both
 
-    alone : each player's part; motions : each on her place
+    alone : each player's part; tasks : how each is baked
     """
 
     both: Asked
     alone: tuple[Asked, ...]
-    motions: list[Motion]
+    tasks: Sequence[BakeTask]
+
+    def motions(self) -> list[Motion]:
+        """Bake both, each on her place."""
+        from dancetutor_cli.motion.baked import shifted
+
+        sides = sides_of([one.chart for one in self.alone])
+        return [
+            shifted(bake_asked(one, task, side), *place_on(self.both.pad, one.chart, one.pad))
+            for one, task, side in zip(self.alone, self.tasks, sides, strict=True)
+        ]
 
 
 def pair_of(tasks: Sequence[BakeTask]) -> Pair:
-    """Read, solve and bake both. tasks : one for each player"""
+    """Read and solve both. tasks : one for each player"""
     from dancetutor_cli.jobs.danced import together
-    from dancetutor_cli.motion.baked import shifted
     from dancetutor_cli.motion.let_go import without_unplayable
     from dancetutor_cli.motion.settings import load_settings
 
@@ -43,11 +52,7 @@ def pair_of(tasks: Sequence[BakeTask]) -> Pair:
     pad = pad_of_both(chart.steps_type)
     settings = load_settings(tasks[0].motion, tasks[0].form).unplayable
     play = together(chart, [without_unplayable(one.play, one.pad, settings)[0] for one in alone], pad)
-    motions = [
-        shifted(bake_asked(one, task, sides), *place_on(pad, one.chart, one.pad))
-        for one, task, sides in zip(alone, tasks, sides_of([one.chart for one in alone]), strict=True)
-    ]
-    return Pair(replace(alone[0], chart=chart, play=play, pad=pad), alone, motions)
+    return Pair(replace(alone[0], chart=chart, play=play, pad=pad), alone, tasks)
 
 
 def findings_of_two(pair: Pair) -> Iterator[Finding]:

@@ -68,6 +68,24 @@ def test_a_sheet_of_another_kind_is_refused_before_the_work(demo: Path, capsys: 
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.parametrize("players", [1, 2])
+def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
+    demo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, players: int
+) -> None:
+    def bake(*_: object) -> None:
+        raise AssertionError("the work was begun, and there is no place for it")
+
+    for module in ("page", "page_two"):
+        monkeypatch.setattr(f"dancetutor_cli.jobs.{module}.bake_asked", bake)
+    name = "two_left_feet-dance-single_hard_8.html"
+    if players == 2:
+        demo, name = Path("two.sm"), "two-dance-couple_hard_9.html"
+        demo.write_text("#TITLE:Two;\n#BPMS:0=120;\n#NOTES:dance-couple::Hard:9::\n10000001\n01000010\n;\n")
+    Path(name).mkdir()
+    assert run("page", demo, *(ONE if players == 1 else ())) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == f"dancetutor: {name}: is a folder; give a file name"
+
+
 def test_folders_are_made_with_those_above(demo: Path) -> None:
     assert run("annotate", demo, *ONE, "-o", "a/b/marked") == 0
     assert b"{dt1 " in Path("a/b/marked/song.ssc").read_bytes()
