@@ -124,12 +124,12 @@ class TestBadOutput:
         assert files_of(tmp_path) == {}
 
 
-@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT to one process, which Windows cannot")
 def hears_ctrl_c() -> None:
     """A shell starts what runs in its background deaf to Ctrl-C, and these tests with it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT to one process, which Windows cannot")
 def test_ctrl_c_ends_a_render_and_leaves_nothing(tmp_path: Path) -> None:
     command = [str(DANCETUTOR), "render", str(SONG), "--steps-type", "dance-single", "--difficulty", "hard"]
     process = subprocess.Popen(

@@ -107,12 +107,12 @@ def test_one_picture_for_each_row(tmp_path: Path) -> None:
     assert not (pictures[0] == pictures[1]).all()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT to send to one process")
 def _hears_ctrl_c() -> None:
     """A shell starts what runs in its background deaf to Ctrl-C, and these tests with it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT to send to one process")
 def test_ctrl_c_is_one_line_and_leaves_nothing(tmp_path: Path) -> None:
     song = tmp_path / "song.sm"
     song.write_text(SONG + ",\n".join(["1000\n0100\n0010\n0001\n"] * 200) + ";\n")

@@ -106,17 +106,45 @@ def test_kernels_as_python_have_two_hands(tmp_path: Path) -> None:
     assert "unplayable" not in run.stdout
 
 
-def test_little_work_imports_no_numba(tmp_path: Path) -> None:
+def said_after(song: Path, code: str, **more: str) -> tuple[list[str], str]:
+    """The words that a process that has analyzed a song prints of itself, and its output; how it solves is its own."""
+    program = (
+        "import os, sys; from dancetutor_cli.__main__ import main\n"
+        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
+        f"except SystemExit: print({code}, file=sys.stderr)"
+    )
+    left_out = {compiled.VARIABLE, "OPENBLAS_NUM_THREADS"}
+    environment = {name: value for name, value in os.environ.items() if name not in left_out} | more
+    run = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    return run.stderr.splitlines()[-1].split(), run.stdout
+
+
+@pytest.fixture
+def little(tmp_path: Path) -> Path:
+    """A song of few notes."""
     song = tmp_path / "x.sm"
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n0100\n0010\n;\n")
-    code = (
-        "import sys; from dancetutor_cli.__main__ import main\n"
-        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
-        "except SystemExit: print('numba' in sys.modules, 'numpy.ma' in sys.modules, file=sys.stderr)"
-    )
-    environment = {name: value for name, value in os.environ.items() if name != compiled.VARIABLE}
-    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
-    assert run.stderr.split()[-2:] == ["False", "False"] and "1 chart" in run.stdout
+    return song
+
+
+def test_little_work_imports_no_numba(little: Path) -> None:
+    words, output = said_after(little, "'numba' in sys.modules, 'numpy.ma' in sys.modules")
+    assert words == ["False", "False"] and "1 chart" in output
+
+
+def test_numpy_makes_no_threads_but_where_somebody_wants_them(little: Path) -> None:
+    for said, wanted in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")):
+        words, _ = said_after(little, "'numpy' in sys.modules, os.environ['OPENBLAS_NUM_THREADS']", **said)
+        assert words == ["True", wanted]
+
+
+def test_kept_kernels_need_no_numba() -> None:
+    song = Path(__file__).parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.ssc"
+    for _ in range(2):  # the first compiles what is not there
+        words, output = said_after(
+            song, "'numba' in sys.modules, 'llvmlite.binding' in sys.modules", **{compiled.VARIABLE: "compiled"}
+        )
+    assert words == ["False", "True"] and "6 charts" in output
 
 
 def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,33 +156,6 @@ def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.Monkey
     preset = load_preset("itg")
     solve_chart(song.charts[0], preset)
     assert compiled.is_compiled(preset)
-
-
-def test_numpy_makes_no_threads_but_where_somebody_wants_them(tmp_path: Path) -> None:
-    song = tmp_path / "x.sm"
-    song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n;\n")
-    code = (
-        "import os, sys; from dancetutor_cli.__main__ import main\n"
-        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
-        "except SystemExit: print('numpy' in sys.modules, os.environ['OPENBLAS_NUM_THREADS'], file=sys.stderr)"
-    )
-    environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
-    for said, wanted in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")):
-        run = subprocess.run([sys.executable, "-c", code], env=environment | said, capture_output=True, text=True)
-        assert run.stderr.split()[-2:] == ["True", wanted]
-
-
-def test_kept_kernels_need_no_numba(tmp_path: Path) -> None:
-    song = Path(__file__).parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.ssc"
-    code = (
-        "import sys; from dancetutor_cli.__main__ import main\n"
-        f"try: main(['analyze', {str(song)!r}, '--no-cache', '--exit-zero'])\n"
-        "except SystemExit: print('numba' in sys.modules, 'llvmlite.binding' in sys.modules, file=sys.stderr)"
-    )
-    environment = {**os.environ, compiled.VARIABLE: "compiled"}
-    for _ in range(2):  # the first compiles what is not there
-        run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
-    assert run.stderr.split()[-2:] == ["False", "True"] and "6 charts" in run.stdout
 
 
 def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> None:
