@@ -60,12 +60,15 @@ class Gallop(Swing):
 
 @dataclass(frozen=True, slots=True)
 class Shake(Swing):
-    """In a wait, and back to where it was: up for a while, loosely shaken.
+    """In a wait, and back to where it was: up behind her for a while, loosely shaken.
 
+    behind : metres that the foot goes back; hangs : radians that it hangs with its toes down meanwhile
     rate : per second; far : metres to and fro along `heading` (radians), and half as far up and down
     flap : radians that the foot flaps
     """
 
+    behind: float = 0.0
+    hangs: float = 0.0
     rate: float = 0.0
     far: float = 0.0
     flap: float = 0.0

@@ -227,8 +227,8 @@ class LooseSettings:
     shortest: float
     longest: float
     height: float
-    aside: float
-    ahead: float
+    inward: float
+    behind: float
     rate: float
     far: float
     hangs: float

@@ -1,4 +1,5 @@
-"""Legs shaken out in waits: a foot hangs loosely in the air for a moment, the weight on the other one."""
+"""Legs shaken out in waits: a foot hangs loosely in the air behind her for a moment, the weight on the other one. Ahead
+of her it would look like a step."""
 
 from __future__ import annotations
 
@@ -49,19 +50,19 @@ def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, co
     loose, step = context.settings.loose, context.settings.step
     long = max(loose.up + chance.uniform(loose.shortest, loose.longest), LEAST)
     ball, yaw = stand.balls[foot], float(stand.yaws[foot])
-    outward = (1.0, -1.0)[foot]
-    aside = outward * np.array([np.cos(stand.heading), -np.sin(stand.heading)])
-    ahead = np.array([np.sin(stand.heading), np.cos(stand.heading)])
-    away = loose.aside * aside + loose.ahead * chance.uniform(0.3, 1.0) * ahead
-    lifted, hangs = np.radians(step.lift_pitch), np.radians(loose.hangs * chance.uniform(0.8, 1.2))
+    inward = (-1.0, 1.0)[foot] * np.array([np.cos(stand.heading), -np.sin(stand.heading)])
+    away, behind = loose.inward * inward, loose.behind * chance.uniform(0.85, 1.0)
+    lifted, hangs = np.radians(step.lift_pitch), np.radians(loose.hangs * chance.uniform(0.9, 1.1))
     return Shake(
         lift,
         lift + long,
         (float(ball[0]), float(ball[1])),
         yaw,
-        (float(lifted), float(hangs), float(np.radians(step.land_pitch)), 0.0),
+        (float(lifted), float(lifted), float(np.radians(step.land_pitch)), 0.0),
         loose.height * chance.uniform(0.8, 1.25),
         (float(away[0]), float(away[1])),
+        behind=behind,
+        hangs=float(hangs),
         rate=loose.rate * chance.uniform(0.85, 1.15),
         far=loose.far * chance.uniform(0.75, 1.25),
         flap=float(np.radians(loose.flap * chance.uniform(0.75, 1.25))),

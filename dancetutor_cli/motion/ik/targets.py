@@ -26,6 +26,7 @@ from dancetutor_cli.rig.quaternion import UP
 
 Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
+TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
 
 
 def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
@@ -42,9 +43,9 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
     soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
-    # toes stay level while the heel is up, and go up with the foot
+    # toes stay level while the heel is up, as far as they bend, and go up with the foot
     toes = [
-        quat.multiply(t, quat.from_axis_angle(ACROSS, np.minimum(f.pitch, 0.0)))
+        quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch - np.clip(f.pitch, 0.0, TOES_BEND)))
         for t, f in zip(straight, feet, strict=True)
     ]
     poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)

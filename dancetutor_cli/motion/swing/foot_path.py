@@ -18,6 +18,7 @@ from dancetutor_cli.rig.dimensions import dancer_foot
 
 Array = NDArray[np.float64]
 HEEL_BACK, BALL_UP = dancer_foot()
+SHAKE_RAMPS = 2.8  # a leg that is shaken out goes back, and comes again, in one part of so many
 FLAPS_LATE = 1.2  # radians that a loose foot's flapping is behind the way of its leg
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 
@@ -82,13 +83,13 @@ def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array,
     """Ball (m, 3) and pitch (m,) of a foot that is shaken out, at times (m,) in its move."""
     assert isinstance(move, Shake)
     s = (times - move.lift) / (move.land - move.lift)
-    fade = smooth(4.0 * s) * smooth(4.0 * (1.0 - s))
+    fade = smooth(SHAKE_RAMPS * s) * smooth(SHAKE_RAMPS * (1.0 - s))
     turn = 2 * np.pi * move.rate * (times - move.lift)
-    way = move.far * fade * np.sin(turn)
-    out = ball + np.column_stack((
-        np.sin(move.heading) * way, move.far / 2 * fade * np.cos(turn), np.cos(move.heading) * way,
+    way = move.far * np.sin(turn) - move.behind
+    out = ball + fade[:, None] * np.column_stack((
+        np.sin(move.heading) * way, move.far / 2 * np.cos(turn), np.cos(move.heading) * way,
     ))  # fmt: skip
-    return out, pitch + move.flap * fade * np.sin(turn - FLAPS_LATE)
+    return out, pitch + fade * (move.hangs + move.flap * np.sin(turn - FLAPS_LATE))
 
 
 def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:

@@ -65,9 +65,12 @@ def test_a_loose_foot_goes_to_and_fro_and_flaps(long: Plan) -> None:
         path = foot_path(long.feet[side], times, SETTINGS)
         ahead = path.ball[:, 0] * np.sin(shake.heading) + path.ball[:, 2] * np.cos(shake.heading)
         turns = (np.diff(np.sign(np.diff(ahead))) != 0).sum()
-        assert turns >= 2 * shake.rate * LOOSE.shortest * 0.8 and path.ball[:, 1].max() > 0.06
+        assert turns >= 2 * shake.rate * LOOSE.shortest * 0.8 and path.ball[:, 1].max() > 0.15
         assert path.ball[1:, 1].min() > 0.0, "in the air until it is down again"
         assert np.ptp(path.pitch) > np.radians(LOOSE.flap)
+        shaken = path.ball[:, 1] > 0.12
+        assert (ahead[shaken] - ahead[0]).min() < -0.25, "behind her, for ahead of her it would be a step"
+        assert (ahead - ahead[0]).max() < 0.02 and path.pitch[shaken].max() > np.radians(45.0), "its sole to the back"
 
 
 @pytest.mark.parametrize("wait", [1.0, 3.0, LOOSE.least])
