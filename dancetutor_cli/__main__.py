@@ -8,7 +8,10 @@ from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run `dancetutor`; ends the process with an exit status of the README's table."""
+    """Run `dancetutor`; ends the process with an exit status of the README's table.
+
+    arguments : None: those of the command line, of a process that does nothing else
+    """
     try:
         from dancetutor_cli.streams import open_streams
 
@@ -17,10 +20,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
             sys.exit(2)
         if os.environ.get("_DANCETUTOR_COMPLETE", "").startswith("powershell"):
             from dancetutor_cli.commands import completion  # noqa: F401 (makes this shell known)
-        sys.exit(_run(arguments))
+        status = _run(arguments)
     except KeyboardInterrupt:  # while the first modules are imported, or as the last words are said
         _say("interrupted")
-        sys.exit(130)
+        status = 130
+    if status == 130 and arguments is None:
+        from dancetutor_cli.interruption import end_at_once
+
+        end_at_once(status)
+    sys.exit(status)
 
 
 def _run(arguments: Sequence[str] | None) -> int:

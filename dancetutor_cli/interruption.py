@@ -7,10 +7,13 @@ left, and says so in its own words.
 from __future__ import annotations
 
 import _thread
+import atexit
 import os
 import signal
 import sys
 import threading
+from contextlib import suppress
+from typing import NoReturn
 
 from dancetutor_cli.errors import DancetutorError
 
@@ -46,6 +49,16 @@ def _interrupt() -> None:
 def hear_again() -> None:
     """From now on no Ctrl-C is lost in this process."""
     sys.unraisablehook = _Hook()
+
+
+def end_at_once(status: int) -> NoReturn:
+    """End the process, but leave its memory as it is: to take apart what a Ctrl-C left half made may crash."""
+    with suppress(KeyboardInterrupt):  # one that was lost comes again
+        atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, KeyboardInterrupt):
+            stream.flush()
+    os._exit(status)
 
 
 def is_interruption(error: BaseException) -> bool:

@@ -64,6 +64,35 @@ def test_ctrl_c_as_llvm_hands_machine_code_over(how: str, tmp_path: Path) -> Non
     assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "dancetutor: interrupted\n")
 
 
+ENDING = """
+import atexit, sys
+from dancetutor_cli.__main__ import main
+from dancetutor_cli.commands import cli
+
+
+class Broken:
+    def __del__(self):
+        print("taken apart", file=sys.__stderr__)
+
+
+def run(*_, **__):
+    print("some of it")
+    raise KeyboardInterrupt
+
+
+atexit.register(print, "cleared away")
+broken, cli.main = Broken(), run
+main()
+"""
+
+
+def test_what_a_ctrl_c_has_left_half_made_is_not_taken_apart() -> None:
+    """Once in a hundred runs that was a crash. What the end of a process clears away is."""
+    ran = subprocess.run([sys.executable, "-c", ENDING], capture_output=True, text=True, timeout=120)
+    assert (ran.returncode, ran.stdout) == (130, "some of it\ncleared away\n")
+    assert ran.stderr == "dancetutor: interrupted\n"
+
+
 def _faults() -> list[Exception]:
     """As Python tells of it: a result with an exception set; through several kernels several times."""
     cause, context, twice = (SystemError("f returned a result with an exception set") for _ in range(3))
