@@ -65,14 +65,14 @@ def test_ctrl_c_as_llvm_hands_machine_code_over(how: str, tmp_path: Path) -> Non
 
 
 ENDING = """
-import atexit, sys
+import atexit, os, sys
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.commands import cli
 
 
 class Broken:
-    def __del__(self):
-        print("taken apart", file=sys.__stderr__)
+    def __del__(self, write=os.write):
+        write(2, b"taken apart")
 
 
 def run(*_, **__):
@@ -81,7 +81,7 @@ def run(*_, **__):
 
 
 atexit.register(print, "cleared away")
-broken, cli.main = Broken(), run
+sys.broken, cli.main = Broken(), run
 main()
 """
 
