@@ -21,6 +21,7 @@ from dancetutor_cli.video.scene.follow import Follow, farther, is_wide
 from dancetutor_cli.video.scene.look import default_look
 from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.video.scene.seen_through import draw_hidden_feet
 from dancetutor_cli.video.scene.silhouette import Silhouette
 from dancetutor_cli.video.scene.stage import PANEL
 
@@ -84,8 +85,10 @@ class Dancer:
 
     def frame(self, moment: Moment, joints: NDArray[np.float64]) -> Frame:
         """The picture at a moment of the music, uint8 (h, w, 3); overwritten by the next call."""
-        lit, by = self._lit(moment.second)
-        return self.renderer.frame(FrameState(joints, self.view(moment), lit, by))
+        (lit, by), view = self._lit(moment.second), self.view(moment)
+        frame = self.renderer.frame(FrameState(joints, view, lit, by))
+        draw_hidden_feet(frame, self.scene, joints, view)
+        return frame
 
     def view(self, moment: Moment) -> Camera:
         """The camera at a moment: the standing one, or the one that follows her across a wide pad."""
