@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Grip
+from dancetutor_cli.motion.foot_moves import Move, Swing
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -23,10 +24,12 @@ KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
     """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land.
 
-    A stretch too short for two of them has its own start and end.
+    And the middles of swings so short that a foot might seem to have stood all the time. A stretch too short for two of
+    them has its own start and end.
     """
     regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
     extra = [t for foot in plan.feet for m in foot.moves for t in (m.lift, m.land)]
+    extra += [(m.lift + m.land) / 2 for foot in plan.feet for m in foot.moves if _hidden(m, fps)]
     extra += [t for p in plan.presses for t in (p.start, p.end)]
     special = np.array([t for t in extra if start <= t <= end])
     times = np.concatenate((special, regular))
@@ -41,6 +44,11 @@ def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
         else:
             last = t
     return np.asarray(times[keep]) if keep.sum() > 1 else np.array([start, end])
+
+
+def _hidden(move: Move, fps: float) -> bool:
+    """Whether a foot is up and down again between two regular times, about."""
+    return isinstance(move, Swing) and move.land - move.lift < 1.5 / fps
 
 
 def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:

@@ -3,8 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 Place = tuple[float, float]
+
+
+class Bulge(NamedTuple):
+    """How a way goes around the other foot. x, z : metres added at its middle
+
+    late : part of the straight way by which it is behind that at a quarter, and ahead of it at three quarters: first
+    aside, then past, then in
+    """
+
+    x: float = 0.0
+    z: float = 0.0
+    late: float = 0.0
+
+
+STRAIGHT = Bulge()
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +47,11 @@ class Pivot(Move):
 class Swing(Move):
     """The foot leaves the ground. height : peak of the sole, metres
 
-    bulge : (x, z) added at the middle of the path, to go around the other foot
+    bulge : around the other foot
     """
 
     height: float
-    bulge: Place = (0.0, 0.0)
+    bulge: Bulge = STRAIGHT
 
 
 @dataclass(frozen=True, slots=True)

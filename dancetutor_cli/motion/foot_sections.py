@@ -83,7 +83,9 @@ class StepSettings:
     touching: float
     leap_aside: float
     on_the_spot: float
+    again: float
     pivot_least: float
+    pivot_few: float
     turn_ahead: float
     turn_wide: float
     turn_late: float

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.foot_moves import Jump
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Bulge, Jump
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.foothold import Heel, Pitches, around, heel_up
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal, pair
@@ -54,9 +54,9 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
         up = float(np.clip((lift - foot.landed) / jump.heel_time, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)
+        bulge = Bulge(*pair(aside[side]))
         swing = Jump(
-            lift, flight.land, pair(ends[side]), float(after[side]), rise, height, pair(aside[side]), tuck, turn,
-            middles, share,
+            lift, flight.land, pair(ends[side]), float(after[side]), rise, height, bulge, tuck, turn, middles, share,
         )  # fmt: skip
         footing = footing.with_foot(foot.moved(swing, ends[side], goals[side][1]))
     return footing
@@ -93,7 +93,7 @@ def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[f
     foot, (target, yaw) = feet[side], goals[side]
     out = [take_off, take_off]
     early = max(foot.earliest(time), time - row.duration * (1.0 - step.double_support_fast))
-    straight = around(footing, foot, (early, time), target, yaw, feet[1 - side]) == (0.0, 0.0)
+    straight = around(footing, foot, (early, time), target, yaw, feet[1 - side]) == STRAIGHT
     if straight and ways[side] > ways[1 - side] + footing.settings.jump.farther:
         out[side] -= row.cut * max(take_off - early, 0.0)
     return out[0], out[1]

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Ground
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.foot_moves import Walk
+from dancetutor_cli.motion.foot_moves import Bulge, Walk
 from dancetutor_cli.motion.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.motion.plan import FootTrack, Route, Turn
 from dancetutor_cli.motion.settings import MotionSettings
-from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at
+from dancetutor_cli.motion.swing.clearance import Way, bend, detour, gaps_at, lag
 from dancetutor_cli.motion.swing.panels import ball_of, middle_of
 from dancetutor_cli.numerics.ease import smooth
 
@@ -179,10 +179,11 @@ def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
     return out
 
 
-def room(start: tuple[Array, float], step: Footfall, bulge: tuple[float, float], other: tuple[Array, float]) -> float:
+def room(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[Array, float]) -> float:
     """Least distance between a swinging shoe and the standing one, metres."""
     share = smooth(np.linspace(0.1, 1.0, 10))
-    balls = start[0] + share[:, None] * (step.ball - start[0]) + bend(share)[:, None] * np.array(bulge)
+    way = (share - bulge.late * lag(share))[:, None] * (step.ball - start[0])
+    balls = start[0] + way + bend(share)[:, None] * np.array(bulge[:2])
     return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Ground
+from dancetutor_cli.motion.foot_moves import Bulge
 from dancetutor_cli.motion.footwork.footing import Footing, FootState
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, SHARES, Way, detour, gaps_at, headings, over
@@ -220,7 +221,7 @@ def shoes_apart(a: Pose, b: Pose) -> float:
 
 def around(
     footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
-) -> tuple[float, float]:
+) -> Bulge:
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
     step = footing.settings.step
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))

@@ -193,7 +193,7 @@ class Footing:
     def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
         """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
 
-        Nor does it turn over a panel with a mine.
+        Nor does it turn over a panel with a mine, or for a few degrees.
 
         other, other_toes : ball and toes of the other foot after its step
         """
@@ -206,7 +206,8 @@ class Footing:
         gaps = gaps_at(balls, toes, other, other_toes)
         mined = over(self.mined, balls, toes, self.settings.mines.keep_off)
         clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
-        return float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
+        found = float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
+        return found if abs(found - foot.yaw) > np.radians(step.pivot_few) else foot.yaw
 
     def pivoted(self, foot: FootState, yaw: float, start: float, time: float) -> Footing:
         """The footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.foot_moves import Jump, Move, Shake, Step, Swing
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Bulge, Jump, Move, Shake, Step, Swing
 from dancetutor_cli.motion.footwork.footfalls import Stand, standing
 from dancetutor_cli.motion.footwork.walks import WalkProposal, next_step, waits, walk_off, walk_on, walk_over
 from dancetutor_cli.motion.plan import FootTrack, Plan, Turn
@@ -88,7 +88,7 @@ def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Contex
     for k, move in enumerate(moves):
         if not isinstance(move, Swing):
             continue
-        first = replace(move, bulge=(0.0, 0.0), yaw=turned(move))
+        first = replace(move, bulge=STRAIGHT, yaw=turned(move))
         if isinstance(move, Jump):
             first = replace(move, line_turn=0.0, middles=((float(middle[0]), float(middle[1])), move.middles[1]))
         return (*(replace(m, target=here, yaw=turned(m)) for m in moves[:k]), first, *moves[k + 1 :])
@@ -110,7 +110,7 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Cont
     return out[0], out[1]
 
 
-def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> tuple[float, float]:
+def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> Bulge:
     start = standing(feet, step.lift)
     there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
     way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.foot_moves import Shake
+from dancetutor_cli.motion.foot_moves import Bulge, Shake
 from dancetutor_cli.motion.footwork.footfalls import Stand, standing
 from dancetutor_cli.motion.footwork.walks import waits
 from dancetutor_cli.motion.plan import Plan
@@ -60,7 +60,7 @@ def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, co
         yaw,
         (float(lifted), float(lifted), float(np.radians(step.land_pitch)), 0.0),
         loose.height * chance.uniform(0.8, 1.25),
-        (float(away[0]), float(away[1])),
+        Bulge(float(away[0]), float(away[1])),
         behind=behind,
         hangs=float(hangs),
         rate=loose.rate * chance.uniform(0.85, 1.15),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
-from dancetutor_cli.motion.foot_moves import Sidestep
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Sidestep
 from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.footfalls import Footfall, Stand, room, stand_at
 from dancetutor_cli.motion.footwork.foothold import around, heel_of_step, heel_up
@@ -133,7 +133,7 @@ class SideSteps(StepsInWaits):
         """Whether no shoe comes too near the other."""
         places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
         for side, fall in falls:
-            if room(places[side], fall, (0.0, 0.0), places[1 - side]) < self.settings.step.apart:
+            if room(places[side], fall, STRAIGHT, places[1 - side]) < self.settings.step.apart:
                 return False
             places[side] = (fall.ball, fall.yaw)
         return True

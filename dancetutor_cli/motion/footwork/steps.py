@@ -34,6 +34,8 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     columns = under_the_foot(row, foot)
     goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side), row.haste)
     target, yaw = landing(footing, foot, goal, pose(footing, other))
+    if _taps_again(row, foot, columns):
+        target, yaw = foot.ball, foot.yaw
     gallop = _gallop(row, side, footing)
     if gallop is not None:
         lift = gallop.time
@@ -56,7 +58,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
     pitches = heel_up(numbers, row.cut, heel, columns)
     bulge = around(footing, foot, (lift, time), target, yaw, footing.other(foot))
-    height += numbers.height_far * float(np.hypot(*bulge)) * (kind is Step)
+    height += numbers.height_far * float(np.hypot(bulge.x, bulge.z)) * (kind is Step)
     swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
     if isinstance(swing, Jump):
         jump = footing.settings.jump
@@ -76,6 +78,12 @@ def _room_made(row: Row, side: int, footing: Footing) -> Footing:
         return footing
     turned = footing.pivot_yaw(other, footing.body_yaw(), foot.ball, footing.toes(foot))
     return footing.pivoted(other, turned, row.time - row.duration, row.time)
+
+
+def _taps_again(row: Row, foot: FootState, columns: list[int]) -> bool:
+    """Whether a foot has come down on the row's panel so shortly before that there is no time to shift it."""
+    on = (np.abs(foot.ball - row.context.panels[columns]) <= HALF_PANEL).all(axis=1).any()
+    return bool(on) and row.time - foot.landed < row.context.settings.step.again
 
 
 def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from dancetutor_cli.kernels import inner_kernel, njit
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Bulge
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
@@ -16,20 +17,26 @@ from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, b
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
 Array = NDArray[np.float64]
+LATE_PRICE = 1.0  # metres of a detour that being late by all of the way counts as
 
 
-def _ways(aside: int, ahead: int) -> Array:
-    """Detours (k, 2), so many steps of 3 and 6 cm to each side: metres beside a path's middle, and along it."""
-    sides, along = np.meshgrid(np.arange(-aside, aside + 1) * 0.03, np.arange(-ahead, ahead + 1) * 0.06)
-    ways = np.column_stack((sides.ravel(), along.ravel()))
-    return np.asarray(ways[np.argsort(np.abs(ways).sum(axis=1), kind="stable")])
+def _ways(sides: ArrayLike, ahead: int, late: tuple[float, ...]) -> Array:
+    """Detours (k, 3), least first: metres beside a path's middle, and along it (so many steps of 6 cm to each side),
+    and how late they are, as in `Bulge`."""
+    grid = np.meshgrid(sides, np.arange(-ahead, ahead + 1) * 0.06, late)
+    ways = np.column_stack([axis.ravel() for axis in grid])
+    return np.asarray(ways[np.argsort(np.abs(ways) @ [1.0, 1.0, LATE_PRICE], kind="stable")])
 
 
-_WAYS = _ways(12, 2), _ways(16, 5)  # the far ones are asked only where none of the others will do
-SHARES = np.linspace(0.05, 0.95, 19)  # of a swing's time, at which shoes are looked at
+_WAYS = (  # far ones, and late ones, which are quick in between, are asked only where none of the others will do
+    _ways(np.arange(-12, 13) * 0.03, 2, (0.0,)),
+    _ways(np.arange(-16, 17) * 0.03, 5, (0.0,)),
+    _ways(np.arange(-8, 9) * 0.06, 4, (0.08, 0.16, 0.24, 0.36)),
+)
+SHARES = np.linspace(0.05, 0.95, 37)  # of a swing's time, at which shoes are looked at
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
 WRONG = 0.10  # metres of room that a radian of legs crossed too far counts as
-TOLERATED = 0.004  # metres of room that a way may lack before farther ones are tried
+TOLERATED = 0.004, 0.006, 0.0  # metres of room that a way may lack before farther or later ones are tried
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
@@ -47,8 +54,8 @@ class Way:
     hips: tuple[float, float] | None = None
 
 
-def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> tuple[float, float]:
-    """(x, z) to add in the middle of a straight path, so that the shoes stay `step.apart` between their middle lines.
+def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> Bulge:
+    """What to add to a straight path, so that the shoes stay `step.apart` between their middle lines.
 
     And so that legs do not go through each other: it leads around the other foot on the side on which the hips turn.
 
@@ -69,19 +76,22 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     still = shoe_line(other - BALL_AHEAD * aim, aim)
     gaps = segment_gaps(*shoe_line(straight, ahead), *still)
     need = enough(gaps, e, step.apart) - 1e-3
-    aside = outward * (other - BALL_AHEAD * aim - ANKLE * aim)
-    free = wrung(way, outward * (straight - ANKLE * ahead) - aside, step)
+    ankle = outward * (other - BALL_AHEAD * aim - ANKLE * aim)
+    free = wrung(way, outward * (straight - ANKLE * ahead) - ankle, step)
     if (gaps >= need).all() and free <= 0.0:
-        return 0.0, 0.0
-    chosen = np.zeros(2)
-    for ways in _WAYS:
-        places = straight + bend(e)[:, None] * (ways @ axes)[:, None]
+        return STRAIGHT
+    most, chosen = -np.inf, STRAIGHT
+    for ways, tolerated in zip(_WAYS, TOLERATED, strict=True):
+        aside = ways[:, :2] @ axes
+        places = straight + bend(e)[:, None] * aside[:, None] - lag(e)[:, None] * (ways[:, 2:] * path)[:, None]
         room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
-        room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - aside, step)
-        chosen = ways[np.argmax(room >= min(0.0, room.max()))] @ axes
-        if room.max() >= -TOLERATED:
+        room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - ankle, step)
+        if room.max() > most:
+            most, k = float(room.max()), int(np.argmax(room >= min(0.0, room.max())))
+            chosen = Bulge(float(aside[k, 0]), float(aside[k, 1]), float(ways[k, 2]))
+        if most >= -tolerated:
             break
-    return float(chosen[0]), float(chosen[1])
+    return chosen
 
 
 def wrung(way: Way, line: Array, step: StepSettings) -> Array:
@@ -113,6 +123,11 @@ def shoe_line(middle: Array, ahead: Array) -> tuple[Array, Array]:
 def bend(share: Array) -> Array:
     """How much of a detour there is (...) at each share (...) of the way: it starts at once, for shoes are long."""
     return np.asarray(np.sin(np.pi * share))
+
+
+def lag(share: Array) -> Array:
+    """How much of its being late a way has (...) at each share (...) of it."""
+    return np.asarray(np.sin(2.0 * np.pi * share))
 
 
 def headings(yaw: Array) -> Array:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Shake, Swing, Walk
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Gallop, Hover, Jump, Move, Pivot, Shake, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.settings import MotionSettings, WalkSettings
-from dancetutor_cli.motion.swing.clearance import bend
+from dancetutor_cli.motion.swing.clearance import bend, lag
 from dancetutor_cli.motion.swing.jump_ways import turning
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.numerics.ease import smooth
@@ -120,14 +120,14 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> A
     e : as of `travelled`
     """
     start, end = place[i], place[i + 1]
-    straight = start + e[:, None] * (end - start)
-    bulge = np.array([m.bulge if isinstance(m, Swing) else (0.0, 0.0) for m in track.moves])[i] * bend(e)[:, None]
+    bulge = np.array([m.bulge if isinstance(m, Swing) else STRAIGHT for m in track.moves])[i]
+    straight = start + (e - bulge[:, 2] * lag(e))[:, None] * (end - start)
     jumps = [m if isinstance(m, Jump) else NO_JUMP for m in track.moves]
     share = np.array([jump.round for jump in jumps])[i][:, None]
     middles = np.array([jump.middles for jump in jumps])[i]
     line_turn = np.array([jump.line_turn for jump in jumps])[i]
     round_ = turning(start, end, (middles[:, 0], middles[:, 1]), line_turn, e)
-    return np.asarray((1 - share) * straight + share * round_ + bulge)
+    return np.asarray((1 - share) * straight + share * round_ + bulge[:, :2] * bend(e)[:, None])
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array, rising: float) -> Array:

@@ -57,6 +57,16 @@ def test_the_body_is_no_farther_from_a_standing_foot_than_legs_turn(yaws: tuple[
     assert max(abs(body - foot.yaw) for foot in footing.feet) <= max(np.radians(SETTINGS.step.body_turn), apart) + 1e-9
 
 
+@pytest.mark.parametrize(("beyond", "turned"), [(2.0, 0.0), (10.0, 10.0)])
+def test_a_standing_foot_does_not_turn_for_a_few_degrees(beyond: float, turned: float) -> None:
+    own = context()
+    step = replace(own.settings.step, pivot_from=25.0, pivot_to=25.0)
+    footing = Footing.at_home(replace(own, settings=replace(own.settings, step=step)), 0)
+    foot = footing.feet[0]
+    yaw = footing.pivot_yaw(foot, foot.yaw + np.radians(25.0 + beyond), np.array([-0.5, 0.3]), 0.0)
+    assert np.degrees(yaw - foot.yaw) == pytest.approx(turned, abs=1e-6)
+
+
 def test_feet_are_pulled_up_at_once_in_a_far_jump() -> None:
     """A leg that trails behind is stretched when the body leaves the ground: its foot must come along early."""
     footing = Footing.at_home(context(), 0)

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from bake_plays import context
 
+from dancetutor_cli.bake.quality.shape import FOOT_RADIUS
+from dancetutor_cli.motion.foot_moves import Bulge
 from dancetutor_cli.motion.footwork.foothold import Spot, beside, pose
 from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour, over
+from dancetutor_cli.motion.swing.clearance import SHARES, Way, bend, detour, lag, over
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, ball_of, middle_of
 from dancetutor_cli.rig.dimensions import HALF_SHOE
@@ -27,6 +29,12 @@ def line_points(middle: np.ndarray, yaw: float) -> np.ndarray:
 
 def gap(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.linalg.norm(a[:, None] - b[None], axis=2).min())
+
+
+def along(start: np.ndarray, end: np.ndarray, e: float, bulge: Bulge) -> np.ndarray:
+    """The ball of a foot that is so far on its way around another one."""
+    straight = start + (e - bulge.late * float(lag(np.array(e)))) * (end - start)
+    return np.asarray(straight + float(bend(np.array(e))) * np.array([bulge.x, bulge.z]))
 
 
 @pytest.mark.parametrize("yaw", np.radians([-30.0, 0.0, 25.0]))
@@ -56,12 +64,38 @@ def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     least = np.inf
     for s in np.linspace(0.05, 0.95, 60):
         share, aim = float(travelled(s, STEP)), yaw + float(swung(s, STEP)) * (to - yaw)
-        ball = balls[0] + share * (balls[1] - balls[0]) + np.sin(np.pi * share) * np.array(bulge)
+        ball = along(balls[0], balls[1], share, bulge)
         own = float(swung(s, STEP)) * 0.2
         shoes = line_points(middle_of(ball, own), own), line_points(middle_of(pivot, aim), aim)
         least = min(least, gap(*shoes))
     assert least >= APART - 0.004
-    assert np.linalg.norm(bulge) > 0.03  # straight through would hit it
+    assert np.hypot(bulge.x, bulge.z) > 0.03  # straight through would hit it
+
+
+# start, end (ball and degrees), the other foot (ball, degrees at the start and at the end), hips in degrees
+PAST = {
+    "in a spin": (((0.164, 0.234), -82.0), ((-0.187, -0.21), -126.0), ((-0.089, -0.046), -107.0, -113.0), (-101, -149)),
+    "from beside it": (((-0.164, -0.164), 43.0), ((0.164, 0.187), 36.0), ((0.023, -0.023), 35.0, 35.0), (61, 20)),
+    "to beside it": (((-0.164, 0.164), 77.0), ((0.164, -0.164), 132.0), ((0.093, 0.023), 105.0, 137.0), (99, 160)),
+}
+
+
+@pytest.mark.parametrize("scene", PAST)
+def test_a_swing_past_a_close_shoe_goes_aside_first_and_not_far(scene: str) -> None:
+    """Bent once, to a side, it would run into the other shoe near one end, however far it goes aside."""
+    (start, before), (end, after), (other, still, turned), hips = PAST[scene]
+    yaws, others = np.radians([before, after]), np.radians([still, turned])
+    outward = 1.0 if scene != "to beside it" else -1.0
+    way = Way(np.array(start), yaws[0], np.array(end), yaws[1], (np.radians(hips[0]), np.radians(hips[1])))
+    there = np.tile(other, (len(SHARES), 1)), others[0] + swung(SHARES, STEP) * (others[1] - others[0])
+    bulge = detour(way, *there, STEP, outward)
+    assert np.hypot(bulge.x, bulge.z) < 0.4
+    gaps = []
+    for s in np.linspace(0.05, 0.95, 90):
+        own, its = (a + float(swung(s, STEP)) * (b - a) for a, b in (yaws, others))
+        ball = along(np.array(start), np.array(end), float(travelled(s, STEP)), bulge)
+        gaps.append(gap(line_points(middle_of(ball, own), own), line_points(middle_of(np.array(other), its), its)))
+    assert min(gaps) >= 2 * FOOT_RADIUS
 
 
 def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
@@ -89,16 +123,16 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
     place, other, aim, turn = np.zeros(2), np.array([0.046, -0.20]), np.radians(90.0), np.radians(60.0)
     bulge = detour(Way(place, -turn, place, turn), other, aim, STEP, 1.0)
 
-    def least(aside: tuple[float, float]) -> float:
+    def least(aside: Bulge) -> float:
         gaps = []
         for s in SHARES:
             e, yaw = float(travelled(s, STEP)), -turn + float(swung(s, STEP)) * 2 * turn
-            ball = place + np.sin(np.pi * e) * np.array(aside)
+            ball = along(place, place, e, aside)
             shoes = line_points(middle_of(ball, yaw), yaw), line_points(middle_of(other, aim), aim)
             gaps.append(gap(*shoes))
         return min(gaps)
 
-    assert least((0.0, 0.0)) < APART - 0.01
+    assert least(Bulge()) < APART - 0.01
     assert least(bulge) >= APART - 2e-3
 
 

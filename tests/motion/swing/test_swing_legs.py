@@ -46,7 +46,7 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
     start, end, other = np.array([-0.2, 0.0]), np.array([0.2, 0.0]), np.zeros(2)
     for turn in (-170.0, 170.0):
         way = Way(start, 0.0, end, np.radians(turn), (0.0, np.radians(turn)))
-        aside = np.array(detour(way, other, 0.0, SETTINGS.step, -1.0))
+        aside = np.array(detour(way, other, 0.0, SETTINGS.step, -1.0)[:2])
         share = travelled(SHARES, SETTINGS.step)
         line = -(start + share[:, None] * (end - start) + np.sin(np.pi * share)[:, None] * aside - other)
         angle = np.degrees(np.unwrap(np.arctan2(-line[:, 1], line[:, 0])))
