@@ -123,6 +123,19 @@ def test_a_step_right_after_mines_under_both_feet_comes_from_the_hop() -> None:
     meets(steps)
 
 
+@pytest.mark.parametrize("after", [0.08, 0.11, 0.13])
+def test_a_step_before_a_hop_is_over_is_a_part_of_it(after: float) -> None:
+    """One foot goes from the hop to its note, the other one lands where the hop goes."""
+    steps = danced([*ROWS, (2.5, {}), (2.5 + after, {1: R}), (3.5, {0: L})], {2: [0, 3]})
+    assert len(flights(planned(steps))) == 1
+    meets(steps)
+
+
+def test_a_hop_right_after_a_jump_is_over_its_mines() -> None:
+    """It has no time to go up before they pass: feet are pulled up."""
+    meets(danced([*ROWS, (2.0, {0: L, 3: R}), (2.083, {}), (3.5, {0: L})], {3: [0, 3]}))
+
+
 def test_a_foot_that_holds_does_not_leave_for_a_mine() -> None:
     events = [*ROWS, (2.0, {0: L}), (2.5, {}), (3.5, {3: R})]
     plan = planned(danced(events, {3: [0]}, holds={(2, 0): 3.0}))
@@ -146,6 +159,16 @@ def test_notes_of_one_foot_a_few_milliseconds_apart_are_two_swings() -> None:
     steps = play([*ROWS, (2.0, {2: L}), (2.0 + 1 / 96, {0: L}), (2.5, {3: R})])
     planned(steps)
     assert np.abs(report(bake(chart(), steps, pad())).contact_errors).max() < 1.0
+
+
+def test_a_foot_that_has_just_landed_taps_where_it_is() -> None:
+    """Two notes 21 ms apart on one panel: no shoe is shifted on it in that time, and the second tap is seen."""
+    steps = play([*ROWS, (2.0, {2: L}), (2.0 + 2 / 96, {2: L}), (2.3, {1: R}), (3.0, {0: L})])
+    first, again = [move for move in planned(steps).feet[0].moves if 1.9 < move.land < 2.1]
+    assert (again.target, again.yaw) == (first.target, first.yaw)
+    meets(steps)
+    measured = report(bake(chart(), steps, pad()))
+    assert measured["plant slide"].met
 
 
 def test_jumps_after_long_holds_leave_the_ground_a_time_to_push() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,7 @@ from dancetutor_cli.motion.footwork.chart_row import Row
 from dancetutor_cli.motion.footwork.flights import Goals, hop, take_off_for
 from dancetutor_cli.motion.footwork.foothold import Goal, Pose, landing
 from dancetutor_cli.motion.footwork.footing import Footing, Proposal
-from dancetutor_cli.motion.footwork.mines import flown_on, landed_early
+from dancetutor_cli.motion.footwork.mines import flown_on, landed_early, stayed_up
 from dancetutor_cli.rig.mass import GRAVITY
 
 Array = NDArray[np.float64]
@@ -20,9 +22,11 @@ def jump(row: Row, footing: Footing) -> Proposal:
     """Both feet land at a row."""
     numbers, time = footing.settings.jump, row.time
     footing, latest = flown_on(footing, time)
+    until = [time, time]
     for foot in footing.feet:
-        down, until = landed_early(foot, footing.settings, time)
-        footing, latest = footing.with_foot(down), min(latest, until)
+        down, until[foot.side] = landed_early(foot, footing.settings, time)
+        footing = footing.with_foot(down)
+    latest = min(latest, *until)
     columns = [under_the_foot(row, f) for f in footing.feet]
     goals = _goals(row, footing, columns)
     far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
@@ -32,7 +36,8 @@ def jump(row: Row, footing: Footing) -> Proposal:
     take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), numbers.flight_share * row.duration))
     if latest < take_off:  # over a mine
         take_off = max(latest, *(f.rested(time) for f in footing.feet))
-    return hop(row, footing, take_off, goals, columns, row.turned)
+    found = hop(row, footing, take_off, goals, columns, row.turned)
+    return replace(found, footing=stayed_up(footing, found.footing, until, take_off))
 
 
 def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:

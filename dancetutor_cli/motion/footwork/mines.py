@@ -53,7 +53,7 @@ def _hopped(footing: Footing, time: float) -> Footing:
     if take_off > time - SHORTEST:
         return footing
     goals, before = [_home(footing, foot) for foot in footing.feet], footing.feet
-    footing = flown(footing, Flight(take_off, time + half), goals, [_pitches(footing.settings.mines)] * 2)
+    footing = flown(footing, Flight(take_off, time + half, mined=True), goals, [_pitches(footing.settings.mines)] * 2)
     for foot, stood in zip(footing.feet, before, strict=True):
         footing = footing.with_foot(replace(foot, evading=Evading(time, time, stood.ball, stood.yaw)))
     return footing
@@ -157,11 +157,13 @@ def left_standing(other: FootState, settings: MotionSettings, lift: float, time:
 def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
     """A step soon after a mine: the foot stays up and goes straight to it, unless the other one stepped meanwhile.
 
-    Even then it does so if it would be down for no time at all. A hop of both feet is over before any step.
+    Even then it does so if it would be down for no time at all. So does a foot whose hop with the other one would not
+    be over by then.
 
     Returns the foot, evading nothing any more, and when it left the ground.
     """
-    evading = foot.evading if foot.moves and isinstance(foot.moves[-1], Hover) else None
+    over = foot.moves and (isinstance(foot.moves[-1], Hover) or foot.landed > time - settings.mines.push)
+    evading = foot.evading if over else None
     stepped = evading is not None and other.landed > evading.last and time - foot.landed > settings.mines.push
     if evading is None or time - evading.last > settings.step.longest or stepped:
         return replace(foot, evading=None), None
@@ -205,3 +207,19 @@ def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tupl
     up = foot.not_moved(evading)
     up = replace(up, landed=up.moves[-1].land if up.moves else -np.inf, free=min(swing.lift, foot.free))
     return up, max(evading.first - need, swing.lift)
+
+
+def stayed_up(before: Footing, after: Footing, until: list[float], take_off: float) -> Footing:
+    """The footing `after` a jump in which a foot that must be up over a mine before both can take off, for the other
+    one was up itself, stays up and comes down at its note.
+
+    until : when each foot must be up at the latest, seconds
+    """
+    for stood, foot, lift in zip(before.feet, after.feet, until, strict=True):
+        if lift < take_off - SHORTEST:
+            jump = foot.moves[-1]
+            bulge = around(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
+            height = before.settings.mines.height
+            up = Hover(lift, jump.land, jump.target, jump.yaw, jump.pitches, height, bulge)
+            after = after.with_foot(foot.moved_otherwise(up))
+    return after

@@ -14,7 +14,7 @@ import dancetutor_cli.motion.footwork as room
 from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Pivot, Step
 from dancetutor_cli.motion.footwork import footing as footing_module
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
-from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal
+from dancetutor_cli.motion.footwork.footing import Evading, Footing, FootState, Proposal, pair
 from dancetutor_cli.motion.footwork.holding import hold
 from dancetutor_cli.motion.footwork.jumps import jump
 from dancetutor_cli.motion.footwork.mines import avoid_mines
@@ -96,6 +96,22 @@ def test_a_foot_stays_as_it_is_for_one_that_goes_on_soon() -> None:
     across = replace(footing.feet[1], ball=own.panels[0] + np.array([-0.041, 0.020]), yaw=np.radians(-55.0))
     row = Row(danced, own, 1, 3.0, pressed_by(danced, 1), 0.5)
     assert step(row, 0, footing.with_foot(across)).footing.feet[1].yaw == across.yaw
+
+
+def test_a_foot_stays_up_from_its_mines_to_a_jump_where_the_other_one_was_up_between() -> None:
+    """Mines under the right foot at 2.5 and 2.69, under the left one between: both cannot take off before 2.5."""
+    danced, own = play([(1.0, {0: L}), (1.5, {3: R}), (2.78, {1: L, 2: R})]), context()
+    left, right = Footing.at_home(own, 0).feet
+    over = Hover(2.50, 2.69, pair(left.ball), 0.0, (0.1, 0.2, 0.0, 0.0), 0.06)
+    left = left.moved(over, left.ball, left.yaw)
+    up = replace(over, lift=2.33, land=2.86, target=pair(right.ball))
+    right = replace(right.moved(up, right.ball, 0.0), evading=Evading(2.5, 2.69, right.ball, 0.0))
+    footing = replace(Footing.at_home(own, 0), feet=(left, right))
+    row = Row(danced, own, 2, 2.78, pressed_by(danced, 2), 0.5)
+    stepped, stayed = (foot.moves[-1] for foot in jump(row, footing).footing.feet)
+    assert isinstance(stepped, Jump) and stepped.lift > 2.69
+    assert isinstance(stayed, Hover) and stayed.lift <= 2.5 - own.settings.mines.before
+    assert (stayed.land, stayed.height) == (2.78, own.settings.mines.height)
 
 
 def test_each_rule_is_asked() -> None:
