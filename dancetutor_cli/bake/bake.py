@@ -58,6 +58,7 @@ class How(TypedDict, total=False):
         the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
+    stays : she does not walk off after the last step
     let_go : why notes that no limb has in the play are let go, where the caller has decided that
     each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
@@ -67,6 +68,7 @@ class How(TypedDict, total=False):
     bar: bool
     gait: str
     sides: tuple[int, int] | None
+    stays: bool
     let_go: tuple[LetGo, ...]
     each: Each
 
@@ -121,7 +123,7 @@ def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Pla
     bar = how.get("bar", False)
     rail = bar_of(pad, settings.bar) if bar else None
     context = context_of(pad, holding(settings) if bar else settings, _beats(chart, play, rate), rail)
-    context = replace(context, sides=how.get("sides"))
+    context = replace(context, sides=how.get("sides"), stays=how.get("stays", False))
 
     def second(tick: int) -> float:
         return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate

@@ -176,7 +176,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         section=options["section"],
         sync=options["sync_offset"] / 1000,
         mute=options["mute"],
-        practice=_practice(options, layout),
+        practice=_practice(options, layout, film=form.h264),
         play=options["play"],
         character=check_character(options["character"]),
         bar=options["bar"],
@@ -190,14 +190,16 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
     )
 
 
-def _practice(options: dict[str, Any], layout: Layout) -> Practice:
+def _practice(options: dict[str, Any], layout: Layout, film: bool) -> Practice:
+    """film : of a passage she comes to rest after it; a GIF goes round, and pictures are those asked for"""
     from dancetutor_cli.video.layout import PracticePart
-    from dancetutor_cli.video.practice import Practice, parse_rates
+    from dancetutor_cli.video.practice import REST, Practice, parse_rates
 
     usual = layout.practice or PracticePart()
     rates = parse_rates(options["rate"]) if options["rate"] else usual.rates
     count_in = usual.count_in if options["count_in"] is None else options["count_in"]
-    return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"])
+    rest = REST if film else 0.0
+    return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"], rest)
 
 
 def _default_size(size: tuple[int, int], form: FilmFormat) -> tuple[int, int]:

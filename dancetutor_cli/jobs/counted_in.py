@@ -1,7 +1,8 @@
-"""While a film counts to its first step, nothing is danced or shown that comes before that."""
+"""What is neither danced nor shown: what comes before the step that a film counts to, and what follows a passage."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
@@ -31,6 +32,11 @@ def quiet_in(passes: Sequence[Pass]) -> Quiet | None:
     """While the runs of a film are counted in, which all begin at the same second; None without a count-in."""
     one = passes[0]
     return Quiet(one.start - SETTLED * max(p.rate for p in passes), one.sound_from) if one.count else None
+
+
+def quiet_after(passes: Sequence[Pass]) -> Quiet | None:
+    """From the end of a passage on, after which she comes to rest; None if the film ends with it."""
+    return Quiet(passes[-1].until, math.inf) if passes[-1].rest else None
 
 
 def play_without(play: Play, quiet: Quiet | None) -> Play:

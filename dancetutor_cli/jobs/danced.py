@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.counted_in import play_without, quiet_in
+from dancetutor_cli.jobs.counted_in import play_without, quiet_after, quiet_in
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.jobs.two import check_for_two, pad_of_both, place_on, sides_of
 from dancetutor_cli.lint.solved import solved_chart
@@ -119,7 +119,8 @@ def _motions(
 
     settings = load_settings(request.motion, request.form)
     passes = subject.clock.passes
-    play, pad = play_without(known[0], quiet_in(passes)), known[1]
+    after = quiet_after(passes)
+    play, pad = play_without(play_without(known[0], quiet_in(passes)), after), known[1]
     rates = sorted({one.rate for one in passes})
     fastest, gone = without_unplayable(at_rate(play, rates[-1]), pad, settings.unplayable)
     shown = replace(fastest, rows=play.rows)
@@ -143,6 +144,7 @@ def _motions(
                 settings=settings,
                 sides=sides,
                 let_go=gone,
+                stays=after is not None,
             ),
             request.style,
             settings,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.tempo import fastest_bpm
-from dancetutor_cli.jobs.counted_in import notes_without, play_without, quiet_in
+from dancetutor_cli.jobs.counted_in import notes_without, play_without, quiet_after, quiet_in
 from dancetutor_cli.jobs.film_request import FilmRequest, Subject
 from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.media.clicks import clicks_of
@@ -59,9 +59,10 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     solved, play, pad = dance.solved, dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
     quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls)
-    track = notes_without(whole_track, quiet)
+    after = quiet_after(clock.passes)
+    track = notes_without(notes_without(whole_track, quiet), after)
     presses = presses_of(track)
-    start, end = clock.passes[0].start, clock.passes[-1].end
+    start, end = clock.passes[0].start, clock.passes[-1].until
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
     who = dressed(request.character, request.gait)
@@ -75,20 +76,20 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         song=SongShape(np.unique(presses_of(whole_track).start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
         notes=track,
         presses=presses,
-        lines=beat_lines(chart, scrolls, end),
+        lines=beat_lines(chart, scrolls, clock.passes[-1].end),
         beats=scrolls.shown(chart.timing.beats(seconds)),
         speeds=speeds.at(seconds),
         scroll_bpm=_scroll_bpm(chart, track, speeds),
         directions=pad.directions,
         motions=motions,
         pad=pad,
-        rows=step_rows(play_without(play, quiet), _dancers(dance)),
+        rows=step_rows(play_without(play_without(play, quiet), after), _dancers(dance)),
         character=character,
         partners=partners,
         callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
         cues=tuple(_cues(dance)),
     )
-    fade = 0.0 if request.section else 1.0
+    fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
     clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
     sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -102,7 +102,10 @@ def look_up(request: FilmRequest) -> Subject:
     start, end = _section(request, song, chart, preset)
     if request.background:
         start, end = _with_the_music(end, music)
-    clock = Clock(passes_of(chart, request.practice, start, end), request.fps)
+    practice = request.practice
+    if request.section is None or end >= whole_song(chart)[1]:
+        practice = replace(practice, rest=0.0)
+    clock = Clock(passes_of(chart, practice, start, end), request.fps)
     return Subject(song, chart, preset, clock, music, request.section is not None, (*warnings, *notes))
 
 

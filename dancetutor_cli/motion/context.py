@@ -27,6 +27,7 @@ class Context:
     panels : (c, 2) world x and z of every panel's centre; squares : (s, 2) of the middle of each square of nine panels
     ground : the pad as a rectangle, and the floor around it
     beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
+    stays : she does not walk off after the last step
     sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
     """
 
@@ -38,6 +39,7 @@ class Context:
     beats: tuple[float, ...] = ()
     bar: Bar | None = None
     sides: tuple[int, int] | None = None
+    stays: bool = False
 
 
 def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:

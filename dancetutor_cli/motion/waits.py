@@ -119,7 +119,8 @@ def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
     busy += [(press.start - press.lead, press.end + down) for press in plan.presses]
     busy += [(walk.start, walk.end) for walk in plan.walks]
     free = -np.inf
-    for start, end in [*sorted(busy), (np.inf, np.inf)]:
+    after = [] if context.stays else [(np.inf, np.inf)]  # at the end of a passage she just stands
+    for start, end in [*sorted(busy), *after]:
         if start - free >= numbers.after:
             yield free + numbers.begin, start - numbers.ready
         free = max(free, end)

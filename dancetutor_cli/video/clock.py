@@ -13,6 +13,7 @@ class Pass:
     """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
 
     sound_from : the music is silent before this second, while `count` beats are counted in
+    rest : seconds of the music at its end in which nobody steps and the music fades: she comes to rest
     """
 
     start: float
@@ -20,6 +21,12 @@ class Pass:
     rate: float = 1.0
     sound_from: float = -math.inf
     count: int = 0
+    rest: float = 0.0
+
+    @property
+    def until(self) -> float:
+        """The second of the music up to which its notes are danced."""
+        return self.end - self.rest
 
     @property
     def seconds(self) -> float:

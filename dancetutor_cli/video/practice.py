@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+REST = 1.5  # seconds of a film of a passage that follow it: time for her to finish the step, stand and smile
 COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; songs of gimmicks are at 19 beats a minute
 
 
@@ -24,7 +25,8 @@ COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; so
 class Practice:
     """What helps to learn. rates : speeds of the runs in turn; loop : number of runs (0: one for each rate)
 
-    count_in : beats counted before each run; claps : a clap on each step; metronome : a tick on each beat
+    count_in : beats counted before each run; rest : seconds of film after the last one, in which she comes to rest
+    claps : a clap on each step; metronome : a tick on each beat
     """
 
     rates: tuple[float, ...] = (1.0,)
@@ -32,6 +34,7 @@ class Practice:
     count_in: int = 0
     claps: bool = False
     metronome: bool = False
+    rest: float = 0.0
 
 
 def parse_rates(text: str) -> tuple[float, ...]:
@@ -60,7 +63,9 @@ def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tup
         lead = practice.count_in * _counted(beat, min(practice.rates))
     count = practice.loop or len(practice.rates)
     rates = (practice.rates[i % len(practice.rates)] for i in range(count))
-    return tuple(Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates)
+    runs = [Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates]
+    rest = practice.rest * runs[-1].rate
+    return (*runs[:-1], replace(runs[-1], end=end + rest, rest=rest))
 
 
 def _counted(beat: float, rate: float) -> float:

@@ -62,7 +62,7 @@ def test_hostile_files_are_one_line_and_no_film(
         (("-o", "nowhere/film.mp4"), "folder"),
         (("--font", "nofont.ttf", "--section", "4:5"), "nofont.ttf"),
         (("--push", "9:300:up"), "ahead, left, back, right"),
-        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 9.000 s"),
+        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 10.500 s"),
     ],
 )
 def test_what_does_not_exist_is_refused_with_what_does(
@@ -148,3 +148,16 @@ def test_a_long_gif_is_made_with_a_note(tmp_path: Path, capsys: pytest.CaptureFi
     song.write_text(SONG + "1000\n0100\n0010\n0001\n,\n" * 12 + "1000\n0000\n0000\n0000\n;\n")
     assert render(song, "-o", tmp_path / "film.gif", "-q", "--jobs", "1", *TINY) == 0
     assert "choose a part with --section" in capsys.readouterr().err and (tmp_path / "film.gif").exists()
+
+
+def test_a_film_of_a_passage_has_time_to_come_to_rest_and_pictures_of_it_have_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    small = ("--index", "0", "--layout", "highway", "--size", "64x64", "--section", "8:9", "--mute", "--jobs", "1")
+    for to, length in (
+        (("-o", str(tmp_path / "a.mp4")), "2.5 s"),
+        (("-o", str(tmp_path / "a.gif")), "1.0 s"),
+        (("--frames", str(tmp_path / "frames")), "30 pictures"),
+    ):
+        assert render(DEMO, *small, *to) == 0
+        assert f": {length}, 64x64" in capsys.readouterr().out

@@ -60,6 +60,8 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
 
     Beside another dancer she goes to her own side, or stays.
     """
+    if context.stays:
+        return None
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.moves[-1:])) + walk.pause
     begin = standing(plan.feet, np.inf, plan.turns)

@@ -1,0 +1,76 @@
+"""A film of a passage ends with her standing: what follows the passage is neither danced nor shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.jobs.counted_in import quiet_after
+from dancetutor_cli.jobs.film_plan import Prepared, prepare
+from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.video.film_look import FilmLook
+from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.practice import REST, Practice
+
+STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
+RATES = (0.5, 1.25)
+
+
+@pytest.fixture(scope="module")
+def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four steps a second for 16 seconds."""
+    path = tmp_path_factory.mktemp("rest") / "stream.sm"
+    notes = ",\n".join([STREAM] * 8)
+    path.write_text(f"#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :\n{notes};\n")
+    return path
+
+
+def asked(song: Path, section: str | None, practice: Practice) -> FilmRequest:
+    look = FilmLook(load_layout("dancer"), (320, 180), "draft", "cpu")
+    return FilmRequest(song, Selection(), look, fps=30, section=section, mute=True, practice=practice)
+
+
+@pytest.fixture(scope="module")
+def prepared(song: Path) -> Prepared:
+    wanted = asked(song, "6:8", Practice(RATES, rest=REST))
+    return prepare(wanted, look_up(wanted))
+
+
+def test_the_last_run_alone_lasts_longer(prepared: Prepared) -> None:
+    first, last = prepared.plan.clock.passes
+    assert (first.end, first.rest) == (8.0, 0.0)
+    assert last.end == pytest.approx(8.0 + 1.25 * REST) and last.until == pytest.approx(8.0)
+    assert prepared.plan.clock.seconds == pytest.approx(2 / 0.5 + 2 / 1.25 + REST)
+
+
+def test_what_follows_the_passage_is_neither_danced_nor_shown(prepared: Prepared) -> None:
+    plan = prepared.plan
+    for seconds in (plan.notes.second, plan.presses.start):
+        assert (seconds == 7.75).any() and not (seconds >= 8.0).any()
+    assert (plan.song.steps > 8.0).any(), "the strip shows the whole song"
+    for rate, motion in plan.motions.items():
+        starts = np.array([contact.start for contact in motion.contacts]) * rate
+        assert (np.abs(starts - 7.75) < 0.02).any() and not (starts > 7.99).any()
+
+
+def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
+    motion = prepared.plan.motions[1.25]
+    places, _ = world_transforms(motion.skeleton, motion.rotations, motion.root)
+    end = prepared.plan.clock.passes[-1].end / 1.25
+    late = (motion.times > end - 0.7) & (motion.times <= end)
+    feet = places[late][:, [motion.skeleton.index(f"{side}_metatarsal") for side in "lr"]]
+    assert np.ptp(feet, axis=0).max() < 0.003, "no foot moves"
+    hips = places[late][:, 0]
+    assert np.linalg.norm(np.diff(hips, axis=0), axis=1).max() * 60 < 0.25
+    jaw = motion.rotations[late][-1, motion.skeleton.index("temporomandibular"), 0]
+    assert np.degrees(2 * np.arccos(jaw)) > 5.0
+
+
+@pytest.mark.parametrize(("section", "rest"), [(None, REST), ("6:19", REST), ("6:8", 0.0)])
+def test_no_rest_is_added_behind_a_song_nor_to_pictures(song: Path, section: str | None, rest: float) -> None:
+    clock = look_up(asked(song, section, Practice(rest=rest))).clock
+    assert clock.passes[-1].rest == 0.0 and quiet_after(clock.passes) is None
