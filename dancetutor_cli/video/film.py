@@ -194,7 +194,12 @@ class Film:
         camera = look.camera or self.layout.dancer.camera
         size = (right - left, bottom - top)
         shot = dancer.Shot(
-            size, camera, look.quality, look.renderer, self.layout.dancer.region, stands=self.layout.screen is not None
+            size,
+            camera,
+            look.quality,
+            look.renderer,
+            self.layout.region(self._breadth),
+            stands=self.layout.screen is not None,
         )
         return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character, plan.partners)
 

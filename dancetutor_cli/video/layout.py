@@ -91,9 +91,10 @@ class PracticePart:
 
 @dataclass(frozen=True, slots=True)
 class WideBoxes:
-    """Other boxes for pads of more than five panels; None where the part stays where it is."""
+    """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's."""
 
     dancer: Box | None = None
+    region: Box | None = None
     highway: Box | None = None
     header: Box | None = None
     legend: Box | None = None
@@ -136,8 +137,16 @@ class Layout:
         that it is shown on."""
         if name == "highway" and self.screen is not None:
             size = self.screen.pixels
-        other = getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
-        return pixels(other or getattr(self, name).box, size)
+        return pixels(self._other(name, columns) or getattr(self, name).box, size)
+
+    def region(self, columns: int) -> Box:
+        """The share of her box that the dancer fills, if there is one."""
+        usual = (0.0, 0.0, 1.0, 1.0) if self.dancer is None else self.dancer.region
+        return self._other("region", columns) or usual
+
+    def _other(self, name: str, columns: int) -> Box | None:
+        """What holds instead on a wide pad."""
+        return getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
 
 
 def pixels(box: Box, size: tuple[int, int]) -> PixelBox:
@@ -173,7 +182,13 @@ def _checked(path: Path) -> Layout:
     for name in ("dancer", "highway", "header", "calls", "runs", "count", "legend", "progress", "feet", "next"):
         part, other = getattr(layout, name), getattr(layout.wide, name, None)
         inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
-        for where, box in ((f"{name}.region", inner), (f"{name}.box", part and part.box), (f"wide.{name}", other)):
+        other_inner = layout.wide.region if name == "dancer" and layout.wide is not None else None
+        for where, box in (
+            (f"{name}.region", inner),
+            ("wide.region", other_inner),
+            (f"{name}.box", part and part.box),
+            (f"wide.{name}", other),
+        ):
             if box is not None and not _inside(box):
                 raise FileError(path, f"{where}: left, top, right, bottom must be shares 0 to 1 in rising order")
     return layout

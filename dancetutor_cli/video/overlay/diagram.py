@@ -253,7 +253,7 @@ class NextRows:
         """Where the name of a pad stands: in the middle above it, or on its left."""
         left, top, right, bottom = pads.edges
         if self._above:
-            return (left + right - name.shape[1]) / 2, round(top - name.shape[0])
+            return (left + right - name.shape[1]) / 2, int(top) - name.shape[0]
         return left - name.shape[1] - 2, round((top + bottom - name.shape[0]) / 2)
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:

@@ -232,3 +232,23 @@ def test_numbers_of_measures_can_be_read(name: str, columns: int, calls: tuple[C
     geometry = highway.geometry
     edge = geometry.left - 0.2 * geometry.lane - three.shape[1]
     assert edge >= geometry.box[0]
+
+
+@pytest.mark.parametrize("steps", ["dance-double", "pump-double", "pump-halfdouble"])
+def test_practice_shows_the_whole_of_a_wide_pad(steps: str) -> None:
+    """Wherever she is on it, and her no smaller for it."""
+    from dancetutor_cli.character import load_dancer
+
+    pad, layout = load_pad(steps), load_layout("practice")
+    assert pad is not None and layout.dancer is not None
+    columns = len(pad)
+    left, top, right, bottom = layout.box("dancer", layout.size, columns)
+    scene, size = Scene(load_dancer(), pad), (right - left, bottom - top)
+    assert layout.region(columns) != layout.region(4) == layout.dancer.region
+    camera = scene.camera(layout.dancer.camera, size, layout.region(columns))
+    low, high = scene.extent
+    corners = np.array([(x, 0.0, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    seen = camera.project(corners, size)
+    assert (seen[:, :2] >= 0).all() and (seen[:, :2] <= size).all()
+    feet, head = camera.project(np.array([(0.0, 0.0, 0.0), (0.0, 1.7, 0.0)]), size)
+    assert feet[1] - head[1] > 0.42 * layout.size[1]
