@@ -8,7 +8,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart.decoding import shown
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.chart.reader import suspicious_music
+from dancetutor_cli.chart.song_reader import suspicious_music
 from dancetutor_cli.errors import FileError, MissingFileError
 
 SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
