@@ -18,7 +18,7 @@ from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library import find_files
-from dancetutor_cli.lint.configuration import default_rules
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import TimedRule
 from dancetutor_cli.lint.subject import ChartSubject

@@ -6,15 +6,15 @@ answer: a question here is an array over the rows of all plays, or one number fo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.lint.joined_plays import JoinedPlays
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Limb, Play, StepKind
 from dancetutor_cli.play.vocabulary import EVENTS
@@ -25,7 +25,6 @@ _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _NONE, _ROLL_TAP = int(StepKind.NONE), int(StepKind.ROLL_TAP)
 WRITTEN = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
 WRITTEN[[_NONE, _ROLL_TAP]] = False
-_PLAY = 40  # bits of a tick: a later play comes after every tick of the one before
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,122 +59,32 @@ class Travels(NamedTuple):
     seconds: NDArray[np.float64]
 
 
-class Plays:
-    """k plays of c columns; n rows in all, and what is about rows counts them from the first of the first play.
-
-    plays : as they were given; first : for each its first row; and n
-    """
+class Plays(JoinedPlays):
+    """What rules ask of plays: k of them, n rows in all and c columns, as in `JoinedPlays`."""
 
     def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
-        self.plays = plays
-        self.pad = pad
-        self.first = [0, *accumulate(len(play.rows) for play in plays)]
+        super().__init__(plays, pad)
         self._rows_with: dict[str, NDArray[np.int64]] = {}
         self._having: dict[str, list[bool]] = {}
         self._soonest: dict[str, list[float]] = {}
 
-    def play(self, number: int) -> Play:
-        """One of the plays."""
-        return self.plays[number]
-
-    def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
-        """Those of some ascending rows that are of one play, counted from its first."""
-        first, after = self.first[number], self.first[number + 1]
-        low, high = rows.searchsorted((first, after)).tolist()
-        return np.asarray(rows[low:high] - first)
-
-    def of_each(self, rows: NDArray[np.int64]) -> list[list[int]]:
-        """For each play those of some ascending rows that are of it, counted from its first."""
-        bounds, own = rows.searchsorted(self.first).tolist(), (rows - self.start[rows]).tolist()
-        return [own[low:high] for low, high in pairwise(bounds)]
-
-    def least(self, rows: NDArray[np.int64], values: NDArray[np.float64]) -> list[float]:
-        """For each play the least of the values that some rows have; endless where it has none."""
-        found = np.full(len(self.plays), np.inf)
-        np.minimum.at(found, self.number[rows], values)
-        return found.tolist()
-
-    def how_often(self, rows: NDArray[np.int64]) -> list[int]:
-        """How many of some rows, which may come twice, each play has."""
-        counts: list[int] = np.bincount(self.number[rows], minlength=len(self.plays)).tolist()
-        return counts
-
-    def _joined(self, arrays: Iterator[NDArray[Any]]) -> NDArray[Any]:
-        every = list(arrays)
-        return every[0] if len(every) == 1 else np.concatenate(every)
-
-    @cached_property
-    def number(self) -> NDArray[np.int64]:
-        """(n,) of which play a row is."""
-        return np.arange(len(self.plays)).repeat(np.diff(self.first))
-
-    @cached_property
-    def start(self) -> NDArray[np.int64]:
-        """(n,) the first row of its play."""
-        return np.asarray(np.array(self.first)[self.number])
-
-    @cached_property
-    def second(self) -> NDArray[np.float64]:
-        """(n,) seconds."""
-        return self._joined(play.rows.second for play in self.plays)
-
-    @cached_property
-    def tick(self) -> NDArray[np.int64]:
-        """(n,) ticks that ascend from play to play."""
-        return np.asarray(self._joined(play.rows.tick for play in self.plays) + (self.number << _PLAY))
-
-    @cached_property
-    def margin(self) -> NDArray[np.int64]:
-        """(n,) margins, -1 where nobody asked."""
-        none = (np.full(len(play.rows), -1) if play.margin is None else play.margin for play in self.plays)
-        return self._joined(none)
-
-    @cached_property
-    def facing(self) -> NDArray[np.float64]:
-        """(n,) degrees."""
-        return self._joined(play.facing for play in self.plays)
-
-    @cached_property
-    def limb(self) -> NDArray[np.int8]:
-        """(n, c) limbs."""
-        return self._joined(play.limb for play in self.plays)
-
-    @cached_property
-    def part(self) -> NDArray[np.uint8]:
-        """(n, c) parts of feet."""
-        return self._joined(play.part for play in self.plays)
-
-    @cached_property
-    def steps(self) -> NDArray[np.uint8]:
-        """(n, c) kinds of steps."""
-        return self._joined(play.rows.steps for play in self.plays)
-
-    @cached_property
-    def limb_by_column(self) -> NDArray[np.int8]:
-        """(c, n) limbs: numpy goes along few long rows ten times as fast as along many short ones."""
-        return np.ascontiguousarray(self.limb.T)
-
-    @cached_property
-    def _steps_by_column(self) -> NDArray[np.uint8]:
-        return np.ascontiguousarray(self.steps.T)
-
     @cached_property
     def real(self) -> NDArray[np.bool_]:
         """(c, n) where a step is that the file has: no tap of a roll."""
-        return WRITTEN[self._steps_by_column]
+        return WRITTEN[self.steps_by_column]
 
     @cached_property
     def _heads(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
         """Row, column and end (as `tick`) of every hold."""
-        ends = self._joined(play.rows.hold_end for play in self.plays).ravel()
+        ends = self.joined(play.rows.hold_end for play in self.plays).ravel()
         cell = np.flatnonzero(ends >= 0)
         row, column = np.divmod(cell, len(self.pad))
-        return row, column, ends[cell] + (self.number[row] << _PLAY)
+        return row, column, self.tick_in(ends[cell], row)
 
     @cached_property
     def mined(self) -> NDArray[np.bool_]:
         """(n,) whether a row has a mine."""
-        mines = self._joined(play.rows.mines for play in self.plays)
+        mines = self.joined(play.rows.mines for play in self.plays)
         found = np.zeros(len(mines), dtype=bool)
         found[np.flatnonzero(mines.ravel()) // len(self.pad)] = True
         return found
@@ -193,7 +102,7 @@ class Plays:
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
         """Rows with a step, also if nobody presses it."""
-        return np.flatnonzero(self._steps_by_column.any(axis=0))
+        return np.flatnonzero(self.steps_by_column.any(axis=0))
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
@@ -212,7 +121,7 @@ class Plays:
     def lone(self) -> NDArray[np.bool_]:
         """(n,) whether one limb presses one panel in a row, and it is no tap of a roll."""
         lone = (self.limb_by_column >= 0).sum(axis=0) == 1
-        taps = self._steps_by_column == _ROLL_TAP
+        taps = self.steps_by_column == _ROLL_TAP
         return np.asarray(lone & ~taps.any(axis=0) if taps.any() else lone)
 
     @cached_property
@@ -231,7 +140,7 @@ class Plays:
             change = np.zeros(len(down) + 1, dtype=np.int64)
             np.add.at(change, first, 1)
             np.add.at(change, np.maximum(after, first), -1)
-            down += (change.cumsum()[:-1] > 0) & (self._steps_by_column[column] == _NONE)
+            down += (change.cumsum()[:-1] > 0) & (self.steps_by_column[column] == _NONE)
         return np.asarray(down)
 
     @cached_property
@@ -285,7 +194,7 @@ class Plays:
         """Names of moves, and (n,) which of them happen in a row: the bit of a name is its place in the list."""
         names = list(EVENTS)
         of_plays = [_bits_of(play, names) if play.events is None else play.events for play in self.plays]
-        return names, self._joined(iter(of_plays))
+        return names, self.joined(iter(of_plays))
 
     def rows_with(self, move: str) -> NDArray[np.int64]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""

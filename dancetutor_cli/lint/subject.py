@@ -1,4 +1,4 @@
-"""What a rule looks at: a file, or one chart with its play, and where things stand in them."""
+"""What a rule looks at: a file, or one chart with its play."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Song
 from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
 from dancetutor_cli.lint.beginnings import Beginnings
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.foot_questions import Feet
 from dancetutor_cli.lint.note_questions import Notes
+from dancetutor_cli.lint.places import PlacedChart
 from dancetutor_cli.lint.together import Shared
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.played import Ambiguity, Limb, Play, StepKind
+from dancetutor_cli.play.played import Ambiguity, Limb, StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.meter.estimate import Sized
@@ -55,16 +56,13 @@ class FileSubject:
 
 
 @dataclass(frozen=True)
-class ChartSubject:
+class ChartSubject(PlacedChart):
     """One chart; `play` and `pad` are None where the steps type has no pad.
 
     overrides : feet that people laid down; ignores, problems : findings they do not want to see, and what is wrong in
     what they said
     """
 
-    song: Song
-    chart: Chart
-    play: Play | None
     pad: Pad | None = None
     overrides: Overrides | None = None
     ignores: Ignores = field(default_factory=Ignores)
@@ -185,11 +183,6 @@ class ChartSubject:
         within = [float(bpm) for tick, bpm in self.chart.timing.bpms if first < tick <= last]
         return [self.chart.timing.bpm_at(first), *within]
 
-    def margin(self, row: int) -> int | None:
-        """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
-        margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
-        return None if margin < 0 else margin
-
     def sureness(self, beat: float) -> tuple[int | None, float | None]:
         """Margin and confidence of the feet in a row and in that with a step before it, the lesser; None: not known."""
         play = self.play
@@ -208,11 +201,6 @@ class ChartSubject:
         sure = [1.0 if one is None else one for one in known]
         return sure.index(max(sure))
 
-    def beat(self, row: int) -> float:
-        """Beat of a row of the play."""
-        assert self.play is not None
-        return round(int(self.play.rows.tick[row]) / TICKS_PER_BEAT, 6)
-
     def ties(self) -> Iterator[tuple[int, bool]]:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
         if self.play is None or self.feet is None:
@@ -228,11 +216,6 @@ class ChartSubject:
             return 0.0
         return abs(float(self.play.rows.second[rows[-1]] - self.play.rows.second[rows[0]]))
 
-    def pressed(self, row: int) -> list[int]:
-        """Note columns that have a step in a row of the play."""
-        assert self.play is not None
-        return [column for column, kind in enumerate(self.play.rows.steps[row].tolist()) if kind]
-
     def foot_name(self, row: int) -> str:
         """ "left" or "right": the foot that presses the first panel of a row which only one foot steps."""
         assert self.play is not None
@@ -243,87 +226,3 @@ class ChartSubject:
         """How many steps of a row no limb is left for."""
         assert self.play is not None
         return int((self.play.limb[row] == Limb.UNPLAYED).sum())
-
-    def file_line(self, row: int) -> int:
-        """Line in the file of a row of the play; where only a roll made it, of the row written before."""
-        return int(self.file_lines[row])
-
-    @cached_property
-    def file_lines(self) -> NDArray[np.int32]:
-        """The same of every row."""
-        assert self.play is not None
-        lines, written = self.play.rows.line, self.chart.rows
-        if not len(written.tick) or (lines > 0).all():
-            return np.maximum(lines, self.chart.line)
-        before = written.tick.searchsorted(self.play.rows.tick, side="right") - 1
-        return np.where(lines > 0, np.maximum(lines, self.chart.line), written.line[np.maximum(before, 0)])
-
-    def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
-        """Where a row of the play stands, as keyword arguments of `Finding`; without `note_column`: its first step."""
-        assert self.play is not None
-        if note_column is None:
-            note_column = next(iter(self.pressed(row)), None)
-        line = self.file_line(row)
-        return {
-            "line": line,
-            "column": self._text_column(line, note_column or 0),
-            "note_column": note_column,
-            "margin": self.margin(row),
-            **self._time(int(self.play.rows.tick[row]), float(self.play.rows.second[row])),
-        }
-
-    def at_line(self, line: int | None) -> dict[str, Any]:
-        """Where a line of the chart stands; with a beat if it is a row of the note data."""
-        line = self.chart.line if line is None else line
-        place: dict[str, Any] = {"line": line, "column": 1, "chart": self.chart.index}
-        rows = self.chart.rows
-        found = int(rows.line.searchsorted(line))
-        if found < len(rows.line) and rows.line[found] == line:
-            tick = int(rows.tick[found])
-            place |= {"beat": tick / TICKS_PER_BEAT, "measure": int(rows.measure[found])}
-        return place
-
-    def at_tick(self, tick: int, line: int) -> dict[str, Any]:
-        """Where a note of the chart stands that may be in no row of the play."""
-        second = float(self.chart.timing.seconds(np.array([tick]))[0])
-        return {"line": line, "column": self._text_column(line, 0), **self._time(tick, second)}
-
-    def at_chart(self) -> dict[str, Any]:
-        """Where the chart itself starts."""
-        return {"line": self.chart.line, "column": 1, "chart": self.chart.index}
-
-    def _time(self, tick: int, second: float) -> dict[str, Any]:
-        return {
-            "beat": tick / TICKS_PER_BEAT,
-            "measure": tick // TICKS_PER_MEASURE,
-            "second": second,
-            "chart": self.chart.index,
-        }
-
-    def _text_column(self, line: int, note_column: int) -> int:
-        """1-based column of a note's character on its line; keysounds and blanks before it are counted."""
-        rows = self.chart.rows
-        found = int(rows.line.searchsorted(line))
-        if found >= len(rows.line) or rows.line[found] != line:
-            return 1
-        start, end = int(rows.start[found]), int(rows.end[found])
-        line_start = self.song.data.rfind(b"\n", 0, start) + 1
-        text = self.song.data[start:end]
-        if b"[" in text:
-            places = list(_note_offsets(text))
-            inside = places[note_column] if note_column < len(places) else 0
-        else:
-            inside = note_column if note_column < len(text) else 0
-        return start - line_start + inside + 1
-
-
-def _note_offsets(row: bytes) -> Iterator[int]:
-    """Offsets of the note characters of a row; ``[...]`` keysounds stand between them."""
-    inside_keysound = False
-    for offset, byte in enumerate(row):
-        if inside_keysound:
-            inside_keysound = byte != ord("]")
-        elif byte == ord("["):
-            inside_keysound = True
-        else:
-            yield offset

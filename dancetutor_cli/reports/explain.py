@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 
-from dancetutor_cli.lint.configuration import default_rules, default_severity
+from dancetutor_cli.lint.layers import default_rules, default_severity
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule
 from dancetutor_cli.lint.times import described

@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 import dancetutor_cli
 from dancetutor_cli.jobs.result import FileResult
-from dancetutor_cli.lint.configuration import default_rules
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import FAMILIES, Rule
 from dancetutor_cli.reports.safe import safe

@@ -10,11 +10,11 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.library.settings_file import Condition, find_settings_file
 from dancetutor_cli.lint.configuration import (
     Configuration,
-    default_rules,
     load_configuration,
     with_assignments,
     with_selection,
 )
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.play import preset_names
 
@@ -36,7 +36,7 @@ def test_every_rule_has_defaults_and_every_default_a_rule() -> None:
 
 def test_a_rule_without_a_line_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     more = {**all_rules(), "DT299": all_rules()["DT202"]}
-    monkeypatch.setattr("dancetutor_cli.lint.configuration.all_rules", lambda: more)
+    monkeypatch.setattr("dancetutor_cli.lint.layers.all_rules", lambda: more)
     with pytest.raises(FileError, match=r"default\.yaml: rule DT299 has no line under 'rules'"):
         default_rules.__wrapped__()
 

@@ -16,7 +16,7 @@ import yaml
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.feet import Overrides
-from dancetutor_cli.lint.configuration import default_rules
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import ChartRule, ReaderRule
 from dancetutor_cli.lint.subject import ChartSubject

@@ -8,8 +8,9 @@ import pytest
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.lint.check import check_chart, check_file
-from dancetutor_cli.lint.configuration import default_rules, load_configuration, with_assignments
+from dancetutor_cli.lint.configuration import load_configuration, with_assignments
 from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.solved import solved_chart
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 from dancetutor_cli.play import load_preset

@@ -8,7 +8,8 @@ import pytest
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.lint import times
-from dancetutor_cli.lint.configuration import default_rules, load_configuration, with_assignments
+from dancetutor_cli.lint.configuration import load_configuration, with_assignments
+from dancetutor_cli.lint.layers import default_rules
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.lint.rule import BY_METER, TimedRule
 from dancetutor_cli.reports.explain import explain
