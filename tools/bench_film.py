@@ -178,8 +178,9 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
     from dancetutor_cli.jobs.film_request import FilmRequest
-    from dancetutor_cli.jobs.film_work import common_to_workers
-    from dancetutor_cli.jobs.pool import ProcessWorkers, default_jobs
+    from dancetutor_cli.jobs.film_segments import common_to_workers
+    from dancetutor_cli.jobs.pool import default_jobs
+    from dancetutor_cli.jobs.processes import ProcessWorkers
     from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout

@@ -36,7 +36,8 @@ from dancetutor_cli.outputs import check_file, one_of
 if TYPE_CHECKING:
     from dancetutor_cli.bake import MotionReport
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.bake import Asked, BakedDance
+    from dancetutor_cli.jobs.bake import Asked
+    from dancetutor_cli.jobs.baked_dance import BakedDance
 
 _FILE = click.Path(path_type=Path)
 
@@ -121,7 +122,8 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
     from dancetutor_cli.character.partner import partner_of
-    from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, style_for, tasks_of
+    from dancetutor_cli.jobs.bake import BakeTask, ask, style_for, tasks_of
+    from dancetutor_cli.jobs.baked_dance import BakedDance
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe

@@ -89,7 +89,7 @@ def _batch(
 
 
 def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
-    from dancetutor_cli.jobs.film_work import common_to_workers, frames_of
+    from dancetutor_cli.jobs.film_segments import common_to_workers, frames_of
     from dancetutor_cli.jobs.pool import open_workers
 
     if scheduler is None:

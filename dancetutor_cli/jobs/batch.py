@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs.film_segments import render_segment
 from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome, Opened
 from dancetutor_cli.jobs.pool import Finished, Task, Workers
 
@@ -89,7 +90,7 @@ class Batch:
         self.opened(sum(part.last - part.first for part in opened.missing))
         for part in opened.missing:
             arguments = (opened.plan, part, film.job.encoding)
-            self.workers.submit(Task(("segment", number, part.number), film_work.render_segment, arguments))
+            self.workers.submit(Task(("segment", number, part.number), render_segment, arguments))
         return None if opened.missing else self._after_segments(number, film)
 
     def _after_segments(self, number: int, film: _Film) -> FilmOutcome | None:

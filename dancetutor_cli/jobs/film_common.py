@@ -9,10 +9,10 @@ import gc
 from contextlib import suppress
 
 from dancetutor_cli.jobs import film_plan as film_plan
-from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs import film_segments
 from dancetutor_cli.startup import collect_seldom
 
 collect_seldom()
 with suppress(Exception):  # a film that needs what is missing will say so
-    film_work.warm_up(lambda units: None)
+    film_segments.warm_up(lambda units: None)
 gc.freeze()  # nobody looks through it for garbage, which would give each worker a copy

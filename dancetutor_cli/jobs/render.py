@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.jobs import film_segments as drawing
 from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.pool import Task, Workers, open_workers
@@ -62,10 +63,10 @@ def _remove(folder: Path) -> None:
 
 @contextmanager
 def _workers(jobs: int, progress: ProgressListener, kind: RendererKind) -> Iterator[Workers]:
-    common = work.common_to_workers(kind) if jobs > 1 else ""
+    common = drawing.common_to_workers(kind) if jobs > 1 else ""
     workers = open_workers(jobs, lambda _key, frames: progress.advance(frames), common)
     if jobs > 1 and not common:
-        workers.submit(Task(("warm-up", 0), work.warm_up))
+        workers.submit(Task(("warm-up", 0), drawing.warm_up))
     try:
         yield workers
     finally:
@@ -95,15 +96,15 @@ def make_film(
         prepared = prepare()
         plan = prepared.plan
         plan_file = folder / "plan.pickle"
-        work.write_plan(plan, plan_file)
-        parts = work.segments(plan.clock.frames, encoding, folder)
+        drawing.write_plan(plan, plan_file)
+        parts = drawing.segments(plan.clock.frames, encoding, folder)
         progress.begin(plan.clock.frames, encoding.fps)
         for part in parts:
-            workers.submit(Task(part.number, work.render_segment, (plan_file, part, encoding)))
+            workers.submit(Task(part.number, drawing.render_segment, (plan_file, part, encoding)))
         sound = work.write_sound(prepared, encoding, folder)
         for done in workers.done():
             if done.error is not None:
                 raise done.error
         work.finish(parts, encoding, sound, folder, output)
-        work.forget()
+        drawing.forget()
     return prepared

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs import film_segments, film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
 from dancetutor_cli.jobs.film_request import FilmRequest
@@ -221,11 +221,11 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
             path.write_bytes(b"half a segment")
         raise FileError(path, "No space left on device")
 
-    monkeypatch.setattr(film_work, "_film", lambda plan: Pictures())
+    monkeypatch.setattr(film_segments, "_film", lambda plan: Pictures())
     monkeypatch.setattr("dancetutor_cli.video.media.encoder.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]
-        segment = film_work.Segment(0, 0, 4, tmp_path / name)
+        segment = film_segments.Segment(0, 0, 4, tmp_path / name)
         with pytest.raises(FileError):
-            film_work.render_segment(lambda n: None, tmp_path / "plan", segment, encoding)
+            film_segments.render_segment(lambda n: None, tmp_path / "plan", segment, encoding)
     assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == []

@@ -18,7 +18,8 @@ from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.cluster import ClusterWorkers
 from dancetutor_cli.jobs.film_list import film_list
-from dancetutor_cli.jobs.film_work import STATE, frames_of
+from dancetutor_cli.jobs.film_segments import frames_of
+from dancetutor_cli.jobs.film_work import STATE
 from dancetutor_cli.jobs.pool import SerialWorkers
 
 

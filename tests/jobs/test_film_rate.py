@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import BakedDance, BakeTask, ask, bake_asked
+from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.jobs.baked_dance import BakedDance
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection

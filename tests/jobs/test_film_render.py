@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs import film_segments
 from dancetutor_cli.jobs.film_plan import Prepared
 from dancetutor_cli.jobs.render import make_film
 from dancetutor_cli.video.choices import QUALITIES, Quality
@@ -211,12 +211,12 @@ def test_only_drafts_trade_sound_for_time(tmp_path: Path, monkeypatch, quality: 
 @pytest.mark.parametrize("kept", [True, False])
 def test_one_worker_compiles_for_all(monkeypatch, kept):
     monkeypatch.setattr("dancetutor_cli.kernels.is_kept", lambda kernel: kept)
-    assert bool(film_work.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
+    assert bool(film_segments.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
 
 
 @pytest.mark.parametrize("device", [None, 0])
 def test_what_workers_that_draw_by_opengl_share_is_there(monkeypatch, device):
     monkeypatch.setattr("dancetutor_cli.video.scene.gl.available.gpu_device", lambda: device)
-    name = film_work.common_to_workers("gl")
+    name = film_segments.common_to_workers("gl")
     assert importlib.util.find_spec(name) is not None
     assert name.endswith("_gl") == (device is None)  # what a card's driver loads would not survive a fork

@@ -10,7 +10,8 @@ import pytest
 
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import Asked, BakedDance, BakeTask, ask, bake_asked, plan_asked, tasks_of
+from dancetutor_cli.jobs.bake import Asked, BakeTask, ask, bake_asked, plan_asked, tasks_of
+from dancetutor_cli.jobs.baked_dance import BakedDance
 from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion, shifted
