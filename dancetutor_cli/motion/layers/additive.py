@@ -53,7 +53,7 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
     raised = (np.radians(settings.breath_shoulders) * breath - np.radians(groove.shrug) * beat) * free
     for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
         shrug = doing.waiting.shrug[:, k] * free
-        _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, sign * (raised + shrug))
+        _shrug(skeleton, rotations, side, sign * (raised + shrug))
     for side, phase, bent in (
         ("lr"[lead], 0.0, 1.0 - settings.wrist_unlike),
         ("rl"[lead], settings.wrist_behind, 1.0 + settings.wrist_unlike),
@@ -82,6 +82,14 @@ def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> No
         _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
     laugh = smooth(np.clip((times - doing.last - settings.laugh_after) / settings.laugh_rise, 0.0, 1.0))
     _turn(skeleton, rotations, "temporomandibular", ACROSS, np.radians(JAW_LAUGH) * laugh)
+
+
+def _shrug(skeleton: Skeleton, rotations: Array, side: str, angle: Array) -> None:
+    """Raise a shoulder by turning its collarbone; the arm goes up with it and hangs as it did, or hands would swing
+    into thighs."""
+    _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, angle)
+    j = skeleton.index(f"{side}_shoulder")
+    rotations[:, j] = quat.multiply(quat.from_axis_angle(FRONT, -angle), rotations[:, j])
 
 
 def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: Array) -> None:
