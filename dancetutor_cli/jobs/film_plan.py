@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.notes import Cue, NoteTrack
 
 
+FADE = 0.6  # seconds in which a film's picture goes dark at its end; GIFs and pictures do not
 HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
 
 
@@ -88,6 +89,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         partners=partners,
         callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
         cues=tuple(_cues(dance)),
+        fade=FADE if request.practice.rest and not request.background else 0.0,
     )
     fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)

@@ -22,7 +22,7 @@ from dancetutor_cli.video.overlay.highway import Highway, Score
 from dancetutor_cli.video.overlay.lanes import HighwayGeometry
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
-from dancetutor_cli.video.picture import Frame
+from dancetutor_cli.video.picture import Frame, darkened
 from dancetutor_cli.video.plan import FilmPlan, turned
 from dancetutor_cli.video.scene.television import Television
 from dancetutor_cli.video.scroll import parse_scroll
@@ -246,7 +246,7 @@ class Film:
             if moving:
                 moving.draw(picture, second)
         self._runs.draw(picture, second, run, self._stay(self._runs, run).opacity(second))
-        return picture
+        return darkened(picture, BACKGROUND, self.plan.light(number))
 
     def _stay(self, words: Lines | captions.Legend | Runs, run: int) -> Stay:
         """When these words are in the picture: not while she walks through them."""

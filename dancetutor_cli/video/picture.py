@@ -34,3 +34,11 @@ class FootFromAbove:
     heel: tuple[float, float]
     toe: tuple[float, float]
     height: float
+
+
+def darkened(frame: Frame, dark: tuple[int, int, int], light: float) -> Frame:
+    """The part `light` of a picture, 0 to 1, over a dark colour."""
+    if light >= 1.0:
+        return frame
+    keep = round(256 * light)
+    return np.asarray((frame * np.uint16(keep) + np.array(dark, np.uint16) * (256 - keep)) >> 8, dtype=np.uint8)

@@ -37,6 +37,7 @@ class FilmPlan:
     motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
         the layout has no dancer; rows : the play's, for the next rows' pads
     callouts : words in the picture; cues : moves for the subtitles
+    fade : seconds of the film at its end in which the picture goes dark
     """
 
     look: FilmLook
@@ -57,6 +58,12 @@ class FilmPlan:
     speeds: NDArray[np.float64] | None = None
     character: Character | None = None
     partners: Mapping[float, Motion] = field(default_factory=dict)
+    fade: float = 0.0
+
+    def light(self, frame: int) -> float:
+        """How much of a frame's picture is seen, 0 to 1: less and less towards the end, in the last one nothing."""
+        left = (self.clock.frames - 1 - frame) / self.clock.fps
+        return left / self.fade if left < self.fade else 1.0
 
 
 def turned(look: FilmLook) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from dancetutor_cli.jobs.film_plan import Prepared, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.video.film import BACKGROUND, Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.practice import REST, Practice
@@ -74,3 +76,19 @@ def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
 def test_no_rest_is_added_behind_a_song_nor_to_pictures(song: Path, section: str | None, rest: float) -> None:
     clock = look_up(asked(song, section, Practice(rest=rest))).clock
     assert clock.passes[-1].rest == 0.0 and quiet_after(clock.passes) is None
+
+
+def test_the_picture_goes_dark_at_the_end_of_a_film_and_of_no_other_pictures(song: Path, prepared: Prepared) -> None:
+    plan = prepared.plan
+    assert plan.fade > 0
+    last = plan.clock.frames - 1
+    light = [plan.light(k) for k in range(plan.clock.frames)]
+    assert light[-1] == 0 and (np.diff(light) <= 0).all()
+    assert light[last - round(plan.fade * 30) - 1] == 1.0 == light[0]
+    film, whole = Film(plan), Film(replace(plan, fade=0.0))
+    assert (film.frame(last) == BACKGROUND).all() and not (whole.frame(last) == BACKGROUND).all()
+    assert (film.frame(last // 2) == whole.frame(last // 2)).all()
+    half = film.frame(last - round(plan.fade * 15)).astype(int) - np.array(BACKGROUND)
+    np.testing.assert_allclose(half, (whole.frame(last - round(plan.fade * 15)).astype(int) - BACKGROUND) / 2, atol=1.5)
+    alone = asked(song, "6:8", Practice((1.0,)))
+    assert prepare(alone, look_up(alone)).plan.fade == 0.0
