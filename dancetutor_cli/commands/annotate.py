@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
+from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_folder
+from dancetutor_cli.reports.repeats import Repeats
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order
@@ -52,6 +53,7 @@ class AnnotateWish:
     backup: bool
     jobs: int | None
     preset: str | None
+    verbose: bool
 
 
 @click.command()
@@ -74,6 +76,7 @@ class AnnotateWish:
 @click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
+@verbose_option
 @preset_option
 @selection_options
 @into("selection", Selection)
@@ -110,7 +113,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         diff=wish.diff,
     )
     songs = _songs(_items(paths, wish.output, find_files(paths)))
-    talk = _Talk(order, wish.check, wish.dry_run)
+    talk = _Talk(order, wish.check, Repeats(every=wish.verbose))
     talk.begin()
     if not wish.strip:
         from dancetutor_cli.library.selection import note_bytes
@@ -118,8 +121,11 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         tell_of_compiling(
             choice_of(wish.preset), lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song)
         )
-    for outcome in _outcomes(songs, order, wish.jobs):
-        talk.tell(outcome)
+    try:
+        for outcome in _outcomes(songs, order, wish.jobs):
+            talk.tell(outcome)
+    finally:
+        talk.warn()
     return talk.end()
 
 
@@ -192,7 +198,7 @@ class _Talk:
 
     order: Order
     check: bool
-    dry_run: bool
+    warnings: Repeats
     files: Counter[str] = field(default_factory=Counter)
     lacking: bool = False
     unselected: list[str] = field(default_factory=list)
@@ -204,8 +210,8 @@ class _Talk:
             click.echo(f"warning: {WARNING}", err=True)
 
     def tell(self, outcome: AnnotateOutcome) -> None:
-        for note in outcome.notes:
-            click.echo(f"warning: {_safe(note)}", err=True)
+        for note in (*outcome.notes, *(() if self.check else outcome.problems)):
+            self.warnings.add(outcome.source, note)
         if outcome.error is not None:
             self.files["failed"] += 1
             click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
@@ -214,11 +220,9 @@ class _Talk:
         if outcome.unselected:
             self.unselected.append(f"{outcome.source}: {', '.join(outcome.unselected)}")
         self.lacking |= bool(outcome.lacks or outcome.problems)
-        for problem in outcome.problems:
-            click.echo(_safe(problem) if self.check else f"warning: {_safe(problem)}", err=not self.check)
         if self.check:
-            for lack in outcome.lacks:
-                click.echo(_safe(lack))
+            for line in (*outcome.problems, *outcome.lacks):
+                click.echo(_safe(line))
         if self.order.diff:
             for line in outcome.diff:
                 click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
@@ -233,6 +237,10 @@ class _Talk:
             return "unchanged"
         past = "stripped" if self.order.strip else "annotated"
         return past if self.order.write else f"would be {past}:"
+
+    def warn(self) -> None:
+        for line in self.warnings.lines():
+            click.echo(line, err=True)
 
     def end(self) -> int:
         total = sum(self.files.values())

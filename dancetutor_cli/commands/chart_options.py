@@ -25,6 +25,7 @@ __all__ = [
     "section_option",
     "selection_options",
     "style_option",
+    "verbose_option",
 ]
 
 TABLE = "-"  # the value of --report without a file
@@ -65,6 +66,14 @@ def preset_option(command: _Command) -> _Command:
         shell_complete=named(folder("presets")),
         metavar="NAME|FILE",
         help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, itg for others]",
+    )
+    return option(command)
+
+
+def verbose_option(command: _Command) -> _Command:
+    """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.repeats`."""
+    option = click.option(
+        "-v", "--verbose", is_flag=True, help="Tell each warning; else what is the same of many files is one line."
     )
     return option(command)
 

@@ -18,6 +18,7 @@ from dancetutor_cli.commands.chart_options import (
     motion_option,
     preset_option,
     selection_options,
+    verbose_option,
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.records import into
@@ -44,6 +45,7 @@ class PageWish:
     motion: Path | None
     jobs: int
     quiet: bool
+    verbose: bool
     beside: str | None
     character: str
     preset: str | None
@@ -76,6 +78,7 @@ class PageWish:
     help="Processes: for a folder, and for songs over two minutes.",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
+@verbose_option
 @character_option
 @selection_options
 @preset_option
@@ -103,7 +106,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     if not wish.quiet:
         tell_of_compiling(choice_for(file, wish.preset))
     if file.is_dir():
-        _pages(task, output or Path("pages"), wish.jobs, wish.quiet)
+        _pages(task, output or Path("pages"), wish)
         return
     if output is not None:
         check_file(output, SUFFIXES)
@@ -124,10 +127,11 @@ def _page(task: PageTask, output: Path | None, quiet: bool) -> None:
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
 
 
-def _pages(task: PageTask, folder: Path, jobs: int, quiet: bool) -> None:
+def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
     from dancetutor_cli.jobs.page_batch import INDEX, make_all, page_jobs, write_index
     from dancetutor_cli.reports.failures import failures_table
+    from dancetutor_cli.reports.repeats import Repeats
     from dancetutor_cli.reports.safe import safe, safe_path
 
     if task.bake.play_file is not None:
@@ -141,17 +145,23 @@ def _pages(task: PageTask, folder: Path, jobs: int, quiet: bool) -> None:
     if wanted:
         make_folder(folder)
     outcomes = {}
-    for number, one in enumerate(make_all(wanted, jobs), 1):
-        outcomes[one.job.target] = one
-        _warn(one.warnings)
-        if not quiet:
-            said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
-            click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
+    warnings = Repeats(every=wish.verbose)
+    try:
+        for number, one in enumerate(make_all(wanted, wish.jobs), 1):
+            outcomes[one.job.target] = one
+            for warning in one.warnings:
+                warnings.add(one.job.task.bake.path, warning)
+            if not wish.quiet:
+                said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
+                click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
+    finally:
+        for line in warnings.lines() if not wish.quiet else ():
+            click.echo(line, err=True)
     ordered = [outcomes[job.target] for job in wanted]
     if wanted:
         write_index(folder, ordered, task.bake.path.resolve().name)
     failed = [(str(one.job.task.bake.path), one.job.entry.label, one.error) for one in ordered if one.error]
-    if wanted and not quiet:
+    if wanted and not wish.quiet:
         made = len(ordered) - len(failed)
         click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")
     if failed or bad:

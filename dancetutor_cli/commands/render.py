@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.chart_options import preset_option, selection_options
+from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
@@ -51,6 +51,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 @click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
 @click.option("--yes", is_flag=True, help="Render even a very long film without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
+@verbose_option
 @film_options
 @selection_options
 @preset_option

@@ -15,6 +15,7 @@ from dancetutor_cli.commands.film_options import film_request
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.files import encoded
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
+from dancetutor_cli.reports.repeats import Repeats
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import FilmOutcome
@@ -48,6 +49,7 @@ def render_batch(
     if films:
         make_folder(batch.folder)
     outcomes: list[FilmOutcome] = []
+    warnings = Repeats(every=options["verbose"])
     jobs = options["jobs"] or default_jobs()
     with ExitStack() as stack:
         results = _open_results(options["results"], stack)
@@ -56,10 +58,14 @@ def render_batch(
         progress = stack.enter_context(FilmProgress(f"{len(films)} films", quiet))
         progress.begin(0, batch.request.fps)
         workers = _workers(options["scheduler"], jobs, progress, batch.request.look.renderer)
+        if not quiet:
+            stack.callback(_warn, warnings, progress)
         stack.callback(workers.close)
         for outcome in Batch(films, workers, progress.add).run():
             outcomes.append(outcome)
             _write(results, outcome.as_json())
+            for warning in outcome.warnings:
+                warnings.add(outcome.job.request.path, warning)
             _tell(outcome, progress, quiet, len(outcomes), len(films))
     _sum_up(outcomes, unreadable, without, quiet)
 
@@ -124,8 +130,12 @@ def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int
     text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
     if not quiet or outcome.status == "failed":
         progress.say(safe(f"[{number}/{count}] {name} {text}"))
-    for warning in outcome.warnings if not quiet else ():
-        progress.say(safe(f"  warning: {warning}"))
+
+
+def _warn(warnings: Repeats, progress: FilmProgress) -> None:
+    """The warnings of the films so far, also of a run that is interrupted."""
+    for line in warnings.lines():
+        progress.say(line)
 
 
 def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], without: list[Path], quiet: bool) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.errors import DancetutorError, NoChartsError, UsageError
 from dancetutor_cli.jobs.film_request import FilmRequest
 from dancetutor_cli.jobs.film_work import FilmJob
 from dancetutor_cli.library.selection import Selection
@@ -100,6 +100,9 @@ def film_list(batch: BatchRequest) -> FilmList:
             from dancetutor_cli import chart as charts
 
             song = charts.load(path)
+        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+            without.append(path)
+            continue
         except (DancetutorError, OSError) as error:
             bad.append(UnreadableFile(path, str(error)))
             continue

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.errors import DancetutorError, NoChartsError
 from dancetutor_cli.jobs.page import PageTask, make_page
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.page.index import IndexEntry, index_page
@@ -49,6 +49,8 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
     for path in chart_files((task.bake.path,)):
         try:
             song = charts.load(path)
+        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+            continue
         except (DancetutorError, OSError) as error:
             bad.append((path, str(error)))
             continue

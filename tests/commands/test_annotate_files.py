@@ -117,3 +117,13 @@ def test_bom_and_bytes_behind_the_end_stay(ssc: Path) -> None:
     assert marked.count(b"\r\n") == marked.count(b"\n") == data.count(b"\n")
     Said([ssc, "--strip"])
     assert ssc.read_bytes() == data
+
+
+def test_stubs_in_a_folder_are_one_warning(tmp_path: Path) -> None:
+    for n in range(7):
+        (tmp_path / f"s{n}.sm").write_text("#TITLE:M;\n#MUSIC:a.ogg;\n#BPMS:0=120;\n")
+    said = Said([tmp_path])
+    (line,) = said.err.splitlines()
+    assert line.startswith(f"warning: {tmp_path / 's0.sm'}:1: no charts: the file has no NOTES; the same of 6 more: ")
+    assert said.out.splitlines()[-1] == "7 files: 7 unchanged"
+    assert len(Said([tmp_path, "-v"]).err.splitlines()) == 7

@@ -134,6 +134,24 @@ def test_a_batch_says_which_songs_have_no_such_chart(demo: Path, capsys: pytest.
     assert "no such chart" not in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", ["render", "page"])
+def test_what_nobody_meant_to_be_danced_fails_no_folder(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    """The music of a menu has a file without notes; annotate and analyze pass it by, too."""
+    song = "#TITLE:T;\n#BPMS:0=120;\n#MUSIC:a.ogg;\n"
+    demo.write_text(song + "#NOTES:dance-single::Hard:9::\n1000\n0100\n0010\n0001\n;\n")
+    demo.rename(demo.with_suffix(".sm"))
+    (demo.parent / "menu.sm").write_text(song)
+    more = ("--size", "64x64", "--layout", "highway", "--fps", "5", "--jobs", "1") if command == "render" else ()
+    assert run(command, Path("song"), "-o", "out", *more) == 0
+    said = capsys.readouterr()
+    assert "Failed" not in said.err and "[1/1]" in said.out + said.err
+    demo.with_suffix(".sm").unlink()
+    assert run(command, Path("song"), "-o", "out", *more) == 2
+    assert "no chart" in capsys.readouterr().err.splitlines()[-1]
+
+
 @pytest.fixture
 def closed(demo: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder that nobody may write into; simulated, as root may write everywhere."""
