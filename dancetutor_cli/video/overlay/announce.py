@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
 
 import numpy as np
@@ -76,17 +77,18 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 
 
 def _phrases(text: str, size: float, room: tuple[float, float], face: Typeface) -> tuple[list[str], float]:
-    """Words of a call in one line, or broken where there is a comma, or anywhere; nothing is cut off.
+    """Words of a call in one line, or broken where there is a comma, then a colon, or anywhere; nothing is cut off.
 
     room : width and height of the words, pixels
     """
     width, height = room
-    parts = text.replace(", ", ",\n").split("\n")
-    for share in np.arange(1.0, CALL_LEAST - 0.01, -0.05):
-        lines = wrapped(parts, share * size, width, face)
-        low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
-        if low and max(face.width(line, share * size) for line in lines) <= width:
-            return lines, float(share * size)
+    for ends in (",", ",:"):
+        parts = re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
+        for share in np.arange(1.0, CALL_LEAST - 0.01, -0.05):
+            lines = wrapped(parts, share * size, width, face)
+            low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
+            if low and max(face.width(line, share * size) for line in lines) <= width:
+                return lines, float(share * size)
     for most in (2, 3):
         lines, fits = fitted(text, size, width, face, most)
         if fits >= CALL_LEAST * size:

@@ -1,8 +1,8 @@
 """The marks that say who steps a note: how large each is, where it stands on its arrow, which are left out.
 
-A mark leaves the arrow's direction readable: on a diagonal, whose head is its body, it stands on the tail. Where the
-notes of a lane are so dense that marks would cover each other, they are smaller, those of the left foot stand on the
-left of the lane and those of the right foot on the right, and of one foot's only as many are drawn as can be read.
+A mark stands on the arrow's tail, so that the head shows where it points. Where the notes of a lane are so dense that
+marks would cover each other, they are smaller, those of the left foot stand on the left of the lane and those of the
+right foot on the right, and of one foot's only as many are drawn as can be read.
 """
 
 from __future__ import annotations
@@ -56,11 +56,11 @@ class Marks:
 
     def of(self, direction: float | None) -> int:
         """Pixels of a mark with room around it, on an arrow that points this way."""
-        return self.full if _straight(direction) else max(6, round(self._style.mark_diagonal * self.full))
+        return self.full if direction is None else max(6, round(self._style.mark_tail * self.full))
 
     def behind(self, direction: float | None) -> tuple[float, float]:
         """Where such a mark stands on its arrow, pixels from the middle."""
-        if direction is None or _straight(direction):
+        if direction is None:
             return 0.0, 0.0
         far, way = self._style.mark_aside * self.geometry.lane, math.radians(direction)
         return -far * math.sin(way), far * math.cos(way)
@@ -101,22 +101,18 @@ class Marks:
             dense = np.minimum(gaps[:-1], gaps[1:]) < usual
             for left in (True, False):
                 one = dense & np.isin(notes.limb[here], (0, 2) if left else (1, 3))
-                size[here[one]] = self._thinned(along[one])
+                size[here[one]] = self._thinned(along[one], usual)
                 side[here[one]] = -1 if left else 1
         return Places(size, side)
 
-    def _thinned(self, along: NDArray[np.float64]) -> NDArray[np.int16]:
-        """Sizes of marks of one side of a lane at these places, pixels: 0 for those with no room behind the last."""
+    def _thinned(self, along: NDArray[np.float64], most: int) -> NDArray[np.int16]:
+        """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near."""
         kept: list[int] = []
         for k, y in enumerate(along.tolist()):
             if not kept or y - along[kept[-1]] >= self.least:
                 kept.append(k)
         gaps = np.diff(along[kept], prepend=-np.inf, append=np.inf)
-        most = max(self.least, min(self.full, int(BESIDE_MOST * self.geometry.lane)))
+        most = max(self.least, min(most, int(BESIDE_MOST * self.geometry.lane)))
         out = np.zeros(len(along), np.int16)
         out[kept] = np.clip(np.minimum(gaps[:-1], gaps[1:]), self.least, most)
         return out
-
-
-def _straight(direction: float | None) -> bool:
-    return direction is None or direction % 90 == 0

@@ -48,7 +48,7 @@ class HighwayStyle:
     arrow: float
     mark: float
     mark_aside: float
-    mark_diagonal: float
+    mark_tail: float
     flash_seconds: float
     panel_seconds: float
     callouts: dict[str, str]

@@ -88,6 +88,11 @@ def test_a_call_breaks_where_there_is_a_comma() -> None:
     assert all(line.endswith(",") for line in lines[:-1])
 
 
+def test_a_call_in_a_narrow_place_breaks_behind_the_foots_name_not_within_what_it_does() -> None:
+    lines, _ = _phrases("footswitch, right foot: heel on down, toe on right", 20, (140.0, 120.0), FACE)
+    assert lines == ["footswitch,", "right foot:", "heel on down,", "toe on right"]
+
+
 def calls(*passages: tuple[float, float, str]) -> Calls:
     """Calls of passages (begin, end, words), called out a second before."""
     found = tuple(Callout(begin, 2 * begin, text, "move", begin - 1.0, end, text) for begin, end, text in passages)

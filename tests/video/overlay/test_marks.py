@@ -28,11 +28,9 @@ def highway(seconds: list[float], limbs: list[int], lane: float, box: tuple[int,
     return Highway(score, HighwayGeometry(box, lane, 0.0, (0.0,)), parse_scroll("C60"), 120.0, FACE)
 
 
-@pytest.mark.parametrize("direction", [45.0, 135.0, 225.0, 315.0])
+@pytest.mark.parametrize("direction", [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0])
 @pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
-def test_a_mark_stands_on_the_tail_of_a_diagonal_arrow(
-    direction: float, lane: float, box: tuple[int, int, int, int]
-) -> None:
+def test_a_mark_stands_on_the_tail_of_an_arrow(direction: float, lane: float, box: tuple[int, int, int, int]) -> None:
     """Of the arrow's half towards which it points nearly all is to be seen beside the mark, which keeps to its lane."""
     plan = film_plan(np.array([1.0]))
     geometry = HighwayGeometry(box, lane, 50.0, (direction,))
@@ -47,13 +45,15 @@ def test_a_mark_stands_on_the_tail_of_a_diagonal_arrow(
     covered = (np.abs(x - aside) < radius) & (np.abs(y - below) < radius)
     a = np.radians(direction)
     ahead = x * np.sin(a) - y * np.cos(a) > 0
-    assert (arrow & ahead & ~covered).sum() > 0.9 * (arrow & ahead).sum()
+    assert (arrow & ahead & ~covered).sum() > 0.85 * (arrow & ahead).sum()
     assert abs(aside) + radius <= lane / 2 and abs(below) + radius <= lane / 2
     frame = np.zeros((200, box[2], 3), np.uint8)
     marks.draw(frame, 0, 100.0, marks.places(300.0))
     rows, columns = np.nonzero(frame.any(axis=2))
     middle = geometry.left + lane / 2
-    assert np.sign(columns.mean() - middle) == np.sign(aside) and np.sign(rows.mean() - 100) == np.sign(below)
+    assert columns.mean() - middle == pytest.approx(aside, abs=1.5) and rows.mean() - 99.5 == pytest.approx(
+        below, abs=1.5
+    )
 
 
 @pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
@@ -77,9 +77,10 @@ def test_no_mark_covers_another_however_dense_notes_are(
 
 
 def test_marks_say_the_foot_by_their_side_where_notes_are_dense() -> None:
-    places = highway([1.0, 1.1, 1.2, 3.0], [0, 1, 0, 1], 76.0, USUAL).marks.places(76.0)
+    marks = highway([1.0, 1.1, 1.2, 3.0], [0, 1, 0, 1], 76.0, USUAL).marks
+    places = marks.places(76.0)
     assert places.side.tolist() == [-1, 1, -1, 0]
-    assert places.size[3] == places.size.max(), "one with room is as large as ever"
+    assert places.size[3] == marks.of(0.0) == places.size.max(), "one with room is as large as ever"
 
 
 def test_notes_that_nobody_steps_have_no_mark() -> None:
@@ -99,7 +100,7 @@ def test_an_arrow_that_comes_sooner_does_not_cover_a_mark() -> None:
         drawn = highway(seconds, [0, 1], 76.0, USUAL)
         frame = np.zeros((672, 400, 3), np.uint8)
         drawn.draw(frame, 0.0, 0.0)
-        x, y = drawn.geometry.left + 38, 1.45 * 76
+        x, y = drawn.geometry.left + 38, 1.45 * 76 + drawn.marks.behind(0.0)[1]
         half = drawn.marks.full // 2 - 5
         colours.append(frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half])
     assert (colours[0] == colours[1]).all()
