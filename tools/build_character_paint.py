@@ -97,21 +97,21 @@ def face(p: Array, n: Array) -> Array:
 
 
 def _smile(base: Array, p: Array, front: Array) -> Array:
-    x, y, half = p[:, 0], p[:, 1] - 1.5330, 0.0245
+    x, y, half = p[:, 0], p[:, 1] - 1.5330, 0.0290
     t = np.clip(np.abs(x) / half, 0, 1.5)
-    top = 0.0070 * t**2
-    low = -0.0118 + 0.0188 * t**2
+    top = 0.0098 * t**2
+    low = -0.0125 + 0.0223 * t**2
     depth = np.maximum(y - top, low - y) * 0.85
     mouth = np.where(t < 1.0, depth, np.maximum(depth, np.abs(x) - half))
     base = over(
         base,
         colour("#e58d84"),
-        0.75 * inside(np.where(t < 0.8, np.maximum(low - 0.0040 + 0.002 * t - y, y - low), 1), 0.0012) * front,
+        0.45 * inside(np.where(t < 0.8, np.maximum(low - 0.0040 + 0.002 * t - y, y - low), 1), 0.0012) * front,
     )
-    base = over(base, LINE, inside(mouth - 0.0008) * front)
+    base = over(base, LINE, inside(mouth - 0.0016) * front)
     base = over(base, colour("#9c2f45"), inside(mouth + 0.0003) * front)
     base = over(base, colour("#e5677a"), inside(np.maximum(mouth + 0.0004, y - low - 0.0038)) * front)
-    return over(base, WHITE, inside(np.maximum(mouth + 0.0005, top - 0.0042 - y)) * front)
+    return over(base, WHITE, inside(np.maximum(mouth + 0.0005, top - 0.0056 - y)) * front)
 
 
 def lid(p: Array, n: Array) -> Array:
