@@ -18,6 +18,7 @@ class StepSettings:
     height_slow: float
     height_fast: float
     height_hasty: float
+    height_even: float
     height_far: float
     far: float
     fast: float
@@ -62,6 +63,11 @@ class StepSettings:
     body_turn: float
     rising: float
     off_ground: float
+    on_ground: float
+    even_quick: float
+    even_slow: float
+    even_ends: float
+    even_up: float
     turned: float
     pitch_top: float
     heel_rise: float

@@ -12,7 +12,8 @@ from dancetutor_cli.motion.foot_moves import Move, Swing
 from dancetutor_cli.motion.let_go import LetGo
 
 Array = NDArray[np.float64]
-LEAST_FLIGHT = 0.012  # seconds; in streams feet leave so long before the other one lands: nobody sees that as a flight
+# seconds, a frame of a film: in streams feet leave so long before the other one lands, and nobody sees that as a flight
+LEAST_FLIGHT = 0.0166
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from dancetutor_cli.motion.footwork.footing import Footing, FootState
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.clearance import ANKLE, SHARES, Way, detour, gaps_at, headings, over
 from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.swing.pace import evenness
 from dancetutor_cli.motion.swing.panels import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
 from dancetutor_cli.play.played import Part
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, SHOE_OUTLINE
@@ -225,7 +226,8 @@ def around(
     """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
     step = footing.settings.step
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
-    way = Way(foot.ball, footing.toes(foot), target, footing.toes(foot, yaw), (footing.faced, after))
+    even = float(evenness(span[1] - span[0], step))
+    way = Way(foot.ball, footing.toes(foot), target, footing.toes(foot, yaw), (footing.faced, after), even)
     if max(other.landed, other.turned) <= span[0]:
         return detour(way, other.ball, footing.toes(other), step, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])

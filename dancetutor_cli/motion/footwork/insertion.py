@@ -14,6 +14,7 @@ from dancetutor_cli.motion.footwork.walks import WalkProposal, next_step, waits,
 from dancetutor_cli.motion.plan import FootTrack, Plan, Turn
 from dancetutor_cli.motion.swing.clearance import SHARES, Way, detour
 from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.swing.pace import evenness
 
 Array = NDArray[np.float64]
 
@@ -113,5 +114,6 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Cont
 def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> Bulge:
     start = standing(feet, step.lift)
     there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
-    way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw)
+    even = float(evenness(step.land - step.lift, context.settings.step))
+    way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw, even=even)
     return detour(way, there.ball[:, [0, 2]], there.yaw, context.settings.step, 1.0 - 2.0 * side)

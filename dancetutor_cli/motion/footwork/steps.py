@@ -16,6 +16,7 @@ from dancetutor_cli.motion.footwork.footing import Footing, FootState, Proposal,
 from dancetutor_cli.motion.footwork.gallops import galloping
 from dancetutor_cli.motion.footwork.leaps import leap
 from dancetutor_cli.motion.footwork.mines import left_standing, resumed
+from dancetutor_cli.motion.swing.pace import evenness
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.mass import GRAVITY
 
@@ -45,7 +46,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         )
         footing = footing.with_foot(standing)
     lift = min(max(lift, foot.earliest(time)), foot.latest(time, numbers.let_go)) if up is None else up
-    kind, height = _kind(row, footing, foot, target, up is not None)
+    kind, height = _kind(row, footing, (foot, time - lift), target, up is not None)
     if kind is Jump:
         height = GRAVITY * (time - lift) ** 2 / 8
     if kind is Step:
@@ -102,11 +103,17 @@ def _lift(row: Row, footing: Footing, far: float) -> float:
     return row.time - max(row.duration * (1.0 - both), min(numbers.least_swing, row.duration + numbers.overlap))
 
 
-def _kind(row: Row, footing: Footing, foot: FootState, target: Array, hovering: bool) -> tuple[type[Swing], float]:
-    """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time."""
-    numbers, mines = footing.settings.step, footing.settings.mines
+def _kind(
+    row: Row, footing: Footing, going: tuple[FootState, float], target: Array, hovering: bool
+) -> tuple[type[Swing], float]:
+    """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time.
+
+    going : the foot and how many seconds it takes
+    """
+    numbers, mines, (foot, duration) = footing.settings.step, footing.settings.mines, going
     far = float(np.linalg.norm(target - foot.ball))
     fast = numbers.height_fast + row.haste * (numbers.height_hasty - numbers.height_fast)
+    fast += row.haste * float(evenness(duration, numbers)) * (numbers.height_even - numbers.height_hasty)
     fast += numbers.height_far * max(far - numbers.far, 0.0)
     height = numbers.height_slow + row.cut * (fast - numbers.height_slow)
     if far < numbers.on_the_spot:

@@ -44,7 +44,7 @@ SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on i
 class Way:
     """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians.
 
-    hips : yaw of the body at both, None where legs are not looked at
+    hips : yaw of the body at both, None where legs are not looked at; even : as of `pace.evenness`
     """
 
     start: Array
@@ -52,6 +52,7 @@ class Way:
     end: Array
     end_yaw: float
     hips: tuple[float, float] | None = None
+    even: float = 0.0
 
 
 def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> Bulge:
@@ -70,7 +71,8 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     length = float(np.linalg.norm(path))
     axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
     axes = axes * [[outward], [1.0]]
-    e, ahead = travelled(SHARES, step), headings(start_yaw + swung(SHARES, step) * (way.end_yaw - start_yaw))
+    e = travelled(SHARES, step, way.even)
+    ahead = headings(start_yaw + swung(SHARES, step) * (way.end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
     still = shoe_line(other - BALL_AHEAD * aim, aim)

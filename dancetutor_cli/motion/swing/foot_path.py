@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.foot_moves import STRAIGHT, Gallop, Hover, Jump, Move, Pivot, Shake, Swing, Walk
+from dancetutor_cli.motion.foot_moves import STRAIGHT, Gallop, Hover, Jump, Move, Pivot, Shake, Step, Swing, Walk
 from dancetutor_cli.motion.plan import FootTrack
 from dancetutor_cli.motion.settings import MotionSettings, WalkSettings
 from dancetutor_cli.motion.swing.clearance import bend, lag
 from dancetutor_cli.motion.swing.jump_ways import turning
-from dancetutor_cli.motion.swing.pace import swung, travelled
+from dancetutor_cli.motion.swing.pace import evenness, hovering, risen, swung, travelled
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig.dimensions import dancer_foot
 
@@ -63,10 +63,11 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
         return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
-    ground = np.where(swinging[:, None], _ground(track, place, i, travelled(s, step)), place[done])
+    even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
+    ground = np.where(swinging[:, None], _ground(track, place, i, travelled(s, step, even)), place[done])
     level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
     climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
-    up = np.where(swinging, _height(track, i, s, step.rising) + climb, 0.0)
+    up = np.where(swinging, _height(track, i, s, risen(s, step, even)) + climb, 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
     turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s, step.pitch_top), _stand_pitch(track, times, done, settings))
@@ -130,16 +131,14 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> A
     return np.asarray((1 - share) * straight + share * round_ + bulge[:, :2] * bend(e)[:, None])
 
 
-def _height(track: FootTrack, i: NDArray[np.int64], s: Array, rising: float) -> Array:
-    """Height of the sole. It leaves the ground softly and meets it at a definite speed: the contact has a time."""
+def _height(track: FootTrack, i: NDArray[np.int64], s: Array, step: Array) -> Array:
+    """Height of the sole; step : as of `risen`."""
     height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
     tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
-    hover = 1.0 - (2.0 * s - 1.0) ** 4
     # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
-    step = np.sin(np.pi * s**rising)
-    shape = np.where(_are(track, Hover, Gallop, Shake)[i], hover, step)
+    shape = np.where(_are(track, Hover, Gallop, Shake)[i], hovering(s), step)
     return np.asarray(np.where(_are(track, Jump)[i], jump, height * shape))
 
 
