@@ -101,8 +101,7 @@ def remove_leftover(path: Path) -> bool:
     One that a living process is writing stays.
     """
     with contextlib.suppress(OSError, FileError):
-        temporary = temporary_name(_target(path))
-        return _discard(temporary)
+        return _discard(temporary_name(_target(path)))
     return False
 
 
@@ -127,17 +126,22 @@ def temporary_name(target: Path) -> Path:
     return target.with_name(f".{name}{SUFFIX}")
 
 
+def place_of(path: Path) -> Path:
+    """Where `path` is really written, links followed. FileError for what must not be replaced."""
+    target = _target(path)
+    _status(path, target)
+    return target
+
+
 def _target(path: Path) -> Path:
     """The file itself, links followed."""
     try:
         return path.resolve(strict=True) if path.is_symlink() else path
     except FileNotFoundError:
         raise FileError(path, "is a link to a file that is not there") from None
-    except OSError as error:
-        if error.errno == errno.ENAMETOOLONG:
+    except (OSError, RuntimeError) as error:  # the latter is how Python before 3.13 reports a circle of links
+        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
             raise FileError(path, "cannot be written: its name is too long for the file system") from error
-        raise FileError(path, "is a link that leads nowhere") from error
-    except RuntimeError as error:  # how Python before 3.13 reports a circle of links
         raise FileError(path, "is a link that leads nowhere") from error
 
 

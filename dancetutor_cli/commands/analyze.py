@@ -14,6 +14,7 @@ from dancetutor_cli.commands.chart_options import Selection, preset_option, sele
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.names import fixes, folder, named, rules
 from dancetutor_cli.commands.pack_options import pack_options
+from dancetutor_cli.commands.sources import Source, sources
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import AnalyzeTask
     from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
     from dancetutor_cli.reports.tally import Tally
-
-Source = tuple[Path, bytes | None]
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
@@ -165,7 +164,7 @@ def command(**options: Any) -> int:  # fmt: skip
         raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
     if options["watch"] and not options["fix"]:
         return _watch(request, options)
-    return _run(LintRun(request), _sources(options["paths"], options["stdin_filename"]), options)
+    return _run(LintRun(request), sources(options["paths"], options["stdin_filename"]), options)
 
 
 def _watch(request: LintRequest, options: dict[str, Any]) -> int:
@@ -198,7 +197,7 @@ def _report_errors(work: Callable[[], object]) -> None:
         click.echo(f"dancetutor: {error}", err=True)
 
 
-def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
+def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     from dancetutor_cli.jobs.analyze_all import analyze_all
     from dancetutor_cli.jobs.cache import ResultCache, default_folder
     from dancetutor_cli.reports.formats import open_brief_report, open_report
@@ -207,25 +206,25 @@ def _run(run: LintRun, sources: list[Source], options: dict[str, Any]) -> int:
     if options["sheet"] is not None:
         from dancetutor_cli.commands.chart_sheet import check_sheet
 
-        check_sheet(options["sheet"], len(sources))
+        check_sheet(options["sheet"], len(files))
     if options["update_baseline"] and options["baseline"] is not None:
         check_file(options["baseline"])
-    first = sources[0][0]
+    first = files[0][0]
     if options["fix"]:
         from dancetutor_cli.commands.fixing import fix_all
 
         run.open_baseline(first)
-        return fix_all(run, [run.task(path, data) for path, data in sources], options)
+        return fix_all(run, [run.task(path, data) for path, data in files], options)
     from dancetutor_cli.commands.pack_report import PackReport
 
     if options["beside"] is not None:
         from dancetutor_cli.commands.pack_report import tell_beside
 
-        return tell_beside([run.task(path, data) for path, data in sources], options)
+        return tell_beside([run.task(path, data) for path, data in files], options)
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
-    pack = PackReport(options, run.has_baseline, len(sources), brief=_is_brief(options))
-    tasks = [run.task(path, data) for path, data in sources]
+    pack = PackReport(options, run.has_baseline, len(files), brief=_is_brief(options))
+    tasks = [run.task(path, data) for path, data in files]
     if _is_brief(options):
         report = open_brief_report(len(tasks), known=run.has_baseline, statistics=options["statistics"])
     else:
@@ -287,18 +286,3 @@ def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
     if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])
         raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
-
-
-def _sources(paths: tuple[Path, ...], stdin_filename: Path | None) -> list[Source]:
-    """The chart files that the paths mean; standard input with its bytes."""
-    from dancetutor_cli.library import find_files
-
-    if any(str(path) == "-" for path in paths):
-        if len(paths) > 1:
-            raise UsageError("standard input (-) goes alone, without other paths")
-        data = sys.stdin.buffer.read()
-        name = "stdin.ssc" if b"#NOTEDATA" in data.upper() else "stdin.sm"
-        return [(stdin_filename or Path(name), data)]
-    if stdin_filename is not None:
-        raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")
-    return [(path, None) for path in find_files(paths)]

@@ -15,7 +15,8 @@ from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_folder
-from dancetutor_cli.reports.repeats import Repeats
+from dancetutor_cli.reports.diff import coloured
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
 STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
 _MANY = 24  # songs from which on starting worker processes pays
-_COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 
 
 def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...] | None:
@@ -113,7 +113,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         diff=wish.diff,
     )
     songs = _songs(_items(paths, wish.output, find_files(paths)))
-    talk = _Talk(order, wish.check, Repeats(every=wish.verbose))
+    talk = _Talk(order, wish.check, JoinedWarnings(every=wish.verbose))
     talk.begin()
     if not wish.strip:
         from dancetutor_cli.library.selection import note_bytes
@@ -198,7 +198,7 @@ class _Talk:
 
     order: Order
     check: bool
-    warnings: Repeats
+    warnings: JoinedWarnings
     files: Counter[str] = field(default_factory=Counter)
     lacking: bool = False
     unselected: list[str] = field(default_factory=list)
@@ -224,8 +224,8 @@ class _Talk:
             for line in (*outcome.problems, *outcome.lacks):
                 click.echo(_safe(line))
         if self.order.diff:
-            for line in outcome.diff:
-                click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
+            for line in coloured(outcome.diff):
+                click.echo(line)
         elif not self.check:
             details = _kept(outcome) if self.order.strip else _details(outcome)
             click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{details}")

@@ -71,7 +71,7 @@ def preset_option(command: _Command) -> _Command:
 
 
 def verbose_option(command: _Command) -> _Command:
-    """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.repeats`."""
+    """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.joined_warnings`."""
     option = click.option(
         "-v", "--verbose", is_flag=True, help="Tell each warning; else what is the same of many files is one line."
     )

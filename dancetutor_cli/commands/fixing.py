@@ -12,6 +12,7 @@ import click
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.library.chart_files import twin
+from dancetutor_cli.reports.diff import coloured
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import AnalyzeTask
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.finding import Finding
 
 SAFE = "safe"
-_COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 # Options of `analyze` that say how its report looks: there is none when files are mended.
 _OF_REPORTS = ("sheet", "watch", "suggest", "alternatives", "update_baseline", "statistics", "stdin_filename")
 
@@ -127,8 +127,8 @@ class _Talk:
             self.failed += 1
             click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
             return
-        for line in outcome.diff if self.diff else ():
-            click.echo(click.style(line, fg=_COLOURS.get(line[:1])))
+        for line in coloured(outcome.diff) if self.diff else ():
+            click.echo(line)
         self.done += len(outcome.done)
         self.left += sum(not one.is_gone for one in outcome.left)
         self.changed += bool(outcome.done)

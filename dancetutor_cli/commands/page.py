@@ -131,7 +131,7 @@ def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
     from dancetutor_cli.jobs.page_batch import INDEX, make_all, page_jobs, write_index
     from dancetutor_cli.reports.failures import failures_table
-    from dancetutor_cli.reports.repeats import Repeats
+    from dancetutor_cli.reports.joined_warnings import JoinedWarnings
     from dancetutor_cli.reports.safe import safe, safe_path
 
     if task.bake.play_file is not None:
@@ -145,7 +145,7 @@ def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
     if wanted:
         make_folder(folder)
     outcomes = {}
-    warnings = Repeats(every=wish.verbose)
+    warnings = JoinedWarnings(every=wish.verbose)
     try:
         for number, one in enumerate(make_all(wanted, wish.jobs), 1):
             outcomes[one.job.target] = one

@@ -15,7 +15,7 @@ from dancetutor_cli.commands.film_options import film_request
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.files import encoded
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
-from dancetutor_cli.reports.repeats import Repeats
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import FilmOutcome
@@ -49,7 +49,7 @@ def render_batch(
     if films:
         make_folder(batch.folder)
     outcomes: list[FilmOutcome] = []
-    warnings = Repeats(every=options["verbose"])
+    warnings = JoinedWarnings(every=options["verbose"])
     jobs = options["jobs"] or default_jobs()
     with ExitStack() as stack:
         results = _open_results(options["results"], stack)
@@ -132,7 +132,7 @@ def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int
         progress.say(safe(f"[{number}/{count}] {name} {text}"))
 
 
-def _warn(warnings: Repeats, progress: FilmProgress) -> None:
+def _warn(warnings: JoinedWarnings, progress: FilmProgress) -> None:
     """The warnings of the films so far, also of a run that is interrupted."""
     for line in warnings.lines():
         progress.say(line)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.files import place_of
 from dancetutor_cli.jobs import film_segments as drawing
 from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
@@ -18,6 +19,7 @@ from dancetutor_cli.jobs.pool import Task, Workers, open_workers
 from dancetutor_cli.video.choices import RendererKind
 from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.ffmpeg import EncoderError
+from dancetutor_cli.video.media.film_formats import PICTURES
 
 
 class ProgressListener(Protocol):
@@ -92,6 +94,8 @@ def make_film(
     ------
     DancetutorError whatever went wrong, in one line; nothing of the film is left then.
     """
+    if encoding.target != PICTURES:
+        output = place_of(output)
     with _workers(jobs, progress, renderer) as workers, work_folder(output) as folder:
         prepared = prepare()
         plan = prepared.plan

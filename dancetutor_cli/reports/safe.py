@@ -16,4 +16,8 @@ def safe(text: str) -> str:
 
 def safe_path(path: str) -> str:
     """A path to print: as `safe`, and bytes that are no UTF-8 become "�"."""
-    return _UNSAFE.sub("?", os.fsencode(path).decode("utf-8", "replace"))
+    try:
+        name = os.fsencode(path)
+    except UnicodeEncodeError:  # a name out of a cache that was written where names have more letters
+        name = path.encode("utf-8", "surrogateescape")
+    return _UNSAFE.sub("?", name.decode("utf-8", "replace"))

@@ -34,15 +34,22 @@ def test_check_says_where_and_why(song: Path, ssc: Path) -> None:
     assert "has feet that do not fit their rows any more" in said.out
 
 
-def test_diff_is_plain_in_a_pipe_and_coloured_on_a_terminal(song: Path, ssc: Path) -> None:
+def test_diff_is_plain_in_a_pipe_and_coloured_on_a_terminal(
+    song: Path, ssc: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = files_of(song)
     plain = Said([ssc, "--diff"]).out
     assert "\x1b" not in plain
     assert "-,  // measure 1\n" in plain
     assert "+,  // measure 1 {dt1 LR}\n" in plain
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.delenv("NO_COLOR", raising=False)
     coloured = Said([ssc, "--diff"], color=True).out
     assert "\x1b[32m+,  // measure 1 {dt1 LR}\x1b[0m\n" in coloured
     assert "\x1b[31m-,  // measure 1\x1b[0m\n" in coloured
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert Said([ssc, "--diff"], color=True).out == plain
     assert files_of(song) == before
     assert Said([ssc, "--diff", "--check"]).status == 1
 

@@ -68,6 +68,27 @@ def test_a_sheet_of_another_kind_is_refused_before_the_work(demo: Path, capsys: 
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.skipif(os.name == "nt", reason="links need a right there, and there are no such devices")
+def test_a_film_is_written_through_a_link_and_takes_no_devices_place(
+    demo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("films").mkdir()
+    Path("films/old.mp4").write_bytes(b"old")
+    Path("film.mp4").symlink_to("films/old.mp4")
+    assert run("render", demo, *ONE, *FILM, "-o", "film.mp4") == 0
+    assert Path("film.mp4").is_symlink() and Path("films/old.mp4").stat().st_size > 1000
+    assert [path.name for path in Path("films").iterdir()] == ["old.mp4"]
+    Path("null.mp4").symlink_to("/dev/null")
+    Path("gone.mp4").symlink_to("nothing.mp4")
+    Path("films/old.mp4").chmod(0o444)
+    capsys.readouterr()
+    whys = {"null": "is no ordinary file", "gone": "is a link to a file that is not there", "film": "is read-only"}
+    for name, why in whys.items():
+        assert run("render", demo, *ONE, *FILM, "-o", f"{name}.mp4") == 2
+        assert f"dancetutor: {name}.mp4: {why}" in capsys.readouterr().err.splitlines()[-1]
+        assert Path(f"{name}.mp4").is_symlink()
+
+
 @pytest.mark.parametrize("players", [1, 2])
 def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
     demo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, players: int

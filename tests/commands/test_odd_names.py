@@ -80,6 +80,13 @@ def test_a_closed_output_is_one_line(command: str, tmp_path: Path) -> None:
     assert (ran.returncode, ran.stderr) == (2, said)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="no such shell there")
+def test_a_closed_input_is_one_line(tmp_path: Path) -> None:
+    ran = run_in_shell("analyze -", "<&-", tmp_path)
+    said = "dancetutor: standard input (-) is closed; send a chart to it, or name a file\n"
+    assert (ran.returncode, ran.stderr) == (2, said)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full there")
 @pytest.mark.parametrize("command", OUTPUTS)
 def test_a_full_output_is_one_line_that_names_it(command: str, tmp_path: Path) -> None:

@@ -31,3 +31,11 @@ def test_a_path_that_is_no_utf8_can_be_printed() -> None:
     path = safe_path(os.fsdecode(b"song\xff\n.sm"))
     assert path == "song\ufffd?.sm"
     path.encode("utf-8")
+
+
+def test_a_name_out_of_a_cache_may_have_letters_that_names_here_have_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ascii_only(path: str) -> bytes:
+        return path.encode("ascii", "surrogateescape")
+
+    monkeypatch.setattr(os, "fsencode", ascii_only)
+    assert safe_path("e\u0301.sm") == "e\u0301.sm"

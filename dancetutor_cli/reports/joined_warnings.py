@@ -14,7 +14,7 @@ _CHART = re.compile(r"[a-z]+-[a-z-]+ \S+ -?\d+: ")  # "dance-single Hard 9: "
 _NUMBER = re.compile(r"\d+")
 
 
-class Repeats:
+class JoinedWarnings:
     """Takes warnings as they come, and tells them at the end.
 
     every : each of them is a line of its own

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dancetutor_cli.reports.repeats import Repeats
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 
 EMPTY = "no charts: the file has no NOTES"
 
 
 def told(said: list[tuple[str, str]], *, every: bool = False) -> list[str]:
-    warnings = Repeats(every=every)
+    warnings = JoinedWarnings(every=every)
     for path, warning in said:
         warnings.add(Path(path), warning)
     return list(warnings.lines())
