@@ -14,12 +14,13 @@ from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.make_way import Stay, stay
 from dancetutor_cli.video.overlay import captions
+from dancetutor_cli.video.overlay import tags as beside
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
 from dancetutor_cli.video.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.video.overlay.highway import Highway, Score
-from dancetutor_cli.video.overlay.lanes import HighwayGeometry
+from dancetutor_cli.video.overlay.lanes import HighwayGeometry, lane_beside
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame, darkened
@@ -35,7 +36,6 @@ FACING = "she faces you"  # said where no highway says that its arrows are turne
 LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of wide pads; words stand beside them
 ALL_LANES = 0.87  # where none do, but the measures' numbers
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
-TAG_SEEN = 4.0  # seconds before its row that words beside the notes may be seen
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 BLOCK = 64  # frames whose joints are made at once
 
@@ -75,11 +75,12 @@ class Film:
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
-        runs = plan.clock.passes
-        tags = part.tags and any(
-            one.start <= told.second <= one.end + TAG_SEEN for one in runs for told in plan.callouts
-        )
-        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags)
+        tags = part.tags and beside.seen(plan.callouts, plan.clock.passes)
+        letters = beside.letters(scale)
+        if tags:
+            told = beside.told(plan.callouts, self.style.callouts.values())
+            lane = lane_beside(beside.room_for(told, letters, self.face), lane, box, self.columns)
+        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
         return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)

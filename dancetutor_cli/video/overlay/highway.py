@@ -14,9 +14,9 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.colours import RGB, limb_colours
 from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
-from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.overlay import sprites, tags
 from dancetutor_cli.video.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
-from dancetutor_cli.video.overlay.lanes import NUMBER_EDGE, HighwayGeometry
+from dancetutor_cli.video.overlay.lanes import EDGE, NUMBER_EDGE, NUMBER_OFF, HighwayGeometry
 from dancetutor_cli.video.overlay.marks import Marks
 from dancetutor_cli.video.overlay.text import Typeface, fitted
 from dancetutor_cli.video.picture import Frame
@@ -103,7 +103,7 @@ class Highway:
         _, top, _, bottom = self.geometry.box
         rectangle(frame, self.geometry.box, self.style.background, 0.82)
         lane, x0 = self.geometry.lane, self.geometry.left
-        edge = 0.14 * lane
+        edge = EDGE * lane
         x1 = x0 + lane * len(self.geometry.directions)
         rectangle(frame, (x0 - edge, top, x1 + edge, bottom), (0, 0, 0), 0.35)
         for x in (x0 - edge, x1 + edge):
@@ -140,8 +140,8 @@ class Highway:
         shown = np.flatnonzero(self._visible(y, 2))
         if len(shown) > 400:  # so dense that lines would be a wall
             shown = shown[shown % BEATS_PER_MEASURE == 0][:400]
-        x0 = self.geometry.left - 0.14 * lane
-        x1 = self.geometry.left + lane * (len(self.geometry.directions) + 0.14)
+        x0 = self.geometry.left - EDGE * lane
+        x1 = self.geometry.left + lane * (len(self.geometry.directions) + EDGE)
         last_label = -1e9
         for i in shown:
             strong = i % BEATS_PER_MEASURE == 0
@@ -160,7 +160,7 @@ class Highway:
     def _draw_number(self, measure: int) -> Sprite:
         size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
         left, top, _, bottom = self.geometry.box
-        room = self.geometry.left - 0.2 * self.geometry.lane - left - NUMBER_EDGE * (bottom - top)
+        room = self.geometry.left - NUMBER_OFF * self.geometry.lane - left - NUMBER_EDGE * (bottom - top)
         (text,), size = fitted(str(measure), size, room, self.face, most=1)
         return self.face.sprite(text, size, (190, 196, 220))
 
@@ -169,16 +169,15 @@ class Highway:
         if not self.geometry.tags:
             return
         y = self._y(self._callout_seconds, self._callout_beats, now)
-        x = self.geometry.left + self.geometry.lane * (len(self.geometry.directions) + 0.14) + 3
+        x = self.geometry.tags_left
         for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):
             flag = self._flag(self.callouts[i].tag, self.callouts[i].severity)
             blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
-        room = geometry.box[2] - geometry.left - geometry.lane * (len(geometry.directions) + 0.14) - 7
-        size = max(0.24 * geometry.lane, FLAG_SHARE * (geometry.box[3] - geometry.box[1]), FLAG_LEAST)
-        lines, size = fitted(text, size, room - sprites.FLAG_EDGE * size - 4, self.face)
+        size = max(0.24 * geometry.lane, FLAG_SHARE * (geometry.box[3] - geometry.box[1]), geometry.letters)
+        lines, size = tags.laid(text, size, geometry.letters, geometry.tags_room, self.face)
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
     def _draw_turned(self, frame: Frame) -> None:

@@ -225,6 +225,15 @@ def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) 
         size = max(LEAST, 0.96 * size)
 
 
+def narrowest(text: str, size: float, face: Typeface, most: int) -> float:
+    """Pixels that a text needs at this size, in at most `most` lines."""
+    parts = parts_of(text)
+    width = max(face.width(part.lstrip(), size) for part in parts)
+    while len(_laid(parts, size, width, face, most + 1)) > most:
+        width *= 1.04
+    return width
+
+
 def _even(parts: list[str], lines: list[str], room: tuple[float, float], face: Typeface) -> list[str]:
     """As many lines, the longest as short as can be: no last line of one word. room : size and width, pixels"""
     if not 1 < len(lines) <= EVEN:

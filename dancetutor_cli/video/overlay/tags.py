@@ -1,0 +1,56 @@
+"""Words beside the notes: how large their letters are, how much room they need, in how many lines they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from dancetutor_cli.video.clock import Pass
+from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.overlay.sprites import FLAG_EDGE
+from dancetutor_cli.video.overlay.text import Typeface, fitted, narrowest
+
+LETTERS, LEAST = 12.5, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
+LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
+SEEN = 4.0  # seconds before its row that a tag may be in the picture
+LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
+NEAR = 0.95  # of the letters' size that is as good as all of it: sizes are tried in steps
+
+
+def letters(scale: float) -> float:
+    """The size of letters that room is left for, pixels; scale : of the layout."""
+    return max(LETTERS * scale, LEAST)
+
+
+def seen(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
+    """Does any of these stand beside the notes in one of these runs?"""
+    begins = np.array([told.second for told in callouts])
+    return any(((one.start <= begins) & (begins <= one.end + SEEN)).any() for one in passes)
+
+
+def told(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
+    """What may be said beside the notes: what is, and what always is the same, so that lanes of most films are alike.
+
+    words : of moves, some with {who} and {places} to be filled in
+    """
+    return {one.tag for one in callouts} | {said for said in words if "{" not in said}
+
+
+def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:
+    """Pixels that the widest of these words need with their label, at this size; each phrase in two lines at most."""
+    phrases = {phrase for tag in tags for phrase in tag.split(", ")}
+    widest = max((narrowest(phrase, size, face, LINES) for phrase in phrases), default=0.0)
+    return widest + FLAG_EDGE * size + LABEL
+
+
+def laid(tag: str, size: float, least: float, room: float, face: Typeface) -> tuple[list[str], float]:
+    """The lines of a tag, and the size of its letters: at most `size`, at least `least` if they can be; none is cut.
+
+    room : pixels for the label
+    """
+    for most in range(LINES, MOST_LINES + 1):
+        lines, fits = fitted(tag, size, room - FLAG_EDGE * size - LABEL, face, most)
+        if fits >= NEAR * least:
+            break
+    return lines, fits
