@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
 ALL_ROUND = 180.0  # degrees; farther apart in time than the body takes for it, rows know nothing of each other
+SPIN = 1.1  # times as fast as the feet, on average, may a body go that spins
 ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
 
 
@@ -81,7 +82,9 @@ class Facing:
         self.past = [was for was in self.past if was[0] > row.time - ALL_ROUND / step.turn_rate]
         self.past.append((row.time, wanted))
         around = [*self.past, *self._coming(row, normal, lead)]
-        slack = [step.turn_rate * abs(time - row.time) for time, _ in around]
+        # who spins goes round evenly, as fast as the feet do on average: slower, she would only catch up in jerks
+        spin = SPIN * abs(around[-1][1] - self.past[0][1]) * step.turn_rate / (2.0 * ALL_ROUND)
+        slack = [max(step.turn_rate, spin) * abs(time - row.time) for time, _ in around]
         low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
         high = min(yaw + free for (_, yaw), free in zip(around, slack, strict=True))
         return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))

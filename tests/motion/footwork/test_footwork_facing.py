@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bake_plays import Event, context, play
+from bake_plays import Event, chart, context, pad, play
 
+from dancetutor_cli.bake import bake
+from dancetutor_cli.bake.quality import report
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
 from dancetutor_cli.motion.footwork.planner import Planner
 from dancetutor_cli.motion.footwork.steps import _lift
@@ -85,3 +87,13 @@ def test_far_steps_of_the_fastest_streams_have_all_the_time() -> None:
         row = Row(planner.play, context(), 3, 1.5, pressed_by(planner.play, 3), duration)
         for metres, both in ((0.0, near), (1.0, far)):
             assert row.time - _lift(row, planner.footing, metres) == pytest.approx(duration * (1.0 - both))
+
+
+def test_who_spins_goes_round_evenly() -> None:
+    """Round the pad at 6.7 steps a second: the slowest way for 280 degrees a second would catch up in jerks of 736."""
+    ring = (0, 1, 3, 2)
+    steps = [(2.0 + 0.15 * k, {ring[k % 4]: (L, R)[k % 2]}) for k in range(24)]
+    found = report(bake(chart(), play(steps), pad()))
+    assert found["pelvis turns at"].value < 650.0
+    assert found["wrist speed"].value < 4.0
+    assert found["frames past joint limits"].value == 0.0 and found["limb in torso"].value == 0.0
