@@ -27,7 +27,6 @@ from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.fingers import add_fingers, curls, hand_use
 from dancetutor_cli.motion.layers.gaze import look
 from dancetutor_cli.motion.layers.glances import glances_at
-from dancetutor_cli.motion.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.settings import MotionSettings, WalkSettings, default_settings
 from dancetutor_cli.motion.swing.foot_path import both_feet
@@ -36,6 +35,7 @@ from dancetutor_cli.motion.trajectory.posture import Trajectory, stepping
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.physics.hair import add_hair
+from dancetutor_cli.play.let_go import LetGo, told, without_unplayable
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -128,7 +128,7 @@ def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Pla
     def second(tick: int) -> float:
         return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate
 
-    play, gone = without_unplayable(play, pad, settings.unplayable, how.get("let_go", ()))
+    play, gone = without_unplayable(play, pad, how.get("let_go", ()))
     plan = replace(plan_footwork(play, second, how.get("gait", "flat"), context), let_go=gone)
     return (plan if rail is None else grips_of(plan, _standing(plan, context.settings.walk), context)), context
 

@@ -91,7 +91,7 @@ class BakedDance:
         """What there is to say, for people: of the whole motion, or only of the moves."""
         if of_motion:
             return self.own_motion.notes
-        from dancetutor_cli.motion.let_go import told
+        from dancetutor_cli.play.let_go import told
 
         start, end = self.section
         line = told([one for one in self.moves[0].let_go if start <= one.second <= end])

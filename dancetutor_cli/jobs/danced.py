@@ -114,15 +114,15 @@ def _motions(
     """The play without what nobody plays at the fastest rate of the film, and the dancer's motion at each of them, on
     the clock that is heard there: she falls as fast as all do. known : her play and pad; sides : as in `bake.How`"""
     from dancetutor_cli.bake.rate import at_rate
-    from dancetutor_cli.motion.let_go import without_unplayable
     from dancetutor_cli.motion.settings import load_settings
+    from dancetutor_cli.play.let_go import without_unplayable
 
     settings = load_settings(request.motion, request.form)
     passes = subject.clock.passes
     after = quiet_after(passes)
     play, pad = play_without(play_without(known[0], quiet_in(passes)), after), known[1]
     rates = sorted({one.rate for one in passes})
-    fastest, gone = without_unplayable(at_rate(play, rates[-1]), pad, settings.unplayable)
+    fastest, gone = without_unplayable(at_rate(play, rates[-1]), pad)
     shown = replace(fastest, rows=play.rows)
     if request.look.layout.dancer is None:
         return shown, {}

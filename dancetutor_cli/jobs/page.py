@@ -150,20 +150,18 @@ def _content(
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.passages import hardest
     from dancetutor_cli.lint.subject import ChartSubject
-    from dancetutor_cli.motion.let_go import without_unplayable
-    from dancetutor_cli.motion.settings import load_settings
     from dancetutor_cli.page import Content
     from dancetutor_cli.page.facts import beats_of, ticks_of, words_of
     from dancetutor_cli.page.flips import flips_of
     from dancetutor_cli.page.sentences import told
+    from dancetutor_cli.play.let_go import without_unplayable
     from dancetutor_cli.video.scroll import parse_segments
     from dancetutor_cli.video.tracks import note_track
 
     asked, other = both
     song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
-    settings = load_settings(task.bake.motion, task.bake.form)
     # Of two each one's part is so already; and only of the solver's own play for one can it say what else would cost.
-    shown = play if chart.players else without_unplayable(play, pad, settings.unplayable)[0]
+    shown = play if chart.players else without_unplayable(play, pad)[0]
     solved = task.bake.play_file is None and not chart.players
     overrides, ignores, problems = overrides_for(song, chart)
     subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)

@@ -41,8 +41,7 @@ class Pair:
 def pair_of(tasks: Sequence[BakeTask]) -> Pair:
     """Read and solve both. tasks : one for each player"""
     from dancetutor_cli.jobs.danced import together
-    from dancetutor_cli.motion.let_go import without_unplayable
-    from dancetutor_cli.motion.settings import load_settings
+    from dancetutor_cli.play.let_go import without_unplayable
 
     if tasks[0].bar:
         raise UsageError(f"{tasks[0].path}: --bar is for one dancer, and the chart is for two: choose with --player")
@@ -50,8 +49,7 @@ def pair_of(tasks: Sequence[BakeTask]) -> Pair:
     song = alone[0].song
     chart = song.charts[alone[0].chart.index]
     pad = pad_of_both(chart.steps_type)
-    settings = load_settings(tasks[0].motion, tasks[0].form).unplayable
-    play = together(chart, [without_unplayable(one.play, one.pad, settings)[0] for one in alone], pad)
+    play = together(chart, [without_unplayable(one.play, one.pad)[0] for one in alone], pad)
     return Pair(replace(alone[0], chart=chart, play=play, pad=pad), alone, tasks)
 
 

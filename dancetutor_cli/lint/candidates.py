@@ -16,7 +16,7 @@ from dancetutor_cli.meter.features import Feature, features_of
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Limb, Play
 
-_RIGHT = int(Limb.RIGHT_FOOT)
+_LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _HAND = 3  # panels that are down at once
 _FACING = (22.5, 67.5, 112.5, 157.5)  # degrees from the screen
 
@@ -126,6 +126,17 @@ class Candidates:
         left, right = self.plays.travels
         pairs = [self.plays.least(one.row, one.seconds / one.way) for one in (left, right)]
         return [min(both) for both in zip(*pairs, strict=True)]
+
+    @cached_property
+    def quickest_feet(self) -> list[float]:
+        """For each play the least time (s) from one row that a foot presses to the next, taps of rolls too."""
+        plays, found = self.plays, [np.inf] * len(self.plays.plays)
+        for limb in (_LEFT, _RIGHT):
+            row = plays.pressed.of(limb).row
+            same = np.flatnonzero(plays.number[row[1:]] == plays.number[row[:-1]])
+            of_foot = plays.least(row[1:][same], (plays.second[row[1:]] - plays.second[row[:-1]])[same])
+            found = [min(both) for both in zip(found, of_foot, strict=True)]
+        return found
 
     @cached_property
     def techniques(self) -> dict[str, NDArray[np.int64]]:

@@ -20,6 +20,7 @@ from dancetutor_cli.lint.note_questions import Notes
 from dancetutor_cli.lint.places import PlacedChart
 from dancetutor_cli.lint.together import Shared
 from dancetutor_cli.pads import Pad
+from dancetutor_cli.play.let_go import LEAP, SAME_TIME, Why, too_quick
 from dancetutor_cli.play.played import Ambiguity, Limb, StepKind
 
 if TYPE_CHECKING:
@@ -133,6 +134,16 @@ class ChartSubject(PlacedChart):
         plays, number = self.shared.candidates.plays, self.shared.number
         rows: list[int] = plays.own(plays.rows_with(move), number).tolist()
         return rows
+
+    @cached_property
+    def too_quick(self) -> tuple[tuple[int, int, Why], ...]:
+        """Row, column and reason of each note whose limb cannot be there in time: the dancer lets it go."""
+        if self.play is None or self.pad is None:
+            return ()
+        candidates, number = self.shared
+        if candidates.quickest_feet[number] > LEAP + SAME_TIME and not self.has("hand"):
+            return ()
+        return tuple(too_quick(self.play, self.pad))
 
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:

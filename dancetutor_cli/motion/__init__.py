@@ -1,7 +1,7 @@
 """How a play becomes a motion: five stages, one type into each and one out of it. `Context` is what all of them know.
 
     play.Play                      who steps what, from the solver
-      |   let_go.without_unplayable  without the notes that no person plays
+      |   play.let_go              without the notes that no person plays
       |   footwork.plan_footwork     rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake
     plan.Plan                      when each foot leaves and lands, where, how; turns; palms; walks; contacts
       |   swing.foot_path.both_feet  where a foot is at any time

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.let_go import LetGo
+from dancetutor_cli.play.let_go import LetGo
 from dancetutor_cli.rig.skeleton import Skeleton
 
 

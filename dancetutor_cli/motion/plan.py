@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Contact, Grip
 from dancetutor_cli.motion.foot_moves import Move, Swing
-from dancetutor_cli.motion.let_go import LetGo
+from dancetutor_cli.play.let_go import LetGo
 
 Array = NDArray[np.float64]
 # seconds, a frame of a film: in streams feet leave so long before the other one lands, and nobody sees that as a flight

@@ -236,14 +236,6 @@ class LooseSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class UnplayableSettings:
-    """What no person plays."""
-
-    leap: float
-    hand: float
-
-
-@dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 

@@ -29,7 +29,6 @@ from dancetutor_cli.motion.sections import (
     LookSettings,
     LooseSettings,
     SamplingSettings,
-    UnplayableSettings,
     WaitSettings,
 )
 from dancetutor_cli.resources import config_path
@@ -62,7 +61,6 @@ __all__ = [
     "MotionSettings",
     "SamplingSettings",
     "StepSettings",
-    "UnplayableSettings",
     "WaitSettings",
     "WalkSettings",
     "default_settings",
@@ -95,7 +93,6 @@ class MotionSettings:
     wait: WaitSettings
     loose: LooseSettings
     fingers: FingerSettings
-    unplayable: UnplayableSettings
     sampling: SamplingSettings
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
+from dancetutor_cli.play.let_go import Why
+from dancetutor_cli.play.played import StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -19,6 +21,7 @@ _HEEL_AND_TOE = 14  # meter of Pump charts from which one foot takes two neighbo
 _GRACE = 0.06  # seconds: two rows closer together are no 16ths
 _AS_ONE = 0.03  # seconds between two rows that look meant as one
 _TAPS_BESIDE = 13  # meter from which a foot that holds a panel taps a neighbour of it
+_QUICK = 20  # meter of charts that nobody plays to the last note
 _NEIGHBOUR = 1.5  # panel widths
 _NUMBERS = {3: "three", 4: "four"}
 _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
@@ -26,6 +29,10 @@ _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
+
+    Whatever the limits, it is told what the dancer of the films lets go: a step within 80 ms of the foot's last one, to
+    a panel apart from that; once in two measures, and as an info in charts of meter 20 and more, in rolls,
+    and where the other foot could take it.
 
     Two steps of a flam are none if the other foot is free to take the first, or the second where its hold ends. Three
     panels among 16ths, and two, one and two again, are told as such. On Pump pads it is an info from meter 14, whose
@@ -83,6 +90,24 @@ class FastStep(ChartRule):
                 message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
                 yield self.finding(message, subject.at_row(rows[1]))
             end = subject.beat(rows[-1])
+        yield from self._leaps(subject, {row for rows in bursts for row in rows} | {row for row, _ in told})
+
+    def _leaps(self, subject: ChartSubject, told: set[int]) -> Iterable[Finding]:
+        """One finding for each passage of steps that are let go and of which nothing is told yet."""
+        end = -math.inf
+        known = [subject.beat(row) for row in sorted(told)]
+        for row, column, why in sorted(subject.too_quick):
+            if why != Why.LEAP:
+                continue
+            beat = subject.beat(row)
+            if beat > end + _PASSAGE and not any(beat - _PASSAGE <= one <= beat for one in known):
+                foot = subject.feet.limb_name(row, column) if subject.feet else "foot"
+                roll = subject.play is not None and subject.play.rows.steps[row, column] == StepKind.ROLL_TAP
+                expected = roll or subject.chart.meter >= _QUICK or _heel_and_toe(subject, row)
+                expected = expected or _free_foot_takes_it(subject, row, self.options["max_speed"])
+                least = {"severity": "info"} if expected else {}
+                yield self.finding(f"the {foot} would have to leap here at once", subject.at_row(row, column), **least)
+            end = beat
 
 
 def burst(subject: ChartSubject, row: int) -> list[int]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.motion.let_go import MOVE
+from dancetutor_cli.play.let_go import MOVE
 from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.notes import Callout
 

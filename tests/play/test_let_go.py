@@ -7,17 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dancetutor_cli.motion.let_go import LetGo, Why, told, without_unplayable
-from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.play.let_go import LetGo, Why, told, without_unplayable
 from dancetutor_cli.play.played import Limb, Play, StepKind
 from tests.bake.bake_plays import LH, RH, L, R, pad, play
 
-LIMITS = default_settings().unplayable
 LEFT, DOWN, UP, RIGHT = range(4)
 
 
 def gone(one: Play) -> list[tuple[int, int, Why]]:
-    return [(g.row, g.column, g.why) for g in without_unplayable(one, pad(), LIMITS)[1]]
+    return [(g.row, g.column, g.why) for g in without_unplayable(one, pad())[1]]
 
 
 @pytest.mark.parametrize(
@@ -38,7 +36,7 @@ def test_a_foot_does_not_leap(apart: float, way: tuple[int, int], is_gone: bool)
 def test_of_a_trill_of_one_foot_it_plays_every_second_note() -> None:
     """It stays where it is while it lets one go, and is there for the next."""
     one = play([(0.0, {LEFT: L}), *((0.5 + 0.07 * k, {(UP, DOWN)[k % 2]: R}) for k in range(6))])
-    left, found = without_unplayable(one, pad(), LIMITS)
+    left, found = without_unplayable(one, pad())
     assert [g.row for g in found] == [2, 4, 6]
     assert [g.second for g in found] == pytest.approx([0.57, 0.71, 0.85])
     assert (left.feet[1:, R] == UP).all() and (left.limb[[1, 3, 5], UP] == R).all()
@@ -49,7 +47,7 @@ def test_of_a_trill_of_one_foot_it_plays_every_second_note() -> None:
 
 def test_the_next_step_faces_as_the_feet_really_stand() -> None:
     one = play([(0.0, {LEFT: L}), (0.5, {UP: R}), (0.57, {DOWN: R}), (1.0, {RIGHT: L})])
-    left, found = without_unplayable(one, pad(), LIMITS)
+    left, found = without_unplayable(one, pad())
     assert [g.row for g in found] == [2]
     assert left.facing[3] == pytest.approx(play([(0.0, {LEFT: L}), (0.5, {UP: R}), (1.0, {RIGHT: L})]).facing[2])
 
@@ -76,16 +74,16 @@ def test_what_the_solver_left_over_is_told_and_mirrors() -> None:
 
 def test_why_is_kept_for_who_decided_before() -> None:
     one = play([(0.0, {LEFT: L}), (0.5, {UP: R}), (0.57, {DOWN: R})])
-    left, found = without_unplayable(one, pad(), LIMITS)
+    left, found = without_unplayable(one, pad())
     slower = replace(left, rows=replace(left.rows, second=2 * left.rows.second))
-    again, same = without_unplayable(slower, pad(), LIMITS, found)
+    again, same = without_unplayable(slower, pad(), found)
     assert [(g.row, g.column, g.why) for g in same] == [(2, DOWN, Why.LEAP)]
     assert same[0].second == pytest.approx(1.14) and (again.limb == left.limb).all()
 
 
 def test_a_play_that_can_be_played_is_the_same_object() -> None:
     one = play([(0.1 * k, {(LEFT, UP, DOWN, RIGHT)[k % 4]: (L, R)[k % 2]}) for k in range(40)])
-    assert without_unplayable(one, pad(), LIMITS) == (one, ())
+    assert without_unplayable(one, pad()) == (one, ())
 
 
 def test_it_is_told_in_one_line() -> None:

@@ -1,4 +1,4 @@
-"""Notes that no person plays: which ones she lets go, and why; decided before anything is planned."""
+"""Notes that no person plays: which ones, and why. The dancer lets them go, and the linter tells of them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.motion.sections import UnplayableSettings
 from dancetutor_cli.play.played import Limb, Play, StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
+LEAP = 0.08  # seconds: a foot that stepped so shortly before goes to no panel apart from the one it is on
+HAND = 0.40  # and a hand that came down so shortly before does not come down again
 MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
 SAME_TIME = 1e-6  # seconds
 _NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if what makes them is let go begin so
@@ -47,19 +48,15 @@ class LetGo:
     why: Why
 
 
-def without_unplayable(
-    play: Play, pad: Pad, settings: UnplayableSettings, before: Sequence[LetGo] = ()
-) -> tuple[Play, tuple[LetGo, ...]]:
+def without_unplayable(play: Play, pad: Pad, before: Sequence[LetGo] = ()) -> tuple[Play, tuple[LetGo, ...]]:
     """The play in which no limb has those notes that no person plays, and these notes in order of time.
 
-    What is left over by the solver stays `Limb.UNPLAYED`, and what is let go becomes so. A foot leaps if it steps
-    within `settings.leap` seconds of its last step, to no panel that touches one of that; then it stays where it is.
-    A hand is let go if it comes down within `settings.hand` seconds of the last note for it, played or not: of many
-    the first is played, and then feet go on alone. A hand that stays there drums a roll, if she stands on a foot.
+    What is left over by the solver stays `Limb.UNPLAYED`, and what `too_quick` finds becomes so: the foot stays where
+    it is, the hand is up, and feet go on alone.
 
     play : its seconds are those of the music as it is heard; before : why notes are left over in it already
     """
-    found = list(_leaps(play, pad, settings.leap)) + list(_hands(play, settings.hand))
+    found = list(too_quick(play, pad))
     if not found and not (play.limb == Limb.UNPLAYED).any():
         return play, ()
     if found:
@@ -73,6 +70,17 @@ def without_unplayable(
     )
 
 
+def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
+    """Row and column of each note that has a limb, but one which cannot be there in time, and why.
+
+    A foot leaps if it steps within `LEAP` seconds of its last step, to no panel that touches one of that. A hand is let
+    go if it comes down within `HAND` seconds of the last note for it, played or not: of many the first is played. One
+    that stays there drums a roll, if she stands on a foot.
+    """
+    yield from _leaps(play, pad)
+    yield from _hands(play)
+
+
 def told(gone: Sequence[LetGo]) -> str:
     """How many notes are let go and why, in one line for people; nothing if none is."""
     if not gone:
@@ -82,21 +90,21 @@ def told(gone: Sequence[LetGo]) -> str:
     return f"{len(gone)} note{'s' if len(gone) > 1 else ''} let go, for nobody plays them: {reasons}"
 
 
-def _leaps(play: Play, pad: Pad, most: float) -> Iterator[tuple[int, int, Why]]:
+def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
     """Row and column of each note that its foot would have to leap to."""
     touching = pad.neighbours | np.eye(len(pad), dtype=bool)
     for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
         mine: NDArray[np.bool_] = play.limb == side
-        last, on = -np.inf, np.zeros(0, dtype=np.int64)
-        for row in np.flatnonzero(mine.any(axis=1)).tolist():
-            second, columns = float(play.rows.second[row]), np.flatnonzero(mine[row])
-            if second - last <= most + SAME_TIME and not touching[np.ix_(on, columns)].any():
-                yield from ((row, column, Why.LEAP) for column in columns.tolist())
+        rows = np.flatnonzero(mine.any(axis=1))
+        last, on = -np.inf, 0
+        for row, second in zip(rows.tolist(), play.rows.second[rows].tolist(), strict=True):
+            if second - last <= LEAP + SAME_TIME and not touching[np.ix_(mine[on], mine[row])].any():
+                yield from ((row, column, Why.LEAP) for column in np.flatnonzero(mine[row]).tolist())
             else:
-                last, on = second, columns
+                last, on = second, row
 
 
-def _hands(play: Play, most: float) -> Iterator[tuple[int, int, Why]]:
+def _hands(play: Play) -> Iterator[tuple[int, int, Why]]:
     """Row and column of each note for which a hand would have to hop."""
     both = (play.limb == Limb.LEFT_FOOT).any(axis=1) & (play.limb == Limb.RIGHT_FOOT).any(axis=1)
     fresh = (play.rows.steps != StepKind.ROLL_TAP) | both[:, None]
@@ -105,7 +113,7 @@ def _hands(play: Play, most: float) -> Iterator[tuple[int, int, Why]]:
         last = -np.inf
         for row in np.flatnonzero(mine.any(axis=1)).tolist():
             second = float(play.rows.second[row])
-            if second - last <= most + SAME_TIME:
+            if second - last <= HAND + SAME_TIME:
                 yield from ((row, column, Why.HAND) for column in np.flatnonzero(mine[row]).tolist())
             last = second
 
