@@ -237,7 +237,10 @@ class HomeSettings:
 
     after: float
     pause: float
+    pause_least: float
+    rest: float
     step: float
+    step_least: float
     near: float
     facing: float
     turn: float

@@ -37,14 +37,15 @@ def home_steps(plan: Plan) -> list[tuple[int, Swing]]:
     return sorted(found, key=lambda f: f[1].lift)
 
 
-@pytest.mark.parametrize("wait", [3.2, 4.5, 8.0])
+@pytest.mark.parametrize("wait", [2.0, 2.4, 3.2, 4.5, 8.0])
 def test_she_rests_on_the_pads_middle_facing_the_screen(wait: float) -> None:
     plan, settings = planned(wait), default_settings()
     found, home = home_steps(plan), stand_at(np.zeros(2), 0.0, settings)
     assert {side for side, _ in found} == {0, 1}
     assert all(a.land <= b.lift for (_, a), (_, b) in pairwise(found)), "one foot stands"
-    assert found[0][1].lift >= LAST + settings.home.pause
-    assert found[-1][1].land <= LAST + 2.0
+    assert found[0][1].lift >= LAST + (settings.home.pause if wait > 3.0 else settings.home.pause_least)
+    assert found[-1][1].land <= LAST + min(2.0, wait - settings.walk.settle) + 1e-9
+    assert min(s.land - s.lift for _, s in found) >= settings.home.step_least, "a human pace"
     rest = standing(plan.feet, found[-1][1].land, plan.turns)
     np.testing.assert_allclose(rest.balls, home.balls, atol=1e-9)
     np.testing.assert_allclose(rest.yaws, home.yaws, atol=1e-9)
@@ -62,8 +63,9 @@ def test_the_first_step_from_home_does_not_turn_her_for_a_foot_that_is_not_there
     assert abs(next(t.yaw for t in plan.turns if t.end == after)) < np.radians(10.0)
 
 
-def test_every_goal_is_met() -> None:
-    measured = report(bake(chart(), played(4.5), pad()))
+@pytest.mark.parametrize("wait", [2.0, 4.5])
+def test_every_goal_is_met(wait: float) -> None:
+    measured = report(bake(chart(), played(wait), pad()))
     assert [f for f in measured.figures if f.met is False] == [], measured.notes
 
 
@@ -77,9 +79,9 @@ def test_the_mirror_image_goes_home_as_the_mirror_image() -> None:
 
 def test_she_stays_in_a_short_wait_at_the_bar_and_while_a_foot_holds() -> None:
     assert home_steps(planned(3.2))
-    assert not home_steps(planned(2.8))
+    assert not home_steps(planned(1.8))
     assert not home_steps(planned(4.5, bar=True))
-    assert not home_steps(plan_of(chart(), played(4.5, holds={(3, 2): LAST + 2.0}), pad()))
+    assert not home_steps(plan_of(chart(), played(4.5, holds={(3, 2): LAST + 2.8}), pad()))
     held = home_steps(plan_of(chart(), played(6.0, holds={(3, 2): LAST + 2.0}), pad()))
     assert held and held[0][1].lift >= LAST + 2.0
 
@@ -94,3 +96,10 @@ def test_who_stands_there_already_stays() -> None:
     settings = default_settings()
     wide = replace(settings, home=replace(settings.home, near=1.0, facing=180.0))
     assert not home_steps(plan_of(chart(), played(8.0), pad(), settings=wide))
+
+
+@pytest.mark.parametrize("foot", [L, R])
+def test_the_way_home_ends_with_the_foot_that_does_not_step_next(foot: int) -> None:
+    one = play([(3.0, {0: L}), (3.5, {3: R}), (6.0, {(0, 3)[foot]: foot}), (6.5, {(3, 0)[foot]: 1 - foot})])
+    found = home_steps(plan_of(chart(), one, pad()))
+    assert [side for side, _ in found] == [foot, 1 - foot]

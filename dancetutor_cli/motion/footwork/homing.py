@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,14 @@ from dancetutor_cli.motion.swing.clearance import Way, detour
 
 Array = NDArray[np.float64]
 Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
+
+
+class _Home(NamedTuple):
+    """A way home. crossed : how far legs cross; room : metres between shoes where they come nearest"""
+
+    crossed: float
+    room: float
+    falls: Falls
 
 
 class HomeSteps(StepsInWaits):
@@ -37,20 +46,30 @@ class HomeSteps(StepsInWaits):
             *(p.end + settings.hands.reach_down for p in presses[-2:]),
             before[-1] if len(before) else -np.inf,
         )
-        if row.time - free < home.after or self._walks(row, free, footing):
+        wait = row.time - free
+        if wait < home.after or self._walks(row, free, footing):
             return None
         begin = stand_of(footing)
         whole = 360.0 * round(footing.normal / 360.0)
         goal = stand_at(np.array([self._place(begin), 0.0]), float(np.radians(whole)), settings)
-        falls = self._falls(begin, goal, footing.lead)
-        start = free + home.pause
-        if not falls or start + len(falls) * home.step > row.time - settings.walk.settle:
+        falls = self._falls(begin, goal, footing.lead, row)
+        pause, step = self._pace(wait - settings.walk.settle, len(falls))
+        if not falls or pause + len(falls) * step > wait - settings.walk.settle + 1e-9:
             return None
+        start = free + pause
         for k, (side, fall) in enumerate(falls):
-            footing = stepped(footing, footing.feet[side], fall, start + k * home.step, home.step)
-        turn = Turn(start, start + len(falls) * home.step, goal.heading)
+            footing = stepped(footing, footing.feet[side], fall, start + k * step, step)
+        turn = Turn(start, start + len(falls) * step, goal.heading)
         footing = replace(footing, normal=whole, aim=goal.heading, faced=goal.heading, resting=(True, True))
         return Proposal(footing, start, turn)
+
+    def _pace(self, time: float, count: int) -> tuple[float, float]:
+        """How long she stands before so many steps, and how long each takes, seconds: where there is little `time` she
+        stands less, and where there is less than that her steps are quicker."""
+        home = self.settings.home
+        pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
+        step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
+        return pause, step
 
     def _walks(self, row: Row, free: float, footing: Footing) -> bool:
         """Whether she will walk to the other pad in this wait."""
@@ -67,8 +86,11 @@ class HomeSteps(StepsInWaits):
         """Where along x she waits: the nearest of the places for that."""
         return float(self.places[np.argmin(np.round(np.abs(self.places - begin.middle[0]), 6))])
 
-    def _falls(self, begin: Stand, goal: Stand, lead: int) -> Falls:
-        """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do."""
+    def _falls(self, begin: Stand, goal: Stand, lead: int, row: Row) -> Falls:
+        """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do.
+
+        Of two ways it is that on which legs cross less, then that which does not end with the foot of the next note.
+        """
         home = self.settings.home
         off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
         if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
@@ -77,11 +99,12 @@ class HomeSteps(StepsInWaits):
             ways = [self._way(begin, goal, count, first) for first in (lead, 1 - lead)]
             free = [way for way in ways if way is not None]
             if free:
-                return min(free, key=lambda way: way[0])[1]
+                again = [row.feet == [way.falls[-1][0]] for way in free]
+                return min(zip(free, again, strict=True), key=lambda w: (w[0].crossed, w[1], -w[0].room))[0].falls
         return []
 
-    def _way(self, begin: Stand, goal: Stand, count: int, first: int) -> tuple[tuple[float, float], Falls] | None:
-        """So many steps home, a foot first, and their price: how far legs cross, and how near shoes come."""
+    def _way(self, begin: Stand, goal: Stand, count: int, first: int) -> _Home | None:
+        """So many steps home, a foot first; or None where a foot turns too far or meets the other."""
         apart, most = self.settings.step.apart, np.radians(self.settings.home.turn)
         places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
         falls, crossed, least = [], 0.0, np.inf
@@ -99,7 +122,7 @@ class HomeSteps(StepsInWaits):
             crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, self.settings.step)[0])
             places[side] = (fall.ball, fall.yaw)
             falls.append((side, fall))
-        return ((round(crossed, 6), -round(least, 6)), falls) if least >= apart - 1e-9 else None
+        return _Home(round(crossed, 6), round(least, 6), falls) if least >= apart - 1e-9 else None
 
 
 def faces_as_at_home(row: Row, footing: Footing) -> bool:
