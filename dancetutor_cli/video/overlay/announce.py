@@ -17,7 +17,9 @@ from dancetutor_cli.video.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, 
 from dancetutor_cli.video.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.video.picture import Frame
 
-CALL_LEAST = 0.75  # size of a call's letters that is preferred to another line
+CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
+CALL_SMALL = 0.5  # and to more than two lines
+SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
 CALL_STAYS = 0.2  # seconds that a call stays after its note
 COUNTED = "starts in"  # said above the numbers of the count-in
 
@@ -76,24 +78,40 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
     return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
 
 
-def _phrases(text: str, size: float, room: tuple[float, float], face: Typeface) -> tuple[list[str], float]:
-    """Words of a call in one line, or broken where there is a comma, then a colon, or anywhere; nothing is cut off.
+def _phrases(
+    text: str, size: float, room: tuple[float, float], face: Typeface, short: str = ""
+) -> tuple[list[str], float]:
+    """Words of a call in one or two lines; in more where their letters would be too small. Nothing is cut off.
 
-    room : width and height of the words, pixels
+    room : width and height of the words, pixels; short : the text without whose move it is, for a narrow place
     """
     width, height = room
+    for least in (CALL_LEAST, CALL_SMALL):
+        for said in (text, short) if text.endswith(short) else (text,):
+            lines, fits = _two_lines(said or text, size, width, face)
+            if fits >= least * size:
+                return lines, fits
     for ends in (",", ",:"):
-        parts = re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
-        for share in np.arange(1.0, CALL_LEAST - 0.01, -0.05):
-            lines = wrapped(parts, share * size, width, face)
+        for share in SHARES:
+            lines = wrapped(_parts(text, ends), share * size, width, face)
             low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
             if low and max(face.width(line, share * size) for line in lines) <= width:
                 return lines, float(share * size)
-    for most in (2, 3):
-        lines, fits = fitted(text, size, width, face, most)
-        if fits >= CALL_LEAST * size:
-            break
-    return lines, fits
+    return fitted(text, size, width, face, 3)
+
+
+def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
+    """In one line, or broken where there is a comma, then a colon, or anywhere, in letters as small as they need."""
+    for ends in (",", ",:"):
+        for share in SHARES:
+            lines = wrapped(_parts(text, ends), share * size, width, face)
+            if len(lines) <= 2 and max(face.width(line, share * size) for line in lines) <= width:
+                return lines, float(share * size)
+    return fitted(text, size, width, face, 2)
+
+
+def _parts(text: str, ends: str) -> list[str]:
+    return re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
 
 
 class Calls:
@@ -112,10 +130,10 @@ class Calls:
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
-    def _plate(self, text: str, severity: str) -> Sprite:
+    def _plate(self, text: str, severity: str, tag: str = "") -> Sprite:
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
-        lines, size = _phrases(text, size, (width, height), self.face)
+        lines, size = _phrases(text, size, (width, height), self.face, tag)
         return flag(lines, size, self.style.callout[severity], self.face)
 
     def _shown(self, second: float) -> list[Callout]:
@@ -126,7 +144,7 @@ class Calls:
         """Draw what goes on at `second`, and what comes next."""
         y = float(self.box[1])
         for one in self._shown(second):
-            label = self._sprite(one.text, one.severity)
+            label = self._sprite(one.text, one.severity, one.tag)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
                 break  # it would cover what stands below; the tag beside the notes says it, too
             x = self.box[2] - label.shape[1]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or seconds, are called out together,
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
-KINDS = 2  # different moves in one call at most: more cannot be read in time
+KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
@@ -64,7 +64,8 @@ class _Passage:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
         near = within(self.last, JOIN) and within(self.first, LONGEST)
-        return near and weight == self.weight and (said in self.words or len(self.words) < KINDS)
+        short = len(self.words) < KINDS and len(", ".join([*self.words, said])) <= LETTERS
+        return near and weight == self.weight and (said in self.words or short)
 
     def text(self) -> str:
         return ", ".join(said if count == 1 else f"{said} ×{count}" for said, count in self.words.items())
@@ -163,10 +164,7 @@ def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
     columns = [column for column, limb in enumerate(limbs) if limb == who]
     heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
     parts = [(column != heel, panel_words(pad.names[column], style.turned)) for column in columns]
-    said = [f"{'toe' if toe else 'heel'} on {panel}" for toe, panel in sorted(parts)]
-    if name == "bracket" and len(parts) == 1:  # its other end holds a panel
-        said.append("heel stays" if parts[0][0] else "toe stays")
-    places = ", ".join(said)
+    places = ", ".join(f"{'toe' if toe else 'heel'} on {panel}" for toe, panel in sorted(parts))
     return style.words[name].replace("{who}", _WHO[who] if who >= 0 else "foot").replace("{places}", places)
 
 

@@ -85,11 +85,25 @@ def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
     assert one.text == "right foot: heel on left, toe on down", "as her panels are seen by whom she faces"
 
 
-def test_a_bracket_over_a_held_panel_says_that_its_other_end_stays() -> None:
+def test_a_bracket_over_a_held_panel_names_the_end_that_steps() -> None:
+    """What the other one does is seen; "heel stays" made calls of four lines."""
     (one,) = called(subject((4.0, ("bracket",), {2: 1}, {0: 0, 1: 3})))
-    assert (one.text, one.tag) == ("right foot: toe on up, heel stays", "toe on up, heel stays")
+    assert (one.text, one.tag) == ("right foot: toe on up", "toe on up")
     (one,) = called(subject((4.0, ("bracket",), {3: 1}, {0: 0, 1: 3})))
-    assert one.text == "right foot: heel on right, toe stays"
+    assert one.text == "right foot: heel on right"
+
+
+def test_two_moves_are_joined_if_they_are_short() -> None:
+    """Two brackets are read one after the other, in two lines each."""
+    left, right = ({0: 0, 1: 0}, {0: 1, 1: 3}), ({2: 1, 3: 1}, {0: 0, 1: 3})
+    rows = [(float(beat), ("bracket",), *(right if beat % 2 else left)) for beat in range(4)]
+    found = called(subject(*rows))
+    assert [one.text for one in found] == [
+        "left foot: heel on down, toe on left ×2",
+        "right foot: heel on right, toe on up ×2",
+    ]
+    crossed = called(subject((0.0, ("crossover-half",), {0: 1}, {0: 3, 1: 0}), (1.0, ("bracket",), *left)))
+    assert [one.text for one in crossed] == ["crossover", "left foot: heel on down, toe on left"]
 
 
 def test_panels_of_a_double_have_no_number() -> None:
