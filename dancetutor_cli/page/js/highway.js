@@ -4,7 +4,7 @@ import { KIND, UNPLAYED } from "./chart.js";
 import { lightOf } from "./feet.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, notePath } from "./noteart.js";
+import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, markerAt, notePath } from "./noteart.js";
 
 /**
  * @typedef {object} Scene
@@ -197,10 +197,11 @@ export class Highway {
       const changed = scene.feet.has(n);
       const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
       const row = this.rowOf.get(n);
+      const mark = markerAt(this.way(column, scene.mirror), m.size);
       if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
-        drawMarker(c, { limb, colour: style.limbs[limb], changed }, x, top, 0.5 * m.size);
+        drawMarker(c, { limb, colour: style.limbs[limb], changed }, x + mark.x, top + mark.y, mark.size);
       } else if (!fake && limb === UNPLAYED) {
-        drawMarker(c, { limb, colour: NOBODY, changed }, x, top, 0.5 * m.size);
+        drawMarker(c, { limb, colour: NOBODY, changed }, x + mark.x, top + mark.y, mark.size);
       }
       if (n === scene.chosen) {
         c.lineWidth = 3 * m.ratio;

@@ -91,6 +91,18 @@ export function drawMine(c, colour, x, y, size) {
 }
 
 /**
+ * Where a marker stands on a note, from its middle, and how large it is: on an arrow's tail, so that it is seen where that
+ * points (configs/highway.yaml).
+ * @param {number | null} way @param {number} size
+ */
+export function markerAt(way, size) {
+  if (way === null) return { x: 0, y: 0, size: 0.5 * size };
+  const far = (way % 90 ? 0.25 : 0.135) * size;
+  const angle = (way * Math.PI) / 180;
+  return { x: -far * Math.sin(angle), y: far * Math.cos(angle), size: 0.44 * size };
+}
+
+/**
  * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring; nobody a cross.
  * @param {Context} c @param {{limb: number, colour: string, changed: boolean}} who changed: by the author
  * @param {number} x @param {number} y @param {number} size

@@ -62,7 +62,8 @@ class Marks:
         """Where such a mark stands on its arrow, pixels from the middle."""
         if direction is None:
             return 0.0, 0.0
-        far, way = self._style.mark_aside * self.geometry.lane, math.radians(direction)
+        far = self._style.mark_aside[bool(direction % 90)] * self.geometry.lane
+        way = math.radians(direction)
         return -far * math.sin(way), far * math.cos(way)
 
     def places(self, spacing: float) -> Places:

@@ -47,7 +47,7 @@ class HighwayStyle:
     lane_line: RGB
     arrow: float
     mark: float
-    mark_aside: float
+    mark_aside: tuple[float, float]
     mark_tail: float
     flash_seconds: float
     panel_seconds: float
