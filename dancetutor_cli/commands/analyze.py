@@ -14,6 +14,7 @@ from dancetutor_cli.commands.chart_options import Selection, preset_option, sele
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.names import fixes, folder, named, rules
 from dancetutor_cli.commands.pack_options import pack_options
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.sources import Source, sources
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file
@@ -37,7 +38,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, allow_dash=True), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True), metavar="PATH...")
 @selection_options
 @preset_option
 @click.option(
@@ -81,7 +82,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="KEY=VALUE",
     help="Change one value of the configuration, for example DT205.max_rows=4.",
 )
-@click.option("--baseline", type=click.Path(path_type=Path, dir_okay=False), help="Known findings, not to be reported.")
+@click.option("--baseline", type=GivenPath(dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
 @click.option("-q", "--quiet", is_flag=True, help="Leave out infos, and charts without errors and warnings.")
 @click.option(
@@ -97,7 +98,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--sheet",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=GivenPath(dir_okay=False),
     metavar="FILE.html|.svg",
     help="Draw the charts of one file as a sheet of measures.",
 )
@@ -129,7 +130,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
 @click.option(
     "--stdin-filename",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     metavar="FILE",
     help="What the chart on standard input (PATH -) is called.",
 )

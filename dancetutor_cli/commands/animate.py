@@ -27,6 +27,7 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.formats.writers import FORMATS
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.bake import Asked
     from dancetutor_cli.jobs.baked_dance import BakedDance
 
-_FILE = click.Path(path_type=Path)
+_FILE = GivenPath()
 
 
 @dataclass(frozen=True, slots=True)

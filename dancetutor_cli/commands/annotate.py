@@ -12,6 +12,7 @@ import click
 
 from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_folder
@@ -57,7 +58,7 @@ class AnnotateWish:
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(), metavar="PATH...")
 @click.option(
     "--style", "styles", callback=_styles, metavar="STYLE[,STYLE]",
     help=f"Where to write the feet (theme: what comes next): {', '.join(STYLES)} [default: measure; with --strip all "
@@ -67,9 +68,7 @@ class AnnotateWish:
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
 @click.option("--dry-run", is_flag=True, help="Write nothing; say which files would change.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Write into this folder, not in place."
-)
+@click.option("-o", "--output", type=GivenPath(), metavar="DIR", help="Write into this folder, not in place.")
 @click.option(
     "--into-file", is_flag=True, help="Style edit: add the charts to the file instead of writing .edit files."
 )

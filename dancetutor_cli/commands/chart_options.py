@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from dancetutor_cli.commands.names import characters, difficulties, folder, named, steps_types
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.library.selection import Selection
 
 __all__ = [
@@ -179,7 +179,7 @@ def motion_option(command: _Command) -> _Command:
     """Add --motion; the function gets keyword argument `motion`, to be given to `motion.settings.load_settings`."""
     option = click.option(
         "--motion",
-        type=click.Path(path_type=Path),
+        type=GivenPath(),
         metavar="FILE",
         help="How she moves: a YAML file that names the numbers of configs/motion.yaml that it changes.",
     )

@@ -21,6 +21,7 @@ from dancetutor_cli.commands.chart_options import (
     style_option,
 )
 from dancetutor_cli.commands.names import folder, named
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
 
@@ -94,7 +95,7 @@ _OPTIONS = (
     ),
     click.option(
         "--play",
-        type=click.Path(path_type=Path),
+        type=GivenPath(),
         metavar="FILE.json",
         help="Feet from this JSON of analyze instead of the solver's.",
     ),
@@ -117,7 +118,7 @@ _OPTIONS = (
         help="How long before a move it is called out: seconds, or beats as b2 [default: 0.9].",
     ),
     click.option("--show-findings", is_flag=True, help="Call out what the linter found, too: for authors."),
-    click.option("--font", type=click.Path(path_type=Path), help="A font file, for titles in other scripts."),
+    click.option("--font", type=GivenPath(), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
 )
 

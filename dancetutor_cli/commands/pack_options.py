@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from dancetutor_cli.commands.chart_options import number
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.meter.bill import AUTO, SCALES
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -16,19 +16,19 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 _OPTIONS = (
     click.option(
         "--report-html",
-        type=click.Path(path_type=Path, dir_okay=False),
+        type=GivenPath(dir_okay=False),
         metavar="FILE.html",
         help="Write the page of a pack: charts by meter and technique, pictures, outliers, what is missing.",
     ),
     click.option(
         "--compare",
-        type=click.Path(path_type=Path, exists=True),
+        type=GivenPath(exists=True),
         metavar="OTHER",
         help="Tell what changed since another version of PATH, by chart and row.  [format text]",
     ),
     click.option(
         "--beside",
-        type=click.Path(path_type=Path, exists=True),
+        type=GivenPath(exists=True),
         metavar="CACHE|FILE.csv",
         help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs, or a "
         "table's. With --full every chart that differs.",

@@ -21,6 +21,7 @@ from dancetutor_cli.commands.chart_options import (
     verbose_option,
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
@@ -28,7 +29,7 @@ from dancetutor_cli.outputs import check_file, check_folder, make_folder
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.page import PageTask
 
-_FILE = click.Path(path_type=Path)
+_FILE = GivenPath()
 SUFFIXES = (".html", ".htm")
 
 

@@ -15,6 +15,7 @@ from dancetutor_cli.commands.chart_options import preset_option, selection_optio
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.commands.long_work import LONG, confirm_long
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.outputs import check_file, check_folder, make_folder, one_of
 from dancetutor_cli.video.media.film_formats import FILES
@@ -29,16 +30,16 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 
 
 @click.command()
-@click.argument("path", type=click.Path(path_type=Path))
+@click.argument("path", type=GivenPath())
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help=f"A {one_of(FILES)} [default: SONG-difficulty.mp4]; for a folder of charts a folder [default: videos].",
 )
-@click.option("--frames", type=click.Path(path_type=Path), metavar="DIR", help="Write PNG pictures into this folder.")
-@click.option("--poses", type=click.Path(path_type=Path), metavar="DIR", help="Write one PNG per row into this folder.")
-@click.option("--poster", type=click.Path(path_type=Path), metavar="FILE", help="Also write a PNG for a title page.")
+@click.option("--frames", type=GivenPath(), metavar="DIR", help="Write PNG pictures into this folder.")
+@click.option("--poses", type=GivenPath(), metavar="DIR", help="Write one PNG per row into this folder.")
+@click.option("--poster", type=GivenPath(), metavar="FILE", help="Also write a PNG for a title page.")
 @click.option("--srt", is_flag=True, help="Also write subtitles that name the moves, beside the film.")
 @click.option(
     "--background",
@@ -66,7 +67,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 @click.option("--scheduler", metavar="ADDRESS", help="Of a folder: work on a Dask cluster that shares the folders.")
 @click.option(
     "--results",
-    type=click.Path(path_type=Path, allow_dash=True),
+    type=GivenPath(allow_dash=True),
     metavar="FILE",
     help="Of a folder: a line of JSON per chart; - is standard output.",
 )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
+from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_file, one_of
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.jobs.retarget import Retargeting
 
 SUFFIXES = (".glb", ".bvh", ".npz", ".mp4")
-_FILE = click.Path(path_type=Path)
+_FILE = GivenPath()
 _CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
 
 

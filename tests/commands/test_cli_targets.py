@@ -239,3 +239,18 @@ def test_a_folder_in_place_of_the_settings_is_told(demo: Path, capsys: pytest.Ca
     (demo.parent / "dancetutor.yaml").mkdir()
     assert run("analyze", demo) == 2
     assert "dancetutor.yaml: is a folder; it cannot be read as a file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["analyze", "annotate", "animate", "render", "page"])
+def test_an_empty_name_is_not_the_folder_one_stands_in(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    """As of a variable of a shell that is not set: `annotate "$SONG"` wrote into every file here and below."""
+    before = demo.read_bytes()
+    assert run(command, "") == 2
+    said = capsys.readouterr()
+    assert said.out == "" and "the name is empty" in said.err.splitlines()[-1]
+    assert demo.read_bytes() == before
+    assert run(command, demo, *ONE, *(("-o", "") if command != "analyze" else ("--sheet", ""))) == 2
+    assert "the name is empty" in capsys.readouterr().err.splitlines()[-1]
+    assert sorted(path.name for path in Path().rglob("*")) == ["song", "song.ssc"]
