@@ -9,6 +9,7 @@ from pathlib import Path
 
 from dancetutor_cli.errors import FileError, UsageError
 
+_CHARTS = (".sm", ".ssc")
 _DENIED = os.strerror(errno.EACCES)
 
 
@@ -19,6 +20,8 @@ def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
     """
     if suffixes and path.suffix.lower() not in suffixes:
         raise UsageError(f"{path}: the name must end in {one_of(suffixes)}")
+    if path.suffix.lower() in _CHARTS:
+        raise FileError(path, "is a chart's name, and this would take its place; give another")
     if path.is_dir():
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():

@@ -107,6 +107,23 @@ def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
     assert capsys.readouterr().err.splitlines()[-1] == f"dancetutor: {name}: is a folder; give a file name"
 
 
+@pytest.mark.parametrize(
+    ("command", "option"), [("render", "--poster"), ("render", "--results"), ("animate", "--report")]
+)
+def test_nothing_is_written_over_a_chart(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str
+) -> None:
+    before = demo.read_bytes()
+    path = demo.parent if option == "--results" else demo
+    assert run(command, path, *ONE, option, demo) == 2
+    said = capsys.readouterr()
+    assert (
+        said.err.splitlines()[-1]
+        == f"dancetutor: {demo}: is a chart's name, and this would take its place; give another"
+    )
+    assert demo.read_bytes() == before
+
+
 def test_folders_are_made_with_those_above(demo: Path) -> None:
     assert run("annotate", demo, *ONE, "-o", "a/b/marked") == 0
     assert b"{dt1 " in Path("a/b/marked/song.ssc").read_bytes()
