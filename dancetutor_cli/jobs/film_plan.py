@@ -15,11 +15,11 @@ from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.media.clicks import clicks_of
 from dancetutor_cli.video.media.cues import cues_of
 from dancetutor_cli.video.media.sound import SoundPlan
-from dancetutor_cli.video.media.subtitles import subtitle_style
+from dancetutor_cli.video.media.subtitles import subtitle_words
 from dancetutor_cli.video.overlay.callouts import CallStyle, callouts_of
 from dancetutor_cli.video.overlay.captions import SongShape
 from dancetutor_cli.video.overlay.diagram import step_rows
-from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.overlay.titles import title_warnings, words_of
 from dancetutor_cli.video.plan import FilmPlan, turned
 from dancetutor_cli.video.practice import whole_song
@@ -88,7 +88,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         character=character,
         partners=partners,
         callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
-        cues=tuple(_cues(dance)),
+        cues=tuple(_cues(dance, turned(look))),
         fade=FADE if request.practice.rest and not request.background else 0.0,
     )
     fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
@@ -125,20 +125,20 @@ def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
 
 def _calls(look: FilmLook) -> CallStyle:
     style = highway_style()
-    return CallStyle(style.callouts, look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
+    return CallStyle(callout_words(), look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
 
 
-def _cues(dance: Danced) -> Iterator[Cue]:
-    """The moves for subtitles; of two who dance with the player's number."""
-    words = subtitle_style().moves
+def _cues(dance: Danced, facing: bool) -> Iterator[Cue]:
+    """The moves for subtitles; of two who dance with the player's number. facing : she faces who looks on"""
+    words = subtitle_words()
     if len(dance.solved) == 1:
-        yield from cues_of(dance.play, dance.solved[0].chart.timing, words)
+        yield from cues_of(dance.play, dance.solved[0].chart.timing, words, dance.pad, facing)
         return
     cues = [
         replace(cue, text=f"P{one.chart.player}: {cue.text}")
         for one in dance.solved
-        if one.play is not None
-        for cue in cues_of(one.play, one.chart.timing, words)
+        if one.play is not None and one.pad is not None
+        for cue in cues_of(one.play, one.chart.timing, words, one.pad, facing)
     ]
     yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
 

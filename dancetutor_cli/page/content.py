@@ -11,7 +11,7 @@ import numpy as np
 from dancetutor_cli.colours import hex_colour, limb_colours
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.packing import pack_body, pack_motion
-from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.scene.scene import SOLE_RADIUS, Scene
 from dancetutor_cli.video.scene.stage import PANEL
 
@@ -117,7 +117,7 @@ def _style() -> dict[str, Any]:
         "difficulty": {name: hex_colour(colour) for name, colour in style.difficulty.items()},
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
         # beside the notes, whose markers say which foot it is: the move's name where a film says who does it
-        "callouts": {name: name.replace("-", " ") if "{" in said else said for name, said in style.callouts.items()},
+        "callouts": {name: name.replace("-", " ") if "{" in said else said for name, said in callout_words().items()},
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],
         "flash": style.flash_seconds,

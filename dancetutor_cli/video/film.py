@@ -21,7 +21,7 @@ from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, 
 from dancetutor_cli.video.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.video.overlay.highway import Highway, Score
 from dancetutor_cli.video.overlay.lanes import HighwayGeometry, lane_beside
-from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame, darkened
 from dancetutor_cli.video.plan import FilmPlan, turned
@@ -78,7 +78,7 @@ class Film:
         tags = part.tags and beside.seen(plan.callouts, plan.clock.passes)
         letters = beside.letters(scale)
         if tags:
-            told = beside.told(plan.callouts, self.style.callouts.values())
+            told = beside.told(plan.callouts, callout_words().values())
             lane = lane_beside(beside.room_for(told, letters, self.face), lane, box, self.columns)
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)

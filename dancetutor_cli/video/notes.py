@@ -68,12 +68,16 @@ class Callout:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """A move to name in subtitles. second, end : of the music, when it comes and is over; who : "left foot", ..."""
+    """A move to name in subtitles. second, end : of the music, when it comes and is over; who : "left foot", ...
+
+    move : its name
+    """
 
     second: float
     end: float
     text: str
     who: tuple[str, ...]
+    move: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,35 +8,31 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.play.played import Limb
-from dancetutor_cli.video.media.subtitles import HOLD
+from dancetutor_cli.video.move_words import HOLD, SAID_BY_A_BRACKET, WHO, filled
 from dancetutor_cli.video.notes import Cue
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
 
 _CROSSED = ("crossover-half", "crossover-full")
 _WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, which they come with
 _RUNS = ("stream", "drill")
-_WHO = {
-    Limb.LEFT_FOOT: "left foot",
-    Limb.RIGHT_FOOT: "right foot",
-    Limb.LEFT_HAND: "left hand",
-    Limb.RIGHT_HAND: "right hand",
-}
 
 
-def cues_of(play: Play, timing: Timing, words: Mapping[str, str]) -> tuple[Cue, ...]:
+def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turned: bool = False) -> tuple[Cue, ...]:
     """Every move that has a word, sorted by time.
 
     words : name of a move (`play.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it are not.
+    turned : she faces who looks on, and panels are named as they are seen then.
     Crossed feet are told once, where they cross, until they are back; a stream or drill once, where it begins.
     """
-    found = [*_crossovers(play, words), *_moments(play, words), *_holds(play, timing, words)]
+    found = [*_crossovers(play, words), *_moments(play, words, pad, turned), *_holds(play, timing, words)]
     for name in _RUNS:
         if name in words:
             found += (
-                Cue(float(play.rows.second[first]), float(play.rows.second[last]), words[name], ())
+                Cue(float(play.rows.second[first]), float(play.rows.second[last]), words[name], (), name)
                 for first, last in _stretches(play, (name,))
             )
     return tuple(sorted(found, key=lambda cue: (cue.second, cue.text)))
@@ -53,18 +49,21 @@ def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
             now = full or {"crossover-half"}
             if new := now - before:
                 way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
-                if word := words.get(way[0] if way else new.pop()):
-                    yield Cue(float(second[row]), end, word, _who(play, row))
+                name = way[0] if way else new.pop()
+                if word := words.get(name):
+                    yield Cue(float(second[row]), end, word, _who(play, row), name)
             before |= now
 
 
-def _moments(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
+def _moments(play: Play, words: Mapping[str, str], pad: Pad, turned: bool) -> Iterator[Cue]:
     """Moves of one row, each time they come."""
     named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
     for row, names in enumerate(play.moves):
-        for name in named.intersection(names):
+        for name in named.intersection(names) - (SAID_BY_A_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
-            yield Cue(second, second, words[name], _who(play, row, name))
+            who = () if "{" in words[name] else _who(play, row)
+            for said in filled(words[name], name, (play, row), pad, turned):
+                yield Cue(second, second, said, who, name)
 
 
 def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue]:
@@ -73,19 +72,15 @@ def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue
     row, column = np.nonzero(play.rows.hold_end >= 0)
     ends = timing.seconds(play.rows.hold_end[row, column])
     for r, c, end in zip(row.tolist(), column.tolist(), ends.tolist(), strict=True):
-        who = _WHO.get(Limb(int(play.limb[r, c])))
-        yield Cue(float(play.rows.second[r]), end, words[HOLD], () if who is None else (who,))
+        limb = int(play.limb[r, c])
+        who = (WHO[limb],) if 0 <= limb < len(WHO) else ()
+        yield Cue(float(play.rows.second[r]), end, words[HOLD], who, HOLD)
 
 
-def _who(play: Play, row: int, name: str = "") -> tuple[str, ...]:
-    """Who does a move of a row: everybody who steps in it, of a bracket the foot on two panels, of a hand the hand."""
-    limbs = [Limb(one) for one in play.limb[row].tolist() if one in _WHO]
-    if name == "bracket":
-        limbs = [one for one in limbs if limbs.count(one) > 1]
-    elif name == "hand":
-        limbs = [one for one in limbs if one in (Limb.LEFT_HAND, Limb.RIGHT_HAND)]
-    both = {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= set(limbs)  # both feet: it is no foot's move
-    return () if both and name != "bracket" else tuple(_WHO[one] for one in sorted(set(limbs)))
+def _who(play: Play, row: int) -> tuple[str, ...]:
+    """Who does a move of a row: everybody who steps in it, but of both feet it is no foot's move."""
+    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(WHO)}
+    return () if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs else tuple(WHO[limb] for limb in sorted(limbs))
 
 
 def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:

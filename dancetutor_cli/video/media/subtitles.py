@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.from_yaml import load
+from dancetutor_cli.video.move_words import move_words
 from dancetutor_cli.video.notes import Cue
 
-HOLD = "hold"  # the one move that has a name here, and none among `EVENTS`
 _GAP = 0.1  # seconds; the same words again so soon are left standing, without a flicker
 
 
@@ -21,14 +20,14 @@ _GAP = 0.1  # seconds; the same words again so soon are left standing, without a
 class SubtitleStyle:
     """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves told together
 
-    moves : name of a move -> its words, the most telling first
+    moves : names of moves, the most telling first
     """
 
     before: float
     stays: float
     shortest: float
     most: int
-    moves: dict[str, str]
+    moves: tuple[str, ...]
 
 
 @dataclass
@@ -36,25 +35,26 @@ class _Line:
     """Moves told together. first, latest : when the first and the latest come; last : when all are over.
 
     start, end : on the screen; all of these are seconds of the film
-    moves : word -> who, both in the order in which they come
+    moves : word -> who, both in the order in which they come; names : word -> the move's name
     """
 
     first: float
     latest: float
     last: float
     moves: dict[str, list[str]] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
     start: float = 0.0
     end: float = 0.0
 
     def add(self, cue: Cue, first: float, last: float) -> None:
         self.latest, self.last = max(self.latest, first), max(self.last, last)
         who = self.moves.setdefault(cue.text, [])
+        self.names.setdefault(cue.text, cue.move)
         who += (one for one in cue.who if one not in who)
 
     def text(self, style: SubtitleStyle) -> str:
         """A line for each move; if there are too many, the most telling."""
-        rank = list(style.moves.values())
-        kept = sorted(self.moves, key=lambda word: rank.index(word) if word in rank else -1)[: style.most]
+        kept = sorted(self.moves, key=lambda word: style.moves.index(self.names[word]))[: style.most]
         return "\n".join(", ".join([word, *who]) for word, who in self.moves.items() if word in kept)
 
 
@@ -65,9 +65,13 @@ def subtitle_style() -> SubtitleStyle:
     style = load(path, SubtitleStyle)
     if not 0 <= style.stays < style.shortest <= style.before or style.most < 1:
         raise FileError(path, "wants 0 <= stays < shortest <= before, and most at least 1")
-    if unknown := set(style.moves) - {*EVENTS, HOLD}:
-        raise FileError(path, f"there is no move '{min(unknown)}'; there are: {', '.join(sorted((*EVENTS, HOLD)))}")
+    move_words(style.moves, path)
     return style
+
+
+def subtitle_words() -> dict[str, str]:
+    """The moves that subtitles name, and their words."""
+    return move_words(subtitle_style().moves, config_path("subtitles.yaml"))
 
 
 def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:

@@ -5,7 +5,6 @@ What the linter found is for authors; it stands there only where it is asked for
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.play.let_go import MOVE
 from dancetutor_cli.play.played import Limb
+from dancetutor_cli.video.move_words import SAID_BY_A_BRACKET, filled
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
@@ -29,9 +29,6 @@ JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or sec
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
 KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
-_WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
-_OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
-_SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
@@ -147,31 +144,12 @@ def _moves(
             crossed = [ticks[row]]
         kind = now
         told = {n for n in names if n in words and n not in _CROSSED}
-        for name in sorted(told - _SAID_BY_A_BRACKET if "bracket" in told else told):
+        for name in sorted(told - SAID_BY_A_BRACKET if "bracket" in told else told):
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
-            yield ticks[row], ticks[row], _filled(style, name, play, pad, row) + reason, 0
+            for said in filled(words[name], name, (play, row), pad, style.turned):
+                yield ticks[row], ticks[row], said + reason, 0
     if crossed and kind in words:
         yield crossed[0], ticks[-1], words[kind], 0
-
-
-def _filled(style: CallStyle, name: str, play: Play, pad: Pad, row: int) -> str:
-    """The words of a move with who does it and where: "right foot: heel on right, toe on up"."""
-    limbs = play.limb[row].tolist()
-    who = next((limb for limb in range(4) if limbs.count(limb) > 1), -1) if name == "bracket" else -1
-    if who < 0:
-        wanted = range(2, 4) if name == "hand" else range(2)
-        who = next((limb for limb in wanted if limb in limbs), -1)
-    columns = [column for column, limb in enumerate(limbs) if limb == who]
-    heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
-    parts = [(column != heel, panel_words(pad.names[column], style.turned)) for column in columns]
-    places = ", ".join(f"{'toe' if toe else 'heel'} on {panel}" for toe, panel in sorted(parts))
-    return style.words[name].replace("{who}", _WHO[who] if who >= 0 else "foot").replace("{places}", places)
-
-
-def panel_words(name: str, turned: bool = False) -> str:
-    """A panel's name as it is said, whichever pad of a double it is on: "up-left"; turned : as seen from before her."""
-    plain = re.sub(r"-\d+$", "", name)
-    return "-".join(_OPPOSITE.get(word, word) for word in plain.split("-")) if turned else plain
 
 
 def _findings(subject: ChartSubject) -> Iterator[tuple[int, int, str, int]]:

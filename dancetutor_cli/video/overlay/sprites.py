@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.from_yaml import RGB, load
+from dancetutor_cli.video.move_words import move_words
 from dancetutor_cli.video.overlay import shapes
 from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.text import Typeface
@@ -51,7 +52,7 @@ class HighwayStyle:
     mark_tail: float
     flash_seconds: float
     panel_seconds: float
-    callouts: dict[str, str]
+    callouts: tuple[str, ...]
     callout_ahead: str
     callout: dict[str, RGB]
     difficulty: dict[str, RGB]
@@ -61,6 +62,11 @@ class HighwayStyle:
 def highway_style() -> HighwayStyle:
     """The style of configs/highway.yaml."""
     return load(config_path("highway.yaml"), HighwayStyle)
+
+
+def callout_words() -> dict[str, str]:
+    """The moves that configs/highway.yaml has called out, and their words; FileError names one that has none."""
+    return move_words(highway_style().callouts, config_path("highway.yaml"))
 
 
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play import load_preset
 from dancetutor_cli.video.media.cues import cues_of
-from dancetutor_cli.video.media.subtitles import subtitle_style
+from dancetutor_cli.video.media.subtitles import subtitle_words
 from dancetutor_cli.video.notes import Cue
+from dancetutor_cli.video.overlay.sprites import callout_words
 
 HEAD = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
 LEFT, RIGHT = ("left foot",), ("right foot",)
@@ -21,9 +27,9 @@ LEFT, RIGHT = ("left foot",), ("right foot",)
 def cues(rows: str) -> list[Cue]:
     song = charts.parse((HEAD + rows.replace(" ", "\n") + "\n;\n").encode(), Path("song.sm"))
     play = solved_chart(song, song.charts[0], load_preset("itg")).play
-    assert play is not None
-    assert play is not None
-    return list(cues_of(play, song.charts[0].timing, subtitle_style().moves))
+    pad = load_pad("dance-single")
+    assert play is not None and pad is not None
+    return list(cues_of(play, song.charts[0].timing, subtitle_words(), pad))
 
 
 def test_a_crossover_lasts_until_the_feet_are_back() -> None:
@@ -37,9 +43,48 @@ def test_a_crossover_lasts_until_the_feet_are_back() -> None:
 
 def test_candles_jumps_and_jacks_have_their_feet() -> None:
     found = cues("0100 0001 0010 0001 , 1001 0000 1000 1000")
-    assert Cue(1.0, 1.0, "candle", LEFT) in found
-    assert Cue(2.0, 2.0, "jump", ()) in found
-    assert any(one.text == "jack" and one.second == 3.5 and len(one.who) == 1 for one in found)
+    assert Cue(1.0, 1.0, "long step", LEFT, "candle") in found
+    assert Cue(2.0, 2.0, "jump", (), "jump") in found
+    assert any(one.text == "same panel again" and one.second == 3.5 and len(one.who) == 1 for one in found)
+
+
+def test_words_are_a_dancers_and_the_same_that_are_called_out() -> None:
+    """No candles, doublesteps or jacks: who steps again, on which panels, how far."""
+    told, called = subtitle_words(), callout_words()
+    assert {*told, *called} >= {"candle", "jack", "doublestep", "drill", "unplayable"}
+    for name, words in (*told.items(), *called.items()):
+        assert not re.search("candle|double ?step|jack|bracket|drill|gallop|stream", words), name
+    assert all(told[name] == called[name] for name in set(told) & set(called))
+
+
+class ThreeRows:
+    """Of a play, without holds."""
+
+    second, hold_end = np.array([1.0, 2.0, 3.0]), np.full((3, 4), -1)
+
+    def __len__(self) -> int:
+        return 3
+
+
+def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
+    pad = load_pad("dance-single")
+    assert pad is not None
+    rows = ThreeRows()
+    limb = np.array([[-1, -1, -1, 1], [0, 0, 1, 1], [0, 1, 2, 3]], dtype=np.int8)
+    feet = np.array([[0, 3], [0, 3], [0, 1]])
+    moves = (("doublestep",), ("bracket", "doublestep"), ("hand",))
+    play: Any = SimpleNamespace(rows=rows, limb=limb, feet=feet, moves=moves)
+    words, timing = subtitle_words(), charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing
+    found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, pad)]
+    assert found == [
+        ("right foot again", (), "doublestep"),
+        ("left foot: heel on left, toe on down", (), "bracket"),
+        ("right foot: heel on right, toe on up", (), "bracket"),
+        ("left hand down", (), "hand"),
+        ("right hand down", (), "hand"),
+    ]
+    turned = [one.text for one in cues_of(play, timing, words, pad, turned=True)]
+    assert turned[1] == "left foot: heel on right, toe on up"
 
 
 def test_a_hold_lasts_as_long_as_it_is_held() -> None:

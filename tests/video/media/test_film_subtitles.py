@@ -18,7 +18,7 @@ from dancetutor_cli.video.media import subtitles as module
 from dancetutor_cli.video.media.subtitles import SubtitleStyle, subtitle_style, subtitles
 from dancetutor_cli.video.notes import Cue
 
-STYLE = SubtitleStyle(1.0, 0.25, 0.7, 2, {"spin": "spin", "jump": "jump", "jack": "jack"})
+STYLE = SubtitleStyle(1.0, 0.25, 0.7, 2, ("spin", "jump", "jack"))
 _BLOCK = re.compile(r"(\d+)\n(\d\d:\d\d:\d\d,\d{3}) --> (\d\d:\d\d:\d\d,\d{3})\n((?:.+\n)+)(?:\n|\Z)")
 
 
@@ -40,7 +40,7 @@ def seconds(stamp: str) -> float:
 
 
 def cue(second: float, text: str = "spin", end: float | None = None, who: tuple[str, ...] = ()) -> Cue:
-    return Cue(second, second if end is None else end, text, who)
+    return Cue(second, second if end is None else end, text, who, text)
 
 
 def test_words_stand_before_their_move_until_it_is_over_in_each_run() -> None:
@@ -111,8 +111,8 @@ def test_the_configuration_names_moves_that_exist(tmp_path: Path, monkeypatch: p
     path = tmp_path / "subtitles.yaml"
     monkeypatch.setattr(module, "config_path", lambda name: path)
     for text, said in (
-        ("before: 1\nstays: 0.2\nshortest: 0.7\nmost: 2\nmoves: {crossofer: crossover}\n", "no move 'crossofer'"),
-        ("before: 0.1\nstays: 0.2\nshortest: 0.7\nmost: 2\nmoves: {}\n", "shortest <= before"),
+        ("before: 1\nstays: 0.2\nshortest: 0.7\nmost: 2\nmoves: [crossofer]\n", "no move 'crossofer'"),
+        ("before: 0.1\nstays: 0.2\nshortest: 0.7\nmost: 2\nmoves: []\n", "shortest <= before"),
     ):
         path.write_text(text)
         module.subtitle_style.cache_clear()

@@ -13,10 +13,10 @@ from dancetutor_cli.pads import load_pad
 from dancetutor_cli.video.ahead import Ahead, parse_ahead
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.callouts import CallStyle, _reasons, callouts_of
-from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.scroll import parse_segments
 
-WORDS = highway_style().callouts
+WORDS = callout_words()
 SECOND = 1.0  # before
 
 
