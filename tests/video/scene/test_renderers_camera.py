@@ -70,6 +70,15 @@ def test_a_foot_fills_more_of_the_side_by_side_box_than_it_did():
     assert abs(places[2, 1] - places[3, 1]) > 47
 
 
+@pytest.mark.parametrize(("steps", "least"), [("dance-single", 0.7), ("dance-double", 0.65), ("pump-double", 0.65)])
+def test_three_quarter_stands_near(steps, least):
+    """She is so much of the picture's height: it was 0.63 and 0.6, and half of the picture was empty floor."""
+    size = (1280, 672)
+    camera = rs.scene(steps).camera("three-quarter", size)
+    feet, head = camera.project(np.array([[0.0, 0.0, 0.0], [0.0, 1.7, 0.0]]), size)
+    assert feet[1] - head[1] > least * size[1]
+
+
 @pytest.mark.parametrize(
     ("text", "turned"),
     [("back", False), ("front", True), ("front-high", True), ("side", False), ("three-quarter", False), ("top", False),
