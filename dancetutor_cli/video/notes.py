@@ -19,6 +19,8 @@ class NoteTrack:
     column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `play.played.Limb`
     quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
     player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
+    gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless
+    where it is played to its end
     """
 
     second: NDArray[np.float64]
@@ -31,6 +33,8 @@ class NoteTrack:
     quantisation: NDArray[np.int64]
     judged: NDArray[np.bool_]
     player: NDArray[np.int8]
+    gone_second: NDArray[np.float64]
+    gone_beat: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

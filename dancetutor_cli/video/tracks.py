@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
-from dancetutor_cli.play.played import Play
+from dancetutor_cli.play.played import Limb, Play, StepKind
 from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisation
 from dancetutor_cli.video.scroll import ScrollSegments
 
@@ -25,6 +25,8 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> Note
         found = (play.rows.tick[row] == table.tick) & (table.column < play.limb.shape[1])
         limb[found] = play.limb[row[found], table.column[found]]
     second = chart.timing.seconds(tick)
+    gone = _gone(chart, play, limb)[keep]
+    is_gone = gone >= 0
     order = np.argsort(second, kind="stable")
     track = NoteTrack(
         second=second,
@@ -37,8 +39,24 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> Note
         quantisation=quantisation(tick),
         judged=table.judged[keep],
         player=_players(chart)[keep],
+        gone_second=np.where(is_gone, chart.timing.seconds(gone), np.inf),
+        gone_beat=np.where(is_gone, scrolls.shown(gone / TICKS_PER_BEAT), np.inf),
     )
     return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
+
+
+def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np.int64]:
+    """From which tick on nobody plays a note, -1 where it is played; limb : of each. A roll is let go at its first tap
+    that nobody plays: from there on no one keeps it."""
+    table = chart.notes
+    out = np.where(limb == Limb.UNPLAYED, table.tick, -1)
+    if play is None:
+        return out
+    row, column = np.nonzero((play.rows.steps == StepKind.ROLL_TAP) & (play.limb == Limb.UNPLAYED))
+    for tick, of in zip(play.rows.tick[row].tolist(), column.tolist(), strict=True):
+        mine = (table.kind == Kind.ROLL) & (table.column == of) & (table.tick < tick) & (tick <= table.end)
+        out[mine & (out < 0)] = tick
+    return out
 
 
 def _players(chart: Chart) -> NDArray[np.int8]:
@@ -56,9 +74,10 @@ def _players(chart: Chart) -> NDArray[np.int8]:
 
 
 def presses_of(track: NoteTrack) -> Presses:
-    """Every press of a panel: taps, lifts, and holds and rolls from head to tail."""
+    """Every press of a panel: taps, lifts, and holds and rolls from head to tail, or to where they are let go."""
     step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
-    return Presses(track.second[step], track.end_second[step], track.column[step], track.limb[step])
+    end = np.maximum(np.minimum(track.end_second, track.gone_second), track.second)
+    return Presses(track.second[step], end[step], track.column[step], track.limb[step])
 
 
 def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:

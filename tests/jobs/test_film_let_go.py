@@ -11,6 +11,7 @@ from dancetutor_cli.jobs.film_plan import Prepared, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.played import Limb
+from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.lights import PanelLights
@@ -49,7 +50,7 @@ def test_the_notes_are_marked_and_light_nothing(film: Prepared) -> None:
 def test_words_say_it_and_what_the_linter_finds_there(film: Prepared) -> None:
     """Without --show-findings; what it finds in rows that can be played is for authors."""
     (one,) = (one for one in film.plan.callouts if "no foot left" in one.text)
-    assert one.text == "no foot left (fast step) ×2" and one.tag == "no foot left ×2"
+    assert one.text == "no foot left (DT305 fast step) ×2" and one.tag == "no foot left ×2"
     assert all(one.severity == "move" for one in film.plan.callouts)
 
 
@@ -76,3 +77,27 @@ def test_runs_at_all_rates_let_the_same_notes_go(tmp_path: Path) -> None:
         assert len(motion.let_go) == 2 and len({one.why for one in motion.let_go}) == 1
     slow = prepared(tmp_path, practice=Practice(rates=(0.5,)))
     assert not slow.plan.motions[0.5].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
+
+
+def test_a_roll_that_no_hand_keeps_goes_dark_where_it_is_let_go(tmp_path: Path) -> None:
+    """Feet drum theirs to the end; the hands' panels are lit for their heads only."""
+    path = tmp_path / "rolls.sm"
+    rows = "44044\n" + "00000\n" * 7 + "33033\n" + "00000\n" * 7
+    path.write_text(f"#TITLE:R;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:pump-single::Hard:99::\n{rows};\n")
+    look = FilmLook(load_layout("highway"), (160, 180), quality="draft", renderer="cpu")
+    request = FilmRequest(path, Selection(), look, fps=10, mute=True)
+    plan = prepare(request, look_up(request)).plan
+    hands = plan.notes.limb >= Limb.LEFT_HAND
+    assert hands.sum() == 2 and np.isinf(plan.notes.gone_second[~hands]).all()
+    assert (plan.notes.gone_second[hands] < 0.5).all() and (plan.notes.end_second == 1.0).all()
+    lights = PanelLights(plan.presses, 5, 0.1)
+    lit = np.array([lights.at(column, 0.9)[0] for column in range(5)])
+    assert not lit[plan.notes.column[hands]].any() and (lit[plan.notes.column[~hands]] > 0.5).all()
+    highway = Film(plan).highway
+    assert highway is not None
+    frame = np.zeros((180, 160, 3), np.uint8)
+    highway.draw(frame, 0.5, 1.0)
+    geometry, tail = highway.geometry, 0.5 if highway.by_time else 1.0
+    y = round(geometry.receptor + 0.6 * tail * highway.spacing)  # on the bodies that are left
+    light = np.array([frame[y, round(geometry.corner(column, 0.0, 0.0)[0])].astype(int).sum() for column in range(5)])
+    assert light[plan.notes.column[hands]].max() < 0.5 * light[plan.notes.column[~hands]].min()

@@ -38,6 +38,7 @@ def film_plan(
     track = NoteTrack(
         seconds, end, beat, end * BPM / 60, column.astype(np.int16), kind.astype(np.uint8), limb,
         quantisation(tick), np.ones(n, dtype=bool), np.zeros(n, dtype=np.int8),
+        np.full(n, np.inf), np.full(n, np.inf),
     )  # fmt: skip
     step = kind != Kind.MINE
     presses = Presses(seconds[step], end[step], track.column[step], limb[step])

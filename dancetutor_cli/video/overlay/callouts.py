@@ -85,7 +85,7 @@ def callouts_of(
     plays it is always said what the linter finds there.
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
-    findings = list(_findings(subject)) if style.findings or ticks else []
+    findings = list(_findings(subject, codes=not style.findings)) if style.findings or ticks else []
     why = {} if style.findings else dict(_reasons(ticks, findings))
     found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
     timing = subject.chart.timing
@@ -115,13 +115,17 @@ def callouts_of(
 
 
 def _reasons(ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]]) -> Iterator[tuple[int, str]]:
-    """What the linter says of some rows, by tick: its finding there, or the passage's that one is for."""
+    """What the linter says of some rows, by tick: its finding there, or that of the passage, which goes on as long as
+    such rows do."""
     told = sorted((tick, said) for tick, _, said, _ in findings)
+    last, passage = -_PASSAGE, ""
     for tick in ticks:
         here = [said for at, said in told if at == tick]
-        before = [said for at, said in told if said in _OF_PASSAGES and tick - _PASSAGE <= at < tick]
-        if here or before:
-            yield tick, (here or before[-1:])[0]
+        before = [said for at, said in told if said.endswith(_OF_PASSAGES) and tick - _PASSAGE <= at <= tick]
+        passage = before[-1] if before else passage if tick - last <= _PASSAGE else ""
+        last = tick
+        if here or passage:
+            yield tick, here[0] if here else passage
 
 
 def _moves(
@@ -152,10 +156,11 @@ def _moves(
         yield crossed[0], ticks[-1], words[kind], 0
 
 
-def _findings(subject: ChartSubject) -> Iterator[tuple[int, int, str, int]]:
+def _findings(subject: ChartSubject, codes: bool) -> Iterator[tuple[int, int, str, int]]:
     from dancetutor_cli.lint.check import findings_of
 
     for finding in findings_of(subject):
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
             tick = round(finding.beat * TICKS_PER_BEAT)
-            yield tick, tick, finding.name.replace("-", " "), _ORDER.index(finding.severity)
+            said = finding.name.replace("-", " ")
+            yield tick, tick, f"{finding.rule} {said}" if codes else said, _ORDER.index(finding.severity)

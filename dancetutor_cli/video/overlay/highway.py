@@ -25,6 +25,8 @@ from dancetutor_cli.video.scroll import Scroll
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
 TURNED = "she faces you: arrows turned with her"
+LET_GO = 0.25  # opacity of holds and rolls from where on nobody plays them
+TAGS_APART = 2.0  # pixels between two tags
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
 
 
@@ -165,14 +167,20 @@ class Highway:
         return self.face.sprite(text, size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
-        """Words beside the rows they are about, on the right of the lanes."""
+        """Words beside the rows they are about, on the right of the lanes; where several are near each other, the later
+        ones are farther off, so that none covers another."""
         if not self.geometry.tags:
             return
         y = self._y(self._callout_seconds, self._callout_beats, now)
         x = self.geometry.tags_left
-        for i in np.flatnonzero(self._visible(y, self.size) & (self._callout_seconds > now.second)):
+        way, free = 1.0 if now.spacing >= 0 else -1.0, -np.inf
+        shown = np.flatnonzero(self._visible(y, self.size))
+        for i in shown[np.argsort(way * y[shown], kind="stable")]:
             flag = self._flag(self.callouts[i].tag, self.callouts[i].severity)
-            blit(frame, flag, x, y[i] - flag.shape[0] / 2, 1.0, self._rows)
+            middle = max(way * y[i], free + flag.shape[0] / 2)
+            free = middle + flag.shape[0] / 2 + TAGS_APART
+            if self._callout_seconds[i] > now.second:
+                blit(frame, flag, x, way * middle - flag.shape[0] / 2, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
@@ -220,29 +228,39 @@ class Highway:
             shown = shown[:3000]  # beyond any readable density; keeps hostile charts bounded
         held = (notes.second <= second + 1e-6) & notes.judged
         holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
+        let_go = self._y(notes.gone_second, notes.gone_beat, now)
         for i in shown[holds]:
-            self._draw_hold(frame, int(i), self.geometry.receptor if held[i] else y[i], y[i], tail[i], bool(held[i]))
+            head = self.geometry.receptor if held[i] else y[i]
+            if np.isfinite(notes.gone_second[i]):  # bright to where it is let go, and dim from there on
+                at = min(max(let_go[i], min(head, tail[i])), max(head, tail[i]))
+                self._draw_hold(frame, int(i), Run(at, tail[i], y[i]), LET_GO)
+                self._draw_body(frame, int(i), Run(min(head, at), max(head, at), y[i]), 1.0 if held[i] else 0.78)
+            else:
+                self._draw_hold(frame, int(i), Run(head, tail[i], y[i]), 1.0 if held[i] else 0.78)
         heads = np.where(held & (notes.kind != Kind.MINE), self.geometry.receptor, y)
         places = self.marks.places(now.spacing)
         for i in shown[::-1]:  # the nearest note on top
-            self._draw_head(frame, int(i), heads[i])
+            self._draw_head(frame, int(i), heads[i], second)
         for i in shown[::-1]:  # no arrow covers a mark
-            self.marks.draw(frame, int(i), heads[i], places)
+            self.marks.draw(frame, int(i), heads[i], places, bool(notes.gone_second[i] <= second + 1e-6))
 
-    def _draw_hold(self, frame: Frame, i: int, head: float, phase: float, tail: float, active: bool) -> None:
-        kind = Kind(int(self.notes.kind[i]))
-        whose = int(self.notes.player[i])
-        tile, end = self.bodies[kind, whose], self.tails[kind, whose]
+    def _draw_body(self, frame: Frame, i: int, run: Run, opacity: float) -> None:
+        tile = self.bodies[Kind(int(self.notes.kind[i])), int(self.notes.player[i])]
         x, _ = self.geometry.corner(int(self.notes.column[i]), 0, tile.shape[1])
-        opacity = 1.0 if active else 0.78
-        upper, lower = min(head, tail), max(head, tail)
-        strip(frame, tile, x, Run(upper, lower, phase), opacity, self._rows)
+        strip(frame, tile, x, run, opacity, self._rows)
+
+    def _draw_hold(self, frame: Frame, i: int, run: Run, opacity: float) -> None:
+        """run : from head to tail, whichever is higher, and phase"""
+        head, tail, phase = run
+        self._draw_body(frame, i, Run(min(head, tail), max(head, tail), phase), opacity)
+        end = self.tails[Kind(int(self.notes.kind[i])), int(self.notes.player[i])]
+        x, _ = self.geometry.corner(int(self.notes.column[i]), 0, end.shape[1])
         if tail >= head:
             blit(frame, end, x, tail, opacity, self._rows)
         else:
             blit(frame, np.ascontiguousarray(end[::-1]), x, tail - end.shape[0], opacity, self._rows)
 
-    def _draw_head(self, frame: Frame, i: int, y: float) -> None:
+    def _draw_head(self, frame: Frame, i: int, y: float, second: float) -> None:
         notes = self.notes
         column, kind = int(notes.column[i]), Kind(int(notes.kind[i]))
         direction, q = self.geometry.directions[column], int(self.colour[i])
@@ -253,4 +271,5 @@ class Highway:
         else:
             sprite = (self.lifts if kind == Kind.LIFT else self.arrows)[direction, q]
         x, top = self.geometry.corner(column, y, self.size)
-        blit(frame, sprite, x, top, 1.0 if notes.judged[i] else 0.55, self._rows)
+        dim = LET_GO if kind in (Kind.HOLD, Kind.ROLL) and notes.gone_second[i] <= second + 1e-6 else 1.0
+        blit(frame, sprite, x, top, dim if notes.judged[i] else 0.55, self._rows)

@@ -70,15 +70,15 @@ class Marks:
         """Of all marks where notes are so many pixels apart for a second, or a beat."""
         return self._places(round(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
-    def draw(self, frame: Frame, i: int, y: float, places: Places) -> None:
-        """Draw the mark of note `i`, whose arrow's middle is at `y`."""
+    def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
+        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it has been let go."""
         if (size := int(places.size[i])) == 0:
             return
         column, side = int(self._notes.column[i]), int(places.side[i])
         across, below = (
             (side * BESIDE * self.geometry.lane, 0.0) if side else self.behind(self.geometry.directions[column])
         )
-        badge = self._sprite(size, max(int(self._notes.limb[i]), -1))
+        badge = self._sprite(size, -1 if gone else max(int(self._notes.limb[i]), -1))
         x, top = self.geometry.corner(column, y, badge.shape[0])
         blit(frame, badge, x + across, top + below, 1.0, self.geometry.box[1::2])
 

@@ -131,6 +131,7 @@ def test_a_finding_for_a_passage_is_said_of_all_its_rows() -> None:
         72: "fast step",
         96: "jump footswitch",
         400: "fast step",
+        480: "fast step",
         576: "unplayable",
         800: "unplayable",
     }

@@ -132,6 +132,30 @@ def test_frames_do_not_depend_on_what_was_drawn_before() -> None:
         assert (backwards.frame(k) == frames[k]).all()
 
 
+@pytest.mark.parametrize("down", [False, True])
+def test_no_tag_covers_another(down: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three rows 30 ms apart: the first stands beside its row, the others farther on."""
+    plan = film_plan(np.array([1.0]), Clock((Pass(0.0, 2.0),), 30), size=(640, 360), down=down)
+    said = [Callout(1.0 + 0.03 * k, 2.0 + 0.06 * k, "spin", "move", 0.1, 1.0, "spin") for k in range(3)]
+    drawn: list[tuple[float, float]] = []
+    highway = Film(replace(plan, callouts=tuple(said))).highway
+    assert highway is not None
+    flag = highway._flag("spin", "move")
+
+    def noted(frame: object, sprite: object, x: float, y: float, *more: object) -> None:
+        if sprite is flag:
+            drawn.append((y, y + flag.shape[0]))
+
+    monkeypatch.setattr("dancetutor_cli.video.overlay.highway.blit", noted)
+    highway.draw(np.zeros((360, 640, 3), np.uint8), 0.8, 1.6)
+    assert len(drawn) == 3
+    row = highway.geometry.receptor + highway.spacing * (0.2 if highway.by_time else 0.4)
+    assert sum(drawn[0]) / 2 == pytest.approx(row, abs=1.0)
+    first, second, third = sorted(drawn)
+    assert first[1] <= second[0] and second[1] <= third[0]
+    assert (drawn[0] == first) != down, "later rows are farther off"
+
+
 def test_every_layout_loads_and_names_are_listed() -> None:
     assert {"side-by-side", "dancer", "highway", "television", "vertical", "practice"} <= set(layout_names())
     for name in layout_names():
