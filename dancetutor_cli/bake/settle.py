@@ -8,11 +8,13 @@ corrected frame by frame (`bake.bake`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.ik.ankles import giving_knees
 from dancetutor_cli.motion.ik.full_body import Poses, Targets, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
@@ -20,7 +22,7 @@ from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
 from dancetutor_cli.motion.trajectory.posture import Known, Trajectory, body_trajectory
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path
+from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path, upper_envelope
 from dancetutor_cli.play.played import Limb, Part
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
@@ -31,6 +33,7 @@ ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body 
 TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
 COARSE = 4  # every so many samples of the path are baked in a round
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
+GIVES_SPAN = 0.12  # seconds over which a knee turns for its ankle's sake
 AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
 
 
@@ -55,7 +58,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
     settings, rate = context.settings, context.settings.sampling.work_rate
     body = body_trajectory(plan, times, feet, context)
     coarse, ones = times[::COARSE], np.ones(len(times))
-    deeper, heels = np.zeros(len(plan.presses)), np.zeros((len(times), 2))
+    deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
     may_rise, residuals = _may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
     for number in range(rounds):
@@ -69,10 +72,22 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
         heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
         heels = np.maximum(smooth_path(heels, ones, rate, settings.step.ankle_time), 0.0) * may_rise
+        gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / COARSE))
+        gives[body.reaching[::COARSE].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
+        knees += _around(coarse, gives, times)
         last = number == rounds - 1
         known = Known(body, above, deeper, keep=number > 0 and not last, tightened=TIGHTENED if last else 0)
-        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels)
+        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels, knees=knees)
     return Settled(body, tuple(residuals))
+
+
+def _around(coarse: Array, gives: Array, times: Array) -> Array:
+    """How far (n, 2) knees turn at `times` (n,), softly before and after they must by (f, 2) radians at `coarse`."""
+    out = np.zeros((len(times), 2))
+    for side, sign in product((0, 1), (1.0, -1.0)):
+        if (sign * gives[:, side]).max() > 0.0:
+            out[:, side] += sign * np.interp(times, coarse, upper_envelope(coarse, sign * gives[:, side], GIVES_SPAN))
+    return out
 
 
 def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:

@@ -79,10 +79,7 @@ def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSetting
         slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
         need = np.maximum(deep + knees.room, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
         given[near] = np.clip(given[near] - need[:, None] * slope, -most, most)
-    out = poles.copy()
-    moved = np.abs(given).max(axis=1) > 0.0
-    out[moved] = _swivelled((both.ankles - both.hips)[moved], poles[moved], given[moved])
-    return out
+    return both.turned(given)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +100,12 @@ class Legs:
         reach = self.ankles - self.hips
         poles = square_to(reach, self.poles) if given is None else _swivelled(reach, self.poles, given)
         return np.asarray(self.hips + middle_joint(reach, poles, self.bones))
+
+    def turned(self, given: Array) -> Array:
+        """The poles (f, 2, 3) turned outward about the lines from hips to ankles by (f, 2) radians."""
+        out, moved = self.poles.copy(), np.abs(given).max(axis=1) > 0.0
+        out[moved] = _swivelled((self.ankles - self.hips)[moved], self.poles[moved], given[moved])
+        return out
 
     def depth(self, given: Array) -> Array:
         """How deep (f,) the legs are in each other with knees turned by (f, 2) radians."""

@@ -50,6 +50,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     ]
     poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
     hung = Hung(pelvis, pelvis_rotation, ankles)
+    poles = hung.legs(skeleton, poles).turned(sample_path(body.knees, body.times, at))
     poles = knees_apart(skeleton, hung, poles, context.settings.knees)
     below = Below(Hips(pelvis, pelvis_rotation), hung.legs(skeleton, poles))
     hands = arm_targets(plan, body, at, Torso(shoulders, chest), below, context)

@@ -44,6 +44,7 @@ class Trajectory:
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
     the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
+    knees : (n, 2), radians that knees are turned outward for the ankles' sake
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
     hands : what `ik.arms.free_hands` says of it, if somebody has asked already
@@ -60,6 +61,7 @@ class Trajectory:
     tilt: Array
     reaching: Array
     heels: Array
+    knees: Array
     beat: Array
     sway: Array
     softened: tuple[str, ...] = ()
@@ -126,7 +128,8 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     height = mass_height.at(times) - course.above[:, 1]
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
-        np.zeros((len(times), 2)), groove.beat, groove.sway, (*softened, *((HEIGHT,) if mass_height.softened else ())),
+        np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
+        (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
 
 
