@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Draw moments of a baked chart side by side, from before her and from her left: what the report's numbers look like.
 
-usage: tools/motion_sheet.py FILE --out SHEET.png (--index N | see below) --at 12.0:14.0 [--count 12] [--bar] [--steps]
+usage: tools/motion_sheet.py FILE --out SHEET.png [--index N] --at 12.0:14.0 [--count 12] [--bar] [--steps]
+                             [--beside COMMIT]
 The section's moments are even; with --steps they are those at which the section's notes fall. Each column is a moment.
+With --beside the same moments as an earlier commit bakes them stand below today's, drawn by today's renderer with
+today's dancer, so that only the motion is another one.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from earlier import baked_by
 from PIL import Image, ImageDraw
 
 from dancetutor_cli.bake import bake
@@ -29,6 +33,7 @@ SIZE = (168, 250)  # pixels of one picture
 VIEWS = {"front": (0.0, 1.05, 3.3), "side": (3.3, 1.05, 0.0)}  # of the camera from her place, metres
 TARGET = 0.86  # metres over the pad that the camera looks at
 AROUND = 1.5  # seconds baked before and after the section
+BAND = 16  # pixels over the pictures of a commit, for its name
 
 
 def main() -> None:
@@ -41,7 +46,12 @@ def main() -> None:
     times = np.linspace(start, end, options.count)
     if options.steps:
         times = np.unique([c.start for c in motion.contacts if start <= c.start <= end])[: options.count]
-    sheet(motion, asked.pad, times).save(options.out)
+    picture = sheet(motion, asked.pad, times)
+    if options.beside is not None:
+        call = ["--index", str(options.index), "--section", f"{max(section[0], 0.0):g}:{section[1]:g}"]
+        earlier = baked_by(options.beside, [str(options.file.resolve()), *call, *(["--bar"] if options.bar else [])])
+        picture = under({"now": picture, f"before: {options.beside}": sheet(earlier, asked.pad, times)})
+    picture.save(options.out)
     print(f"{options.out}: {len(times)} moments")
 
 
@@ -54,6 +64,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--steps", action="store_true", help="moments of the notes")
     parser.add_argument("--bar", action="store_true", help="she holds the bar")
     parser.add_argument("--motion", type=Path, help="a file of changed numbers, as for animate")
+    parser.add_argument("--beside", metavar="COMMIT", help="the same as this commit bakes it, below today's")
     parser.add_argument("--out", type=Path, required=True)
     return parser.parse_args()
 
@@ -86,6 +97,18 @@ def sheet(motion: Motion, pad: Any, times: np.ndarray[Any, Any]) -> Image.Image:
             )
         pen.text((SIZE[0] * k + 4, 4), f"{time:.2f}", fill=(255, 255, 255))
     draw.close()
+    return out
+
+
+def under(pictures: dict[str, Image.Image]) -> Image.Image:
+    """Pictures of one width below each other, each under its name."""
+    width, height = max(p.width for p in pictures.values()), sum(p.height + BAND for p in pictures.values())
+    out, y = Image.new("RGB", (width, height), (20, 20, 26)), 0
+    pen = ImageDraw.Draw(out)
+    for name, picture in pictures.items():
+        pen.text((4, y + 2), name, fill=(255, 220, 120))
+        out.paste(picture, (0, y + BAND))
+        y += picture.height + BAND
     return out
 
 
