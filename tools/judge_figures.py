@@ -30,8 +30,8 @@ EVERY = 60.0  # per second: of forces and balance
 GROWN = 0.02  # metres by which the hull under her is grown
 CUT = 10.0  # Hz
 PLANT, ENDS = 0.07, 2  # seconds of the shortest plant; frames at both of its ends in which a foot rolls
-DOWN, FLAT = 0.008, 0.02  # metres over the pad: a point of a planted sole; the lowest of a foot that stays
-STAND, EDGE = 1.5, 0.2  # seconds with both feet down that are a stand; at its ends, in which she comes and goes
+DOWN, STAYS = 0.008, 0.003  # metres over the pad: a point of a planted sole; the lowest of a foot that stays
+STAND, EDGE = 1.9, 0.7  # seconds with both feet down that are a stand; at its ends, in which she comes and goes
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,13 +233,13 @@ def _stands(dance: Dance, low: Array) -> list[Row]:
     """How far the pelvis goes to and fro where both feet stay down for long, for a file knows no notes."""
     shifts, hips = [], middle(dance, "hip")
     edge = int(EDGE * dance.rate)
-    for first, end in runs((low <= FLAT).all(axis=1)):
+    for first, end in runs((low <= STAYS).all(axis=1)):
         if (end - first) / dance.rate >= STAND:
             place = hips[first + edge : end - edge][:, [0, 2]]
             place = place - place.mean(axis=0)
             shifts.append(float(np.ptp(place @ np.linalg.svd(place, full_matrices=False)[2][0])))
     return [
-        Row("stands of 1.5 s and more", float(len(shifts)), ""),
+        Row("stands of 1.9 s and more", float(len(shifts)), ""),
         Row(
             "  shift of the weight in them, median",
             100.0 * float(np.median(shifts)) if shifts else np.nan,

@@ -15,8 +15,8 @@ body by Winter's table. Where its figures differ from the report's, and why:
   some frames shorter; under a .bvh file, which has no shoes, a flat box is her sole.
 - plant slide is that of the sole's stillest point (the report: the longest path of one; of a pivot, the ball's).
 - limbs in each other are told in milliseconds, since frames depend on the rate; shoes by their outlines.
-- without notes: jerk counts runs of jumps too, which the report exempts, and weight shifts wherever both feet stay down
-  for 1.5 s, while the report takes waits over 4.5 s from note to note and leaves out their ends.
+- without notes: jerk counts runs of jumps too, which the report exempts, and the weight shifts wherever both feet
+  stay down for 1.9 s (0.7 s at both ends left out), while the report takes waits over 4.5 s from note to note.
 - beside the pad the floor may be lower, which a file does not say: leave walks on and off out with --section.
 """
 

@@ -68,6 +68,14 @@ def test_a_shaken_hand_is_jerky(steps: Motion, good: MotionReport) -> None:
     assert shaken["jerk of the right hand"].value == pytest.approx(good["jerk of the right hand"].value, rel=0.05)
 
 
+def test_a_twirled_pelvis_turns_too_fast(steps: Motion, good: MotionReport) -> None:
+    rotations = steps.rotations.copy()
+    twirl = quat.from_axis_angle((0, 1, 0), 0.3 * np.sin(2 * np.pi * 8 * steps.times))
+    rotations[:, 0] = quat.multiply(twirl, rotations[:, 0])
+    assert good["pelvis turns at"].met is True
+    assert report(replace(steps, rotations=rotations))["pelvis turns at"].met is False
+
+
 def test_a_broken_knee_is_past_its_limit(steps: Motion) -> None:
     rotations = steps.rotations.copy()
     j = steps.skeleton.index("r_knee")

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bake_plays import L, R, chart, pad, play, stream
 
-from dancetutor_cli.bake import MotionReport, report
+from dancetutor_cli.bake import MotionReport, bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.formats.glb import write_glb
@@ -161,6 +162,21 @@ def test_it_sees_what_was_spoilt(
     assert rows[name].met is not True and good[name].met is not False
     said = report(spoilt(dance.own_motion))[row]
     assert said.met is False or (said.goal is None and said.value > least), said
+
+
+def test_a_wait_has_weight_in_it_and_a_frozen_one_none(tool: SimpleNamespace, tmp_path: Path) -> None:
+    waiting = bake(chart(), play([*stream(2.0, 8, 0.5), (9.9, {0: L}), (10.4, {3: R})]), pad())
+    still = (waiting.times > 7.5) & (waiting.times < 9.4)  # between the step home and the next note's
+    rotations, root = waiting.rotations.copy(), waiting.root.copy()
+    rotations[still], root[still] = rotations[still][0], root[still][0]
+    shifts = []
+    for motion in (waiting, replace(waiting, rotations=rotations, root=root)):
+        write_bvh(tmp_path / "wait.bvh", motion)
+        rows = {row.name.strip(): row for row in tool.figures.figures(tool.files.read_dance(tmp_path / "wait.bvh"))}
+        assert rows["stands of 1.9 s and more"].value == 1
+        shifts.append(rows["shift of the weight in them, median"])
+    assert shifts[0].value > 3.0 and shifts[0].met is True
+    assert shifts[1].value < 0.1 and shifts[1].met is False
 
 
 def test_the_table_names_what_is_missed(tool: SimpleNamespace) -> None:

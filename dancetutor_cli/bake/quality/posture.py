@@ -13,7 +13,7 @@ from dancetutor_cli.play.played import StepKind
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
-WRIST = 4.0  # metres per second that a wrist goes at most
+WRIST, TURN = 4.0, 650.0  # metres per second that a wrist goes at most; degrees per second that the pelvis turns
 JUMP, BEFORE = 0.15, 0.35  # seconds in the air, and on the ground before it, of a jump that legs have time for
 FOLD, GIVE = 0.5, 0.16  # the middle half of a flight; seconds after landing in which knees give
 WAIT = 4.5  # seconds without a note that are a wait
@@ -35,7 +35,7 @@ def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...
         Figure("knee flexion in the air", fold, "degrees"),
         Figure("knee flexion after landing", give, "degrees"),
         Figure("wrist speed", float(wrists.max(initial=0.0)), "m/s", WRIST),
-        Figure("pelvis turns at", float(np.degrees(turning.max(initial=0.0))), "degrees/s"),
+        Figure("pelvis turns at", float(np.degrees(turning.max(initial=0.0))), "degrees/s", TURN),
         Figure("weight shift in waits", 100.0 * float(np.median(shift)) if len(shift) else float("nan"), "cm"),
     )
 
