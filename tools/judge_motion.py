@@ -9,8 +9,8 @@ issues did, and `NO` stands where it is missed. Exit status 0 whatever the figur
 What it measures by: its own reader of the file, its own forward kinematics and skin, the vertices of the shoes, and the
 body by Winter's table. Where its figures differ from the report's, and why:
 - balance, ground force, gravity: the bake balances a body with de Leva's masses exactly, and this is another one. Its
-  flights fall a little differently and its zero-moment point is up to some centimetres elsewhere, so its balance is mostly the
-  lower of both; forces and balance are of 60 frames per second, whatever the rate, since what is quicker trembles.
+  flights fall a little differently and its zero-moment point is up to some centimetres elsewhere, so its balance is
+  mostly the lower of both; forces and balance are of 60 frames per second, whatever the rate.
 - feet touch when a vertex of the shoe is 1.5 mm over the pad (the report: a point of the sole 1 mm), so flights are
   some frames shorter; under a .bvh file, which has no shoes, a flat box is her sole.
 - plant slide is that of the sole's stillest point (the report: the longest path of one; of a pivot, the ball's).
