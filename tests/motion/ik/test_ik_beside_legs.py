@@ -27,7 +27,7 @@ def given_way(*wrists: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarr
     """Left wrists (n, 3) after they gave way, and how deep their hands are in the left thigh then."""
     both = np.stack([np.array(wrists), np.array(wrists) * MIRROR], axis=1)
     shoulders = np.tile([[0.18, 1.2, 0.0], [-0.18, 1.2, 0.0]], (len(wrists), 1, 1))
-    elbows = np.tile([[0.45, -0.25, -0.9], [-0.45, -0.25, -0.9]], (len(wrists), 1, 1))
+    elbows = np.tile([[0.22, -0.25, -0.9], [-0.22, -0.25, -0.9]], (len(wrists), 1, 1))
     legs = squatting(len(wrists))
     out = both + beside_legs(both, shoulders, elbows, legs, SKELETON, ROOM)
     assert out[:, 1] == pytest.approx(out[:, 0] * MIRROR)  # the right one does as in a mirror
