@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
+    from dancetutor_cli.video.tracks import OnMine
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class Danced:
     solved : each player's part, one for most charts; play : what the picture shows, of both, without the notes that
     nobody plays at the fastest rate; pad : under both
     motions : at each rate, none where the picture has no dancer; partners : the second player's
+    on_mines : mines that a foot is on at the fastest rate as they pass
     """
 
     solved: tuple[ChartSubject, ...]
@@ -38,6 +40,7 @@ class Danced:
     pad: Pad
     motions: Mapping[float, Motion]
     partners: Mapping[float, Motion] = field(default_factory=dict)
+    on_mines: tuple[OnMine, ...] = ()
 
 
 def danced(request: FilmRequest, subject: Subject) -> Danced:
@@ -53,7 +56,8 @@ def danced(request: FilmRequest, subject: Subject) -> Danced:
 
         play = read_play(request.play, chart, play.rows, pad)
     shown, motions = _motions(request, replace(subject, chart=chart), (play, pad))
-    return Danced((replace(solved, play=play),), shown, pad, motions)
+    motions, on_mines = _mines_told(motions, shown, pad)
+    return Danced((replace(solved, play=play),), shown, pad, motions, on_mines=on_mines)
 
 
 def _by_two(request: FilmRequest, subject: Subject) -> Danced:
@@ -65,14 +69,35 @@ def _by_two(request: FilmRequest, subject: Subject) -> Danced:
         raise UsageError(f"{option} is for one dancer, and {chart.label} is for two: choose with --player 1 or 2")
     whole = pad_of_both(chart.steps_type)
     solved = tuple(solved_chart(subject.song, part, subject.preset) for part in chart.players)
-    plays, motions = [], []
+    plays, motions, on_mines = [], [], []
     for one, sides in zip(solved, sides_of(chart.players), strict=True):
         play, pad = _known(request, one)
         shown, baked = _motions(request, replace(subject, chart=one.chart), (play, pad), sides)
+        baked, under = _mines_told(baked, shown, pad)
+        on_mines += [mine._replace(column=mine.column + one.chart.first_column) for mine in under]
         plays.append(shown)
         place = place_on(whole, one.chart, pad)
         motions.append({rate: shifted(motion, *place) for rate, motion in baked.items()})
-    return Danced(solved, together(chart, plays, whole), whole, motions[0], motions[1])
+    return Danced(solved, together(chart, plays, whole), whole, motions[0], motions[1], tuple(on_mines))
+
+
+def _mines_told(
+    motions: Mapping[float, Motion], play: Play, pad: Pad
+) -> tuple[dict[float, Motion], tuple[OnMine, ...]]:
+    """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
+    from dancetutor_cli.bake import mines_of
+    from dancetutor_cli.bake.quality.ground import feet_on_mines, told_mines
+    from dancetutor_cli.bake.rate import at_rate
+    from dancetutor_cli.video.tracks import OnMine
+
+    told, under = {}, np.zeros(0, np.int8)
+    for rate, motion in sorted(motions.items()):
+        mines = mines_of(at_rate(play, rate), pad)
+        under = feet_on_mines(motion, mines)
+        told[rate] = replace(motion, notes=(*motion.notes, *told_mines(mines[under >= 0, 0])))
+    row, column = (places[: len(under)][under >= 0] for places in np.nonzero(play.rows.mines))
+    ticks = play.rows.tick[row].tolist()
+    return told, tuple(map(OnMine, ticks, column.tolist(), under[under >= 0].tolist()))
 
 
 def _known(request: FilmRequest, solved: ChartSubject) -> tuple[Play, Pad]:

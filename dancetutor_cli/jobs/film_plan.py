@@ -59,7 +59,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     dance = danced(request, subject)
     solved, play, pad = dance.solved, dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
-    quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls)
+    quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls, dance.on_mines)
     after = quiet_after(clock.passes)
     track = notes_without(notes_without(whole_track, quiet), after)
     presses = presses_of(track)
@@ -87,7 +87,9 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         rows=step_rows(play_without(play_without(play, quiet), after), _dancers(dance)),
         character=character,
         partners=partners,
-        callouts=() if request.background or len(solved) > 1 else callouts_of(solved[0], play, _calls(look), scrolls),
+        callouts=()
+        if request.background or len(solved) > 1
+        else callouts_of(solved[0], play, _calls(look), scrolls, dance.on_mines),
         cues=tuple(_cues(dance, turned(look))),
         fade=FADE if request.practice.rest and not request.background else 0.0,
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, dancing, moments
 from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
-from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.lights import PanelLights, lighting
 from dancetutor_cli.video.make_way import Stay, stay
 from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay import tags as beside
@@ -52,7 +52,7 @@ class Film:
         self._stays: dict[tuple[int, int], Stay] = {}
         self._block, self._block_joints = -1, np.zeros((0, 0, 4, 4))
         self.style = highway_style()
-        self.lights = PanelLights(plan.presses, self.columns, self.style.panel_seconds)
+        self.lights = PanelLights(lighting(plan.notes, plan.presses), self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
         self.base[...] = BACKGROUND
         if (strip := self.layout.progress) is not None:  # to the picture's edge, where its graph ends before that

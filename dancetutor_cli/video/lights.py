@@ -4,13 +4,27 @@ A note that nobody plays lights nothing."""
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 
+from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.play.played import Limb
-from dancetutor_cli.video.notes import Presses
+from dancetutor_cli.video.notes import NoteTrack, Presses
 
 HELD = 0.62  # brightness while held, after the flash of the start
 EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
+
+
+def lighting(track: NoteTrack, presses: Presses) -> Presses:
+    """What lights panels: the presses, and the mines that a foot is on as they pass."""
+    mines = (track.kind == Kind.MINE) & (track.limb >= 0)
+    if not mines.any():
+        return presses
+    own = Presses(track.second[mines], track.second[mines], track.column[mines], track.limb[mines])
+    order = np.argsort(np.concatenate((presses.start, own.start)), kind="stable")
+    both = (np.concatenate((getattr(presses, one.name), getattr(own, one.name))) for one in fields(Presses))
+    return Presses(*(values[order] for values in both))
 
 
 class PanelLights:

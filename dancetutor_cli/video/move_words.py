@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
 
-HOLD = "hold"  # the one move that has a name here, and none among `EVENTS`
+HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: named here, but not among `EVENTS`
 WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
 SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
@@ -36,7 +36,7 @@ class _Table:
 def _table() -> dict[str, str]:
     path = config_path("words.yaml")
     words = load(path, _Table).moves
-    _check(path, words, (*EVENTS, HOLD))
+    _check(path, words, (*EVENTS, HOLD, MINE))
     return words
 
 

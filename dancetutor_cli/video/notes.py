@@ -20,7 +20,7 @@ class NoteTrack:
     quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
     player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
     gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless
-    where it is played to its end
+    where it is played to its end. Of a mine with a foot on it when it passes, which has that foot as its limb
     """
 
     second: NDArray[np.float64]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,15 @@ from dancetutor_cli.video.notes import BeatLines, NoteTrack, Presses, quantisati
 from dancetutor_cli.video.scroll import ScrollSegments
 
 
-def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> NoteTrack:
+class OnMine(NamedTuple):
+    """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right"""
+
+    tick: int
+    column: int
+    foot: int
+
+
+def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mines: Sequence[OnMine] = ()) -> NoteTrack:
     """The notes as the highway draws them; keysounds are not notes to see."""
     table = chart.notes
     keep = table.kind != Kind.KEYSOUND
@@ -24,6 +34,9 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments) -> Note
         row = np.clip(row, 0, len(play.rows) - 1)
         found = (play.rows.tick[row] == table.tick) & (table.column < play.limb.shape[1])
         limb[found] = play.limb[row[found], table.column[found]]
+    limb[table.kind == Kind.MINE] = Limb.NONE
+    for one in on_mines:
+        limb[(table.kind == Kind.MINE) & (table.tick == one.tick) & (table.column == one.column)] = one.foot
     second = chart.timing.seconds(tick)
     gone = _gone(chart, play, limb)[keep]
     is_gone = gone >= 0
@@ -49,7 +62,7 @@ def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np
     """From which tick on nobody plays a note, -1 where it is played; limb : of each. A roll is let go at its first tap
     that nobody plays: from there on no one keeps it."""
     table = chart.notes
-    out = np.where(limb == Limb.UNPLAYED, table.tick, -1)
+    out = np.where((limb == Limb.UNPLAYED) | ((table.kind == Kind.MINE) & (limb >= 0)), table.tick, -1)
     if play is None:
         return out
     row, column = np.nonzero((play.rows.steps == StepKind.ROLL_TAP) & (play.limb == Limb.UNPLAYED))

@@ -91,7 +91,9 @@ def test_a_foot_that_stays_on_a_mine_is_counted() -> None:
     motion = bake(chart(), away, pad())
     assert report(motion, mines_of(away, pad()))["feet on mines"].value == 0
     stays = bake(chart(), play([e for e in events if e[1]]), pad())
-    assert report(stays, mines_of(away, pad()))["feet on mines"].value == 1
+    bad = report(stays, mines_of(away, pad()))
+    assert bad["feet on mines"].value == 1
+    assert any(note.startswith("a foot is on a mine as it passes, or less than 3 cm over: ") for note in bad.notes)
 
 
 def test_hands_hit(steps: Motion) -> None:

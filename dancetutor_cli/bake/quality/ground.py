@@ -19,18 +19,20 @@ PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
 CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
 BALL = slice(2, 4)  # of a sole's points, those of the ball
 MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
+MINES_TOLD = 6  # moments at which a foot is on mines, at most, that a note names
 
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
     """Figures and notes. mines : (m, 3) of second, x, z; None if not known."""
     slide, pivots = plant_slides(body, motion.skeleton)
+    under = np.zeros(0, np.int8) if mines is None else feet_on_mines(motion, mines)
     figures = (
         Figure("plant slide", 1000 * slide, "mm", 1.0),
         Figure("penetration", 1000 * deepest(motion), "mm", 1.0),
-        Figure("feet on mines", float("nan") if mines is None else float(feet_on_mines(motion, mines)), "", 0.0),
+        Figure("feet on mines", float("nan") if mines is None else float((under >= 0).sum()), "", 0.0),
     )
     notes = (f"of {pivots} pivots on a planted foot, on purpose, the slide of the ball is counted",) if pivots else ()
-    return figures, notes
+    return figures, (*notes, *(() if mines is None else told_mines(mines[under >= 0, 0])))
 
 
 def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
@@ -67,15 +69,26 @@ def deepest(motion: Motion) -> float:
     return -low
 
 
-def feet_on_mines(motion: Motion, mines: Array) -> int:
-    """Mines that pass while a sole point inside their panel is lower than 3 cm."""
-    mines = mines[(mines[:, 0] >= motion.times[0]) & (mines[:, 0] <= motion.times[-1])]
-    if not len(mines):
-        return 0
-    positions, world = world_transforms(motion.skeleton, *sample(motion, mines[:, 0]))
-    hit: NDArray[np.bool_] = np.zeros(len(mines), dtype=bool)
-    for points in sole_points(motion.skeleton):
+def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
+    """Which foot (m,), 0 left or 1 right, is on each mine as it passes: a sole point inside its panel is lower than
+    3 cm. -1 if none is, or the motion is of another time."""
+    out = np.full(len(mines), -1, dtype=np.int8)
+    here = np.flatnonzero((mines[:, 0] >= motion.times[0]) & (mines[:, 0] <= motion.times[-1]))
+    if not len(here):
+        return out
+    positions, world = world_transforms(motion.skeleton, *sample(motion, mines[here, 0]))
+    for foot, points in enumerate(sole_points(motion.skeleton)):
         places = place(points, positions, world)
-        inside = np.abs(places[..., [0, 2]] - mines[:, None, 1:]).max(axis=2) <= HALF_PANEL
-        hit |= (inside & (places[..., 1] < MINE_CLEARANCE)).any(axis=1)
-    return int(hit.sum())
+        inside = np.abs(places[..., [0, 2]] - mines[here, None, 1:]).max(axis=2) <= HALF_PANEL
+        out[here[(inside & (places[..., 1] < MINE_CLEARANCE)).any(axis=1)]] = foot
+    return out
+
+
+def told_mines(seconds: Array) -> tuple[str, ...]:
+    """On which mines her feet are as these pass, in one line for people; none if on none. seconds : of these mines"""
+    if not len(seconds):
+        return ()
+    at = [f"{second:.2f} s" for second in np.unique(seconds.round(2)).tolist()]
+    when = ", ".join([*at[:MINES_TOLD], *(["..."] if len(at) > MINES_TOLD else [])])
+    what = "a mine as it passes" if len(seconds) == 1 else f"{len(seconds)} mines as they pass"
+    return (f"a foot is on {what}, or less than {100 * MINE_CLEARANCE:g} cm over: {when}",)

@@ -13,7 +13,7 @@ import numpy as np
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.play.let_go import MOVE
 from dancetutor_cli.play.played import Limb
-from dancetutor_cli.video.move_words import SAID_BY_A_BRACKET, filled
+from dancetutor_cli.video.move_words import MINE, SAID_BY_A_BRACKET, filled
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
@@ -24,12 +24,14 @@ if TYPE_CHECKING:
     from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.ahead import Ahead
     from dancetutor_cli.video.scroll import ScrollSegments
+    from dancetutor_cli.video.tracks import OnMine
 
 JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or seconds, are called out together,
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
 KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
+_OF_MINES = "mine under"  # what the linter calls such a mine begins so (DT303)
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
 
@@ -70,24 +72,32 @@ class _Passage:
     def tag(self) -> str:
         """What it begins with, for the narrow place beside the notes, whose markers say which foot it is."""
         said, count = next(iter(self.words.items()))
-        short = said.partition(": ")[2] or said.partition(" (")[0]
+        short = (said.partition(": ")[2] or said).partition(" (")[0]
         return short if count == 1 else f"{short} ×{count}"
 
 
 def callouts_of(
-    subject: ChartSubject, play: Play | None, style: CallStyle, scrolls: ScrollSegments
+    subject: ChartSubject,
+    play: Play | None,
+    style: CallStyle,
+    scrolls: ScrollSegments,
+    on_mines: Iterable[OnMine] = (),
 ) -> tuple[Callout, ...]:
     """Everything to call out, a passage at a time, in order of time.
 
     Moves in a row, such as one crossover after the other, are one passage with a count.
 
     subject : for the linter; play : what the picture shows of it. Of a row with a note that nobody
-    plays it is always said what the linter finds there.
+    plays, or a mine that a foot is on, it is always said what the linter finds there.
+    on_mines : those mines
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
-    findings = list(_findings(subject, codes=not style.findings)) if style.findings or ticks else []
+    mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
+    findings = list(_findings(subject, codes=not style.findings)) if style.findings or ticks or mined else []
     why = {} if style.findings else dict(_reasons(ticks, findings))
+    under = {} if style.findings else {tick: said for tick, _, said, _ in findings if _OF_MINES in said}
     found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
+    found += ((tick, tick, style.words[MINE] + (f" ({under[tick]})" if tick in under else ""), 0) for tick in mined)
     timing = subject.chart.timing
     told = sorted({tick for first, last, *_ in found for tick in (first, last)})
     seconds = dict(zip(told, timing.seconds(np.array(told, dtype=np.int64)).tolist(), strict=True))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.colours import RGB, limb_colours
-from dancetutor_cli.video.lights import PanelLights
+from dancetutor_cli.video.lights import PanelLights, lighting
 from dancetutor_cli.video.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, Presses
 from dancetutor_cli.video.overlay import sprites, tags
 from dancetutor_cli.video.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
@@ -67,7 +67,9 @@ class Highway:
         whose = len(QUANTISATIONS) + self.notes.player.astype(np.int64) - 1
         self.colour = np.where(self.notes.player > 0, whose, self.notes.quantisation)
         self.limb_colours = limb_colours().by_limb
-        self.lights = PanelLights(self.presses, len(geometry.directions), self.style.flash_seconds)
+        self.lights = PanelLights(
+            lighting(self.notes, self.presses), len(geometry.directions), self.style.flash_seconds
+        )
         self._number = lru_cache(maxsize=256)(self._draw_number)
         self._flag = lru_cache(maxsize=64)(self._draw_flag)
         self._make_sprites()
@@ -80,7 +82,7 @@ class Highway:
         self.fakes = {d: sprites.arrow(size, d, style.fake) for d in kinds}
         self.receptors = {d: sprites.receptor(size, d, style.receptor) for d in kinds}
         glows = dict(enumerate((*self.limb_colours, style.receptor)))
-        used = {int(limb) for limb in np.unique(self.presses.limb)}
+        used = {int(limb) for limb in np.unique(self.lights.presses.limb)}
         self.glows = {(d, i): sprites.glow(size, d, c) for d in kinds for i, c in glows.items() if i in used or i == 4}
         self.mine = sprites.mine(size, style.mine)
         body = max(4, round(0.62 * size))

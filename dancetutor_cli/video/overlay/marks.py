@@ -49,6 +49,7 @@ class Marks:
         lane, high = geometry.lane, geometry.box[3] - geometry.box[1]
         self.full = max(6, round(max(style.mark * lane, min(MARK_SHARE * high, MARK_MOST * lane))))
         self.least = min(self.full, max(6, round(min(LEAST_SHARE * high, LEAST_MOST * lane))))
+        self._on_mine = notes.judged & (notes.kind == Kind.MINE) & (notes.limb >= 0)
         stepped = notes.judged & ~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))
         self._marked = stepped & ((notes.limb >= 0) | bool((notes.limb >= 0).any()))
         self._sprite = lru_cache(maxsize=256)(self._draw_sprite)
@@ -71,14 +72,16 @@ class Marks:
         return self._places(round(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
     def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
-        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it has been let go."""
+        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it has been let go.
+
+        So has a mine that a foot is on as it passes, in its middle.
+        """
         if (size := int(places.size[i])) == 0:
             return
-        column, side = int(self._notes.column[i]), int(places.side[i])
-        across, below = (
-            (side * BESIDE * self.geometry.lane, 0.0) if side else self.behind(self.geometry.directions[column])
-        )
-        badge = self._sprite(size, -1 if gone else max(int(self._notes.limb[i]), -1))
+        column, side, mine = int(self._notes.column[i]), int(places.side[i]), bool(self._on_mine[i])
+        direction = None if mine else self.geometry.directions[column]
+        across, below = (side * BESIDE * self.geometry.lane, 0.0) if side else self.behind(direction)
+        badge = self._sprite(size, -1 if gone or mine else max(int(self._notes.limb[i]), -1))
         x, top = self.geometry.corner(column, y, badge.shape[0])
         blit(frame, badge, x + across, top + below, 1.0, self.geometry.box[1::2])
 
@@ -91,6 +94,7 @@ class Marks:
     def _find(self, spacing: int) -> Places:
         notes, apart = self._notes, 2.0 ** (spacing / STEPS)
         size, side = np.zeros(len(notes.second), np.int16), np.zeros(len(notes.second), np.int16)
+        size[self._on_mine] = self.of(0.0)  # none is left out, however dense
         for column in np.unique(notes.column[self._marked]).tolist():
             here = np.flatnonzero(self._marked & (notes.column == column))
             usual = self.of(self.geometry.directions[column])
