@@ -73,7 +73,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "ahead": parse_ahead("b2"),
         "findings": True,
     }
-    practices = {"rates": (0.5,), "loop": 2, "count_in": 4, "claps": True, "metronome": True}
+    practices = {"rates": (0.5,), "loop": 2, "count_in": 4, "rest": 1.5, "claps": True, "metronome": True}
     assert set(looks) == {f.name for f in fields(FilmLook)}
     assert set(practices) == {f.name for f in fields(Practice)}
     return {
