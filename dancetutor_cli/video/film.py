@@ -117,7 +117,7 @@ class Film:
     def _legend(self) -> captions.Legend | None:
         if (part := self.layout.legend) is None:
             return None
-        limbs = {int(limb) for limb in np.unique(self.plan.notes.limb) if limb >= 0}
+        limbs = beside.limbs_seen(self.plan.notes, self.plan.clock.passes)
         left, top, right, bottom = self._box("legend")
         if self._header is not None and left < self._header.right:
             below = round(self._header.bottom + LEGEND_OFF * self.scale * part.text)

@@ -63,7 +63,7 @@ def lozenge(
 
 
 class Legend:
-    """What the markers mean, one under the other at the box's bottom; hands only where the chart needs them.
+    """What the markers mean, one under the other at the box's bottom; hands only where what is shown needs them.
 
     A dark plate below keeps them readable over a panel of the pad. note : words below the last one; players : colours
     of the notes of each of two.

@@ -23,6 +23,7 @@ from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
 
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
+READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
 LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # the same where notes are dense
 BESIDE, BESIDE_MOST = 0.25, 0.46  # lanes from the middle at which those stand then, and how large they are at most
 STEPS = 4  # sizes are found for so many spacings in each doubling
@@ -47,7 +48,8 @@ class Marks:
         self._notes, self.geometry, self._style, self._face = notes, geometry, style, face
         self._along = notes.second if by_time else notes.beat
         lane, high = geometry.lane, geometry.box[3] - geometry.box[1]
-        self.full = max(6, round(max(style.mark * lane, min(MARK_SHARE * high, MARK_MOST * lane))))
+        self._read = max(6, min(READ, round(READ_MOST * lane)))
+        self.full = max(self._read, round(max(style.mark * lane, min(MARK_SHARE * high, MARK_MOST * lane))))
         self.least = min(self.full, max(6, round(min(LEAST_SHARE * high, LEAST_MOST * lane))))
         self._on_mine = notes.judged & (notes.kind == Kind.MINE) & (notes.limb >= 0)
         stepped = notes.judged & ~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))
@@ -57,7 +59,7 @@ class Marks:
 
     def of(self, direction: float | None) -> int:
         """Pixels of a mark with room around it, on an arrow that points this way."""
-        return self.full if direction is None else max(6, round(self._style.mark_tail * self.full))
+        return self.full if direction is None else max(self._read, round(self._style.mark_tail * self.full))
 
     def behind(self, direction: float | None) -> tuple[float, float]:
         """Where such a mark stands on its arrow, pixels from the middle."""

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from dancetutor_cli.video.clock import Pass
-from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.notes import Callout, NoteTrack
 from dancetutor_cli.video.overlay.sprites import FLAG_EDGE
 from dancetutor_cli.video.overlay.text import Typeface, fitted, narrowest
 
 LETTERS, LEAST = 12.5, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
 LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
-SEEN = 4.0  # seconds before its row that a tag may be in the picture
+SEEN = 4.0  # seconds before its row that a tag, or a note, may be in the picture
 LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
 NEAR = 0.95  # of the letters' size that is as good as all of it: sizes are tried in steps
 
@@ -27,6 +27,14 @@ def seen(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
     """Does any of these stand beside the notes in one of these runs?"""
     begins = np.array([told.second for told in callouts])
     return any(((one.start <= begins) & (begins <= one.end + SEEN)).any() for one in passes)
+
+
+def limbs_seen(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
+    """Whose notes, `play.played.Limb`, are in the picture in these runs: of a section not all of the song's."""
+    here = np.zeros(len(notes.second), dtype=np.bool_)
+    for one in passes:
+        here |= (one.start <= notes.end_second) & (notes.second <= one.end + SEEN)
+    return {int(limb) for limb in np.unique(notes.limb[here]) if limb >= 0}
 
 
 def told(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:

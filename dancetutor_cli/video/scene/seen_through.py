@@ -1,4 +1,4 @@
-"""A foot that a leg hides: its outline is drawn over that leg, thin, for which foot stands where is what is to be seen.
+"""A foot that a leg hides: its shoe is drawn over that leg, faint, for which foot stands where is what is to be seen.
 
 What is hidden is found from the joints alone, legs as tapered tubes, so that both renderers show the same.
 """
@@ -20,10 +20,10 @@ Array = NDArray[np.float64]
 _LEG = ("knee", "talocrural", "metatarsal")  # what is above the knee hides no foot
 _RADII = (0.062, 0.05, 0.045)  # metres, of a leg at these joints
 _SHOE = 0.035  # metres above its sole at which a foot is looked for
-HIDDEN = (0.3, 0.6)  # share of a foot that is hidden where its outline begins to be drawn, and where it is whole
-AROUND = SOLE_RADIUS + 0.013  # metres from the line between heel and toe: where a standing foot's ring is, too
-LINE, EDGE = 0.008, 0.005  # metres, half the line's width and the dark edge on both sides of it
-LOW = 0.12  # metres over the ground over which a foot in the air has no outline
+HIDDEN = (0.3, 0.6)  # share of a foot that is hidden where it begins to be drawn, and where it is as strong as ever
+SHOE = (0.046, 0.040)  # metres, how far a shoe reaches around the line between heel and toe, at either end
+LINE, TINT = 0.004, 0.4  # metres, half its outline's width; how much of the foot's colour is within it
+LOW = 0.12  # metres over the ground over which a foot in the air is not drawn
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class _Legs:
 
 
 def draw_hidden_feet(frame: Frame, scene: Scene, joints: Array, camera: Camera) -> None:
-    """Draw the outlines of feet behind another leg over the picture of them. joints : world matrices (j, 4, 4)."""
+    """Draw the shoes of feet behind another leg over the picture of them. joints : world matrices (j, 4, 4)."""
     found = _leg_joints(scene.character.skeleton.names)
     if camera.feet_only or found is None:
         return
@@ -76,7 +76,7 @@ def draw_hidden_feet(frame: Frame, scene: Scene, joints: Array, camera: Camera) 
         before = _Legs(ends, np.stack([radii[near, :-1], radii[near, 1:]], axis=2).reshape(-1, 2))
         shown = _share(mark, before, camera, size) * (1.0 - mark.height / LOW)
         if shown > 0.0:
-            _outline(frame, mark, before, camera, np.array([*scene.colours.by_limb[limb % 2], shown]))
+            _shoe(frame, mark, before, camera, np.array([*scene.colours.by_limb[limb % 2], shown]))
 
 
 @lru_cache(maxsize=4)
@@ -90,7 +90,7 @@ def _leg_joints(names: tuple[str, ...]) -> NDArray[np.intp] | None:
 
 
 def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int]) -> float:
-    """How strong a foot's outline is, 0 to 1, by how much of it is hidden."""
+    """How strongly a foot is drawn, 0 to 1, by how much of it is hidden."""
     t = np.linspace(-0.2, 1.2, 9)[:, None]
     flat = np.array(mark.heel) + t * (np.array(mark.toe) - np.array(mark.heel))
     points = np.column_stack([flat[:, 0], np.full(len(t), mark.ground + mark.height + _SHOE), flat[:, 1]])
@@ -103,37 +103,31 @@ def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int])
     return share * share * (3.0 - 2.0 * share)
 
 
-def _outline(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Array) -> None:
-    """Draw where the edge of a sole is behind a leg. ink : (4,), red, green, blue 0..255, and how strong 0..1"""
+def _shoe(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Array) -> None:
+    """Draw what of a shoe is behind a leg. ink : (4,), red, green, blue 0..255, and how strong 0..1
+
+    The shoe, and not its ring again: that lies on the floor, and over a leg it would be seen as a noose around it.
+    """
     size = frame.shape[1], frame.shape[0]
-    height = mark.ground + mark.height
-    reach = AROUND + LINE + EDGE
-    ends = np.array([mark.heel, mark.toe])
-    corners = [(x + dx, height, z + dz) for x, z in ends for dx in (-reach, reach) for dz in (-reach, reach)]
-    seen = camera.project(np.array(corners), size)[:, :2]
-    low, high = before.box
-    left, top = np.maximum(np.floor(np.maximum(seen.min(0), low)).astype(int) - 1, 0)
-    right, bottom = np.minimum(np.ceil(np.minimum(seen.max(0), high)).astype(int) + 2, size)
+    height = mark.ground + mark.height + float(np.mean(SHOE))
+    heel, toe = camera.project(np.array([[x, height, z] for x, z in (mark.heel, mark.toe)]), size)
+    metre = camera.focal * size[1] / np.array([heel[2], toe[2]])  # pixels
+    radii = np.array(SHOE) * metre
+    around = (radii + LINE * metre)[:, None]
+    ends, (low, high) = np.array([heel[:2], toe[:2]]), before.box
+    left, top = np.maximum(np.floor(np.maximum((ends - around).min(0), low)).astype(int) - 1, 0)
+    right, bottom = np.minimum(np.ceil(np.minimum((ends + around).max(0), high)).astype(int) + 2, size)
     if left >= right or top >= bottom:
         return
-    m = camera.matrix(size)
-    flat = np.linalg.inv(np.column_stack([m[:, 0], m[:, 2], m[:, 1] * height + m[:, 3]]))
     y, x = np.mgrid[top:bottom, left:right] + 0.5
-    ground = np.stack([x, y, np.ones_like(x)], axis=-1) @ flat.T  # x, z and 1 on the ground, each over the depth
-    depth = 1.0 / ground[..., 2]
-    at = ground[..., :2] * depth[..., None]
-    off = np.abs(_distance(at, ends) - AROUND)
-    pixel = depth / (camera.focal * size[1])  # metres
+    place, along = np.stack([x, y], axis=-1), toe[:2] - heel[:2]
+    t = np.clip(((place - heel[:2]) @ along) / max(float(along @ along), 1e-9), 0.0, 1.0)
+    away = place - heel[:2] - t[..., None] * along
+    off = np.hypot(away[..., 0], away[..., 1]) - (radii[0] + t * (radii[1] - radii[0]))
+    wide = metre[0] + t * (metre[1] - metre[0])
+    depth = heel[2] + t * (toe[2] - heel[2])
     hidden = before.cover(np.stack([x, y, depth], axis=-1)) * ink[3]
-    part = frame[top:bottom, left:right]
-    for colour, half in ((np.zeros(3), LINE + EDGE), (ink[:3], LINE)):
-        alpha = (hidden * np.clip((half - off) / pixel + 0.5, 0.0, 1.0) * (0.55 if half > LINE else 1.0))[..., None]
-        part[...] = np.rint(part + (colour - part) * alpha)
-
-
-def _distance(at: Array, ends: Array) -> Array:
-    """Metres from the line between heel and toe."""
-    along = ends[1] - ends[0]
-    t = np.clip(((at - ends[0]) @ along) / max(float(along @ along), 1e-9), 0.0, 1.0)
-    off = at - ends[0] - t[..., None] * along
-    return np.asarray(np.hypot(off[..., 0], off[..., 1]))
+    part, inside = frame[top:bottom, left:right], np.clip(0.5 - off, 0.0, 1.0)
+    line = np.clip(LINE * wide - np.abs(off) + 0.5, 0.0, 1.0)
+    alpha = (hidden * np.maximum(line, TINT * inside))[..., None]
+    part[...] = np.rint(part + (ink[:3] - part) * alpha)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from film_plans import DIRECTIONS, film_plan
 
+from dancetutor_cli.video.clock import Pass
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import WIDE_PAD, layout_names, load_layout
@@ -238,3 +239,16 @@ def test_the_legend_stands_below_many_words(layout: str) -> None:
     assert bottom < height
     for one in (box for part in film._header.parts for box in part.boxes):
         assert one[3] <= top + 12 * film.scale or one[0] >= left + film._legend.lines[0][0].shape[1]
+
+
+def test_the_legend_has_hands_only_where_some_are_shown() -> None:
+    look = FilmLook(load_layout("side-by-side"), load_layout("side-by-side").size)
+    plan = replace(film_plan(np.array([1.0, 40.0])), look=look)
+    plan = replace(plan, notes=replace(plan.notes, limb=np.array([0, 2], np.int8)))
+    counts = []
+    for start, end in ((0.0, 5.0), (38.0, 42.0), (34.0, 37.0)):
+        clock = replace(plan.clock, passes=(Pass(start, end, 1.0),))
+        legend = Film(replace(plan, clock=clock))._legend
+        assert legend is not None
+        counts.append(len(legend.lines))
+    assert counts[1] == counts[2] == counts[0] + 2

@@ -107,3 +107,15 @@ def test_an_arrow_that_comes_sooner_does_not_cover_a_mark() -> None:
         half = drawn.marks.full // 2 - 5
         colours.append(frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half])
     assert (colours[0] == colours[1]).all()
+
+
+@pytest.mark.parametrize("limb", [0, 1])
+def test_letters_of_a_small_picture_are_eight_pixels_high_on_diagonals_too(limb: int) -> None:
+    """The lane of a pump-single's GIF, 720x404."""
+    one = highway([1.0], [limb], 36.0, (0, 0, 230, 378)).marks
+    size = one.of(45.0)
+    letter = sprites.marker(size, limb, FACE)
+    dark = (letter[..., :3].max(axis=2) < 90) & (letter[..., 3] > 250)
+    y, x = np.mgrid[:size, :size] + 0.5 - size / 2
+    dark &= np.hypot(x, y) < 0.38 * size
+    assert np.ptp(np.flatnonzero(dark.any(axis=1))) + 1 >= 8

@@ -1,4 +1,4 @@
-"""A foot behind the other leg is outlined over it, in its colour, and nothing else of the picture changes."""
+"""The shoe of a foot behind the other leg is drawn over it, in its colour, and nothing else of the picture changes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dancetutor_cli.character.partner import PREFIX, with_partner
 from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.pads.pad import load_pad
 from dancetutor_cli.rig.kinematics import joint_matrices
-from dancetutor_cli.video.scene.scene import Scene
+from dancetutor_cli.video.scene.scene import SOLE_RADIUS, Scene, foot_marks
 from dancetutor_cli.video.scene.seen_through import draw_hidden_feet
 
 SIZE = (640, 480)
@@ -63,6 +63,19 @@ def test_the_foot_behind_is_outlined_in_its_colour(leg: str) -> None:
     assert near(frame, hidden) > 20
     assert near(frame, 1 - hidden) == 0, "the one before it is seen anyhow"
     assert (frame != GREY).any(axis=2).mean() < 0.005, "thin"
+
+
+def test_it_is_the_shoe_and_no_ring_around_the_leg() -> None:
+    about = scene()
+    joints = pose(about, {"l": (across(about), 0.0, -0.28)})
+    mark, camera = foot_marks(about, joints)[1], about.camera("back", SIZE)
+    assert mark is not None
+    rows, columns = np.nonzero((drawn(about, joints) != GREY).any(axis=2))
+    line = np.linspace(mark.heel, mark.toe, 50)
+    on = camera.project(np.column_stack([line[:, 0], np.full(50, mark.ground + 0.04), line[:, 1]]), SIZE)
+    pixels = np.hypot(columns[:, None] + 0.5 - on[:, 0], rows[:, None] + 0.5 - on[:, 1]).min(axis=1)
+    metre = camera.focal * SIZE[1] / float(on[:, 2].mean())
+    assert 0.03 * metre < pixels.max() < SOLE_RADIUS * metre + 1.0, "a ring is 13 mm outside of the sole"
 
 
 @pytest.mark.parametrize("by", [(0.0, 0.0, 0.0), (0.0, 0.0, -0.28), (0.0, 0.0, 0.28), (-0.3, 0.0, 0.0)])
