@@ -7,8 +7,10 @@ function again with all that it calls.
 
 from __future__ import annotations
 
+import math
+
 from dancetutor_cli.play.jit import uncounted
-from dancetutor_cli.play.state import LAST, LEFT_HELD, LEFT_LIFTED, SIDE, turn
+from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
 from dancetutor_cli.play.tables import DISTANCE_UNIT, EPSILON, LEFT, RIGHT
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES
 from dancetutor_cli.play.vocabulary import MODELS
@@ -16,7 +18,8 @@ from dancetutor_cli.play.vocabulary import MODELS
 (
     MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
     BRACKET_OUT_BACK, BRACKET_ASIDE, TWISTED, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING,
-    FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, UNPLAYABLE,
+    FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, HAND_BEHIND,
+    UNPLAYABLE,
 ) = range(len(MODELS["itg"].weights))  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
@@ -50,6 +53,18 @@ def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
     held, place = s[LEFT_HELD + foot], s[foot]
     mask = 1 << panels[place, foot, 0] if held & 1 else 0
     return mask | 1 << panels[place, foot, 1] if held & 2 else mask
+
+
+@uncounted
+def charge_hand(s, panel, terms, rules):  # type: ignore[no-untyped-def]
+    """What it costs that a hand presses a panel, once the feet are where they are after the row."""
+    g, w = rules.geometry, rules.weights
+    x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
+    y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
+    facing = math.radians(g.angle[s[LEFT_AT], s[RIGHT_AT]])
+    terms[HAND] += w[HAND]
+    if y * math.cos(facing) - x * math.sin(facing) < -EPSILON:
+        terms[HAND_BEHIND] += w[HAND_BEHIND]
 
 
 @uncounted(inline="always")

@@ -15,11 +15,11 @@ from dancetutor_cli.play.itg_costs import (
     EVENT_HAND,
     EVENT_HOLDSWITCH,
     EVENT_UNPLAYABLE,
-    HAND,
     HAND_HOLD,
     HOLDSWITCH,
     UNPLAYABLE,
     charge_feet,
+    charge_hand,
     charge_mines,
     charge_pose,
     held_by,
@@ -169,7 +169,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= EVENT_UNPLAYABLE
         elif limb > 2:
-            terms[HAND] += w[HAND]
+            charge_hand(s, p, terms, rules)
             events |= EVENT_HAND
             s[LEFT_HOLDS + limb - 3] = p + 1 if holds >> p & 1 else 0
     for hand in range(2):

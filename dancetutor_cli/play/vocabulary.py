@@ -33,7 +33,7 @@ _ITG = (
     "marked-doublestep", "marked-footswitch", "sideswitch", "jump-footswitch", "holdswitch", "bracket-in-front",
     "bracket-in-back", "bracket-out-back", "bracket-aside", "twisted", "crossover-jump", "crossover-full", "spin",
     "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
-    "hand-hold", "unplayable",
+    "hand-hold", "hand-behind", "unplayable",
 )  # fmt: skip
 # `distance` comes last: the others happen or do not, it has a size
 _ITG_CURVES = (

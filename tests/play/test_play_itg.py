@@ -104,6 +104,19 @@ def test_without_brackets_hands_come_where_feet_cannot() -> None:
     assert solved("1... ...1 1..1 1...", preset=DDR).limb.max() == Limb.RIGHT_FOOT
 
 
+def test_hands_come_down_in_front_of_her() -> None:
+    """All four corners of a Pump pad: feet go to two beside each other, hands to the two ahead of them."""
+    pad = pad_of("pump-single")
+    for picture in ("1...1 11.11", ".1.1. 11.11", "11.11"):
+        found = play.solve(rows_of(picture, 48, 150.0), pad, play.load_preset("pump"))
+        limb, facing = found.limb[-1].tolist(), np.radians(found.facing[-1])
+        assert sorted(limb) == [-1, 0, 1, 2, 3]
+        feet = pad.panels[[limb.index(0), limb.index(1)]].mean(axis=0)
+        for hand in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
+            away = pad.panels[limb.index(hand)] - feet
+            assert away @ (-np.sin(facing), np.cos(facing)) > 0.0, (picture, limb)
+
+
 def test_a_step_beside_a_hold_with_the_other_foot_busy_is_a_bracket() -> None:
     found = solved("2... |..2 |1.| 3..3".replace("|", "."))
     assert found.part[2].any() and found.limb[2, 1] in (0, 1)
