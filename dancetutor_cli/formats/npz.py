@@ -39,7 +39,8 @@ import numpy as np
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.motion.baked import Bar, Contact, Grip, Ground, Motion
-from dancetutor_cli.play.let_go import LetGo, Why
+from dancetutor_cli.play.let_go import LetGo
+from dancetutor_cli.play.unplayable import Why
 from dancetutor_cli.rig.skeleton import Skeleton
 
 SCHEMA = 1

@@ -20,8 +20,9 @@ from dancetutor_cli.lint.note_questions import Notes
 from dancetutor_cli.lint.places import PlacedChart
 from dancetutor_cli.lint.together import Shared
 from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.let_go import LEAP, SAME_TIME, Why, too_quick
+from dancetutor_cli.play.let_go import SAME_TIME, too_quick
 from dancetutor_cli.play.played import Ambiguity, Limb, StepKind
+from dancetutor_cli.play.unplayable import LEAP, Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.meter.estimate import Sized

@@ -5,30 +5,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.play.played import Limb, Play, StepKind
+from dancetutor_cli.play.unplayable import HAND, LEAP, Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
 
-LEAP = 0.08  # seconds: a foot that stepped so shortly before goes to no panel apart from the one it is on
-HAND = 0.40  # and a hand that came down so shortly before does not come down again
 MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
 SAME_TIME = 1e-6  # seconds
 _NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if what makes them is let go begin so
-
-
-class Why(IntEnum):
-    """Why a note is let go."""
-
-    LIMBS = 0  # more panels at once than limbs
-    LEAP = 1  # a foot that has just stepped on a panel apart from it
-    HAND = 2  # a hand that has just been on the floor
 
 
 WORDS = {

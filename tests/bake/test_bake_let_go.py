@@ -10,8 +10,8 @@ from dancetutor_cli.bake import bake, plan_of, report
 from dancetutor_cli.formats.moves_json import moves_data
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.play.let_go import Why
 from dancetutor_cli.play.played import Play
+from dancetutor_cli.play.unplayable import Why
 from tests.bake.bake_plays import L, R, chart, pad, play
 
 

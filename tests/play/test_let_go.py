@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dancetutor_cli.play.let_go import LetGo, Why, told, without_unplayable
+from dancetutor_cli.play.let_go import LetGo, told, without_unplayable
 from dancetutor_cli.play.played import Limb, Play, StepKind
+from dancetutor_cli.play.unplayable import Why
 from tests.bake.bake_plays import LH, RH, L, R, pad, play
 
 LEFT, DOWN, UP, RIGHT = range(4)

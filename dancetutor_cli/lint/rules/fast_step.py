@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
-from dancetutor_cli.play.let_go import Why
-from dancetutor_cli.play.played import StepKind
+from dancetutor_cli.play.unplayable import Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -94,6 +93,8 @@ class FastStep(ChartRule):
 
     def _leaps(self, subject: ChartSubject, told: set[int]) -> Iterable[Finding]:
         """One finding for each passage of steps that are let go and of which nothing is told yet."""
+        from dancetutor_cli.play.played import StepKind  # numpy comes with it, which a kept result does not need
+
         end = -math.inf
         known = [subject.beat(row) for row in sorted(told)]
         for row, column, why in sorted(subject.too_quick):

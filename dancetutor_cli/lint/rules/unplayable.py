@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.rule import MoveRule
-from dancetutor_cli.play.let_go import HAND, Why
+from dancetutor_cli.play.unplayable import HAND, Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
