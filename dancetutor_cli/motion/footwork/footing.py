@@ -137,9 +137,9 @@ class Footing:
     take_offs: tuple[TakeOff, TakeOff] | None = None
 
     @classmethod
-    def at_home(cls, context: Context, lead: int) -> Footing:
-        """Both feet on the pad's middle, where she waits."""
-        return cls(context, lead, (_at_home(0, context.settings), _at_home(1, context.settings)))
+    def at_home(cls, context: Context, lead: int, place: float = 0.0) -> Footing:
+        """Both feet where she waits, facing the screen. place : along x, metres; the pad's middle unless given"""
+        return cls(context, lead, (_at_home(0, place, context.settings), _at_home(1, place, context.settings)))
 
     @property
     def settings(self) -> MotionSettings:
@@ -234,10 +234,10 @@ class Proposal:
     turn: Turn | None = None
 
 
-def _at_home(side: int, settings: MotionSettings) -> FootState:
+def _at_home(side: int, place: float, settings: MotionSettings) -> FootState:
     out = 1.0 if side == 0 else -1.0
     toes = out * float(np.radians(settings.step.toe_out))
-    ball = ball_of(np.array([out * settings.step.home, 0.0]), toes)
+    ball = ball_of(np.array([place + out * settings.step.home, 0.0]), toes)
     return FootState(side, ball, 0.0, pair(ball), toes, settings.step)
 
 

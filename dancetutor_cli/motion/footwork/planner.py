@@ -22,6 +22,7 @@ from dancetutor_cli.motion.footwork.pressing import press
 from dancetutor_cli.motion.footwork.sidesteps import SideSteps
 from dancetutor_cli.motion.footwork.steps import step
 from dancetutor_cli.motion.footwork.turning import Facing, leading_foot, turn_start
+from dancetutor_cli.motion.footwork.walks import first_place
 from dancetutor_cli.motion.plan import Plan, Press, Turn
 from dancetutor_cli.play.played import Limb, Play, StepKind
 
@@ -34,7 +35,8 @@ class Planner:
 
     def __init__(self, play: Play, second: Callable[[int], float], context: Context) -> None:
         self.play, self.second, self.context, self.settings = play, second, context, context.settings
-        self.footing = Footing.at_home(context, leading_foot(play, context.panels))
+        lead = leading_foot(play, context.panels)
+        self.footing = Footing.at_home(context, lead, first_place(play, context, lead))
         self.begin = self.footing
         self.asides = SideSteps(play, context, self.footing.lead)
         self.homes = HomeSteps(play, context, self.footing.lead)

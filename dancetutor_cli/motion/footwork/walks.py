@@ -18,7 +18,7 @@ from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.foot_moves import Hover, Swing
 from dancetutor_cli.motion.footwork.footfalls import Stand, Trip, WalkSteps, footsteps, stand_at, standing
 from dancetutor_cli.motion.plan import FootTrack, Plan
-from dancetutor_cli.play.played import StepKind
+from dancetutor_cli.play.played import Limb, Play, StepKind
 
 Array = NDArray[np.float64]
 
@@ -42,10 +42,6 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     if busy < walk.least or (mines < busy).any():
         return None
     goal = standing(plan.feet, -np.inf)
-    places, following = places_along(context.squares, plan.lead), [next_step(track, -np.inf) for track in plan.feet]
-    targets = np.array([s.target for s in following if s is not None])
-    if len(places) > 1 and len(targets) == len(following):
-        goal = stand_at(np.array([_nearest(places, targets), 0.0]), 0.0, settings)
     side = side_of(plan, context)
     heading = (side - 0.5) * np.pi
     away = np.array([_beside(ground, side, walk.beside), goal.middle[1]])
@@ -137,6 +133,20 @@ def walk_there(
 def next_step(track: FootTrack, time: float) -> Swing | None:
     """A foot's first swing that begins at a time or later."""
     return next((m for m in track.moves if m.lift >= time - 1e-9 and isinstance(m, Swing)), None)
+
+
+def first_place(play: Play, context: Context, lead: int) -> float:
+    """Where along x she waits for the first note: of the places for that the nearest to both feet's first panels.
+
+    The pad's middle on a single pad, and where only one foot ever steps. Steps are planned from there: those planned
+    from elsewhere would come down on the foot that waits. lead : as in `Plan`
+    """
+    places = places_along(context.squares, lead)
+    own = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+    if len(places) < 2 or not all(len(rows) for rows in own):
+        return 0.0
+    panels = [context.panels[play.limb[rows[0]] == side].mean(axis=0) for side, rows in enumerate(own)]
+    return _nearest(places, np.array(panels))
 
 
 def _nearest(places: Array, targets: Array) -> float:
