@@ -215,3 +215,16 @@ def test_shoes_belong_to_the_feet_up_to_their_rim(gait):
         if "shoe" in mesh.name:
             assert (packed.material[drawn[:, 0]] == number).sum() == len(mesh.triangles), mesh.name
     assert 0.125 < packed.positions[drawn][..., 1].max() < 0.16, "and not the leg above"
+
+
+@pytest.mark.parametrize(
+    ("facing", "drawn"), [((0.0, 0.0, 0.0), True), ((0.9, 0.9, 0.1), True), ((0.9, 0.9, 0.9), False)]
+)
+def test_a_back_whose_normals_look_at_the_viewer_is_no_edge(facing: tuple[float, float, float], drawn: bool) -> None:
+    """Skin in a fold has turned it over: on the shirt's back it was a black speck."""
+    points = np.array([[2.0, 2.0, 0.5, 0.0], [2.0, 12.0, 0.5, 0.0], [12.0, 2.0, 0.5, 0.0]])
+    points[:, 3] = facing
+    ways = np.array([[0, 1, 2], [0, 2, 1]], np.int32)
+    canvas = empty_canvas(HEIGHT, WIDTH)
+    fill(points, ways, BACK, 0, canvas)
+    assert bool(canvas.nearest.any()) is drawn

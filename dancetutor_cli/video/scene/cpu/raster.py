@@ -22,6 +22,7 @@ BAND = 8  # samples: what is drawn is noted for so many rows together; a multipl
 _LANES = np.arange(8.0)  # so many samples of a row are looked at together: one step of a vector unit for each of them
 _FINE = 65536.0  # depth is stepped in whole numbers of 1 / _FINE units
 _STEEP = 1e13  # units from sample to sample; only slivers come near to it
+_FOLD = 0.35  # and where normals look at the viewer more than this, skin in a fold has turned a triangle over: no edge
 _AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 
@@ -215,6 +216,8 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
         if z0 == 0.0 or z1 == 0.0 or z2 == 0.0:
             continue
         if keep == BACK and points[a, 3] < _AWAY and points[b, 3] < _AWAY and points[c, 3] < _AWAY:
+            continue
+        if keep == BACK and points[a, 3] > _FOLD and points[b, 3] > _FOLD and points[c, 3] > _FOLD:
             continue
         left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
         right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)

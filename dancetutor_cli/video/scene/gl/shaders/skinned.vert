@@ -20,7 +20,7 @@ uniform vec2 off_surface;
 uniform float to_map;         // 1: draw the shadow map
 
 out vec2 uv;
-out vec3 terms;              // to light, facing, up
+out vec3 terms;              // to light, facing (of the outline 1: looks at the viewer), up
 out vec3 place_in_light;
 
 vec3 by_rows(vec4 a, vec4 b, vec4 c, vec4 p) { return vec3(dot(a, p), dot(b, p), dot(c, p)); }
@@ -45,6 +45,7 @@ void main() {
     gl_Position = camera * vec4(world, 1.0);
     if (outline > 0.0) {
         vec3 h = normalize(by_rows(a, b, c, vec4(hull, 0.0)));
+        terms.y = step(0.35, dot(h, normalize(eye - world)));  // as _FOLD in cpu/raster.py
         vec4 along = camera * vec4(h, 0.0);
         float w = gl_Position.w;
         // The normal on the picture, as a part of the length it has when it points sideways.
