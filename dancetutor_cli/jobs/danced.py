@@ -169,7 +169,7 @@ def _motions(
                 settings=settings,
                 sides=sides,
                 let_go=gone,
-                stays=after is not None,
+                stays=not request.background,  # the film goes dark as she stands there
             ),
             request.style,
             settings,

@@ -23,7 +23,7 @@ from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.overlay.titles import title_warnings, words_of
 from dancetutor_cli.video.plan import FilmPlan, turned
 from dancetutor_cli.video.practice import whole_song
-from dancetutor_cli.video.scroll import SpeedSegments, reading_bpm, segments_of, speeds_of
+from dancetutor_cli.video.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.notes import Cue, NoteTrack
+    from dancetutor_cli.video.notes import Callout, Cue, NoteTrack
 
 
 FADE = 0.6  # seconds in which a film's picture goes dark at its end; GIFs and pictures do not
@@ -57,7 +57,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
 
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = danced(request, subject)
-    solved, play, pad = dance.solved, dance.play, dance.pad
+    play, pad = dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
     quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls, dance.on_mines)
     after = quiet_after(clock.passes)
@@ -87,9 +87,7 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         rows=step_rows(play_without(play_without(play, quiet), after), _dancers(dance)),
         character=character,
         partners=partners,
-        callouts=()
-        if request.background or len(solved) > 1
-        else callouts_of(solved[0], play, _calls(look), scrolls, dance.on_mines),
+        callouts=() if request.background else _callouts(dance, _calls(look), scrolls),
         cues=tuple(_cues(dance, turned(look))),
         fade=FADE if request.practice.rest and not request.background else 0.0,
     )
@@ -123,6 +121,14 @@ def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
 
     camera = Scene(character, pad).camera(part.camera, look.size, part.region)
     return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
+
+
+def _callouts(dance: Danced, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
+    """What is called out; of two who dance what both do, for no call says whom it means."""
+    if len(dance.solved) == 1:
+        return callouts_of(dance.solved[0], dance.play, style, scrolls, dance.on_mines)
+    first, *others = (callouts_of(one, one.play, style, scrolls) for one in dance.solved)
+    return tuple(call for call in first if all(call in of_other for of_other in others))
 
 
 def _calls(look: FilmLook) -> CallStyle:

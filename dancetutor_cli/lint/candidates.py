@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
-from dancetutor_cli.lint.plays import EPSILON, Plays
+from dancetutor_cli.lint.plays import Plays
 from dancetutor_cli.lint.techniques import techniques
 from dancetutor_cli.meter.features import Feature, features_of
 from dancetutor_cli.pads import Pad
 from dancetutor_cli.play.played import Limb, Play
+from dancetutor_cli.play.turned import half_turned
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _HAND = 3  # panels that are down at once
@@ -65,9 +66,7 @@ class Candidates:
     def half_turns(self) -> list[list[int]]:
         """For each play the rows to which the body turns by 180 degrees."""
         plays = self.plays
-        turn = plays.facing[1:] - plays.facing[:-1]
-        half = np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= EPSILON
-        return plays.of_each(np.flatnonzero(half & (plays.number[1:] == plays.number[:-1])) + 1)
+        return plays.of_each(np.flatnonzero(half_turned(plays.facing) & (plays.number[1:] == plays.number[:-1])) + 1)
 
     @cached_property
     def triples(self) -> list[list[int]]:

@@ -11,6 +11,7 @@ import numpy as np
 from dancetutor_cli.colours import hex_colour, limb_colours
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.packing import pack_body, pack_motion
+from dancetutor_cli.play.turned import moves_and_turns
 from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.scene.scene import SOLE_RADIUS, Scene
 from dancetutor_cli.video.scene.stage import PANEL
@@ -138,13 +139,14 @@ def _pack_play(blob: Blob, play: Play) -> dict[str, Any]:
     blob.add("row.cost", play.cost.sum(axis=1), "i4")
     margin = np.full(len(rows), -1) if play.margin is None else play.margin
     blob.add("row.margin", np.minimum(margin, 2**31 - 1), "i4")
-    names = sorted({name for moves in play.moves for name in moves})
+    told = moves_and_turns(play)
+    names = sorted({name for moves in told for name in moves})
     return {
         "columns": columns,
         "preset": play.preset,
         "total": play.total,
         "names": names,
-        "moves": [[names.index(name) for name in moves] for moves in play.moves],
+        "moves": [[names.index(name) for name in moves] for moves in told],
     }
 
 

@@ -9,6 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.play.turned import HALF_TURNS
 from dancetutor_cli.play.vocabulary import EVENTS
 from dancetutor_cli.resources import config_path
 from dancetutor_cli.video.from_yaml import load
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
 
-HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: named here, but not among `EVENTS`
+HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: no `EVENTS`, as half turns are none
 WHO = ("left foot", "right foot", "left hand", "right hand")  # by `play.played.Limb`
 SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
@@ -36,7 +37,7 @@ class _Table:
 def _table() -> dict[str, str]:
     path = config_path("words.yaml")
     words = load(path, _Table).moves
-    _check(path, words, (*EVENTS, HOLD, MINE))
+    _check(path, words, (*EVENTS, *HALF_TURNS, HOLD, MINE))
     return words
 
 
@@ -79,6 +80,11 @@ def _doers(name: str, limbs: list[int]) -> list[int]:
     if name == "hand":
         return [limb for limb in range(2, 4) if limb in limbs] or [-1]
     return feet or [-1]
+
+
+def short_words(said: str) -> str:
+    """What is said of a move without whose it is or why, for the narrow place beside the notes: "toe on up"."""
+    return (said.partition(": ")[2] or said).partition(" (")[0]
 
 
 def panel_words(name: str, turned: bool = False) -> str:

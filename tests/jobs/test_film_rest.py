@@ -72,6 +72,14 @@ def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
     assert np.degrees(2 * np.arccos(jaw)) > 5.0
 
 
+def test_at_the_end_of_a_song_she_stays_on_the_pad(song: Path) -> None:
+    wanted = asked(song, "14:19", Practice(rest=REST))
+    motion = prepare(wanted, look_up(wanted)).plan.motions[1.0]
+    assert motion.times[-1] > 18.5
+    after = motion.root[motion.times > 16.5][:, [0, 2]]
+    assert np.ptp(after, axis=0).max() < 0.2
+
+
 @pytest.mark.parametrize(("section", "rest"), [(None, REST), ("6:19", REST), ("6:8", 0.0)])
 def test_no_rest_is_added_behind_a_song_nor_to_pictures(song: Path, section: str | None, rest: float) -> None:
     clock = look_up(asked(song, section, Practice(rest=rest))).clock

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.partner import PREFIX, turned, with_partner
 from dancetutor_cli.colours import partner_colours
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.jobs import film_plan
 from dancetutor_cli.jobs.danced import Danced, danced
 from dancetutor_cli.jobs.film_plan import _dancers, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
@@ -20,6 +22,7 @@ from dancetutor_cli.video.clock import Moment
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.scene.prepare import feet_on_floor
 from dancetutor_cli.video.scene.scene import FrameState
@@ -114,6 +117,14 @@ def test_the_colour_of_a_note_says_whose_it_is(tmp_path: Path, kind: str) -> Non
     assert [highway.colours[i] for i in highway.colour] == [highway.style.players[n - 1] for n in plan.notes.player]
     alone = replace(wanted, selection=Selection(player=2))
     assert not prepare(alone, look_up(alone)).plan.notes.player.any()
+
+
+def test_what_both_do_is_called_out_and_what_one_does_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, two, both = (Callout(at, at, "crossover", "move", at - 0.9, at, "crossover") for at in (1.0, 2.0, 3.0))
+    told = {"first": (one, both), "second": (two, both)}
+    monkeypatch.setattr(film_plan, "callouts_of", lambda solved, *_: told[solved.name])
+    dance = SimpleNamespace(solved=[SimpleNamespace(name=name, play=None) for name in told])
+    assert film_plan._callouts(dance, None, None) == (both,)  # type: ignore[arg-type]
 
 
 def test_two_are_drawn_and_each_has_rings_under_her_feet(tmp_path: Path) -> None:

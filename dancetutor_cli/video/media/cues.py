@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.play.played import Limb
+from dancetutor_cli.play.turned import HALF_TURNS, moves_and_turns
 from dancetutor_cli.video.move_words import HOLD, SAID_BY_A_BRACKET, WHO, filled
 from dancetutor_cli.video.notes import Cue
 
@@ -26,7 +27,8 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turn
 
     words : name of a move (`play.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it are not.
     turned : she faces who looks on, and panels are named as they are seen then.
-    Crossed feet are told once, where they cross, until they are back; a stream or drill once, where it begins.
+    Crossed feet are told once, where they cross, until they are back, unless a half turn there is told; a stream or
+    drill once, where it begins.
     """
     found = [*_crossovers(play, words), *_moments(play, words, pad, turned), *_holds(play, timing, words)]
     for name in _RUNS:
@@ -41,6 +43,7 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turn
 def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
     """Until the row in which the feet are uncrossed; one that turns full on its way is told again."""
     second, last_row = play.rows.second, len(play.rows) - 1
+    turns = moves_and_turns(play)
     for first, last in _stretches(play, _CROSSED):
         end = float(second[min(last + 1, last_row)])
         before: set[str] = set()
@@ -50,15 +53,15 @@ def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
             if new := now - before:
                 way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
                 name = way[0] if way else new.pop()
-                if word := words.get(name):
+                if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
                     yield Cue(float(second[row]), end, word, _who(play, row), name)
-            before |= now
+            before |= {*now, "crossover-half"}
 
 
 def _moments(play: Play, words: Mapping[str, str], pad: Pad, turned: bool) -> Iterator[Cue]:
     """Moves of one row, each time they come."""
     named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
-    for row, names in enumerate(play.moves):
+    for row, names in enumerate(moves_and_turns(play)):
         for name in named.intersection(names) - (SAID_BY_A_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
             who = () if "{" in words[name] else _who(play, row)

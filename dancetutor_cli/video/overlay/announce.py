@@ -8,8 +8,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video.clock import Clock
+from dancetutor_cli.video.from_yaml import RGB
 from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.move_words import WHO
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of
@@ -83,14 +86,18 @@ def _phrases(
 ) -> tuple[list[str], float]:
     """Words of a call in one or two lines; in more where their letters would be too small. Nothing is cut off.
 
-    room : width and height of the words, pixels; short : the text without whose move it is, for a narrow place
+    room : width and height of the words, pixels; short : the text without whose move it is, where even "right: " has no
+    room in two lines
     """
     width, height = room
-    for least in (CALL_LEAST, CALL_SMALL):
-        for said in (text, short) if text.endswith(short) else (text,):
-            lines, fits = _two_lines(said or text, size, width, face)
-            if fits >= least * size:
-                return lines, fits
+    named = text.replace(" foot:", ":")
+    tries = [(text, CALL_LEAST), (named, CALL_LEAST), (text, CALL_SMALL)]
+    if short and text.endswith(short):
+        tries += [(named, CALL_SMALL), (short, CALL_LEAST), (short, CALL_SMALL)]
+    for said, least in tries:
+        lines, fits = _two_lines(said, size, width, face)
+        if fits >= least * size:
+            return lines, fits
     for ends in (",", ",:"):
         for share in SHARES:
             lines = wrapped(_parts(text, ends), share * size, width, face)
@@ -114,6 +121,22 @@ def _parts(text: str, ends: str) -> list[str]:
     return re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
 
 
+def _foot_colour(text: str) -> RGB | None:
+    """The colour of the one foot that a call names; None of both and of none."""
+    named = [foot for foot in range(2) if re.search(f"\\b{WHO[foot]}\\b", text)]
+    return limb_colours().by_limb[named[0]] if len(named) == 1 else None
+
+
+def _left(call: Callout, second: float) -> float:
+    """How much is left of the time to the next move of a passage, 1 to 0; 0 from its last one on."""
+    begin = call.begin
+    for move in (call.second, *(move for move, *_ in call.further)):
+        if second < move:
+            return min(1.0, (move - second) / max(move - begin, 1e-9))
+        begin = move
+    return 0.0
+
+
 class Calls:
     """Passages called out before they come, at the top right of `box`, with the time left as a bar.
 
@@ -134,7 +157,7 @@ class Calls:
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
         lines, size = _phrases(text, size, (width, height), self.face, tag)
-        return flag(lines, size, self.style.callout[severity], self.face)
+        return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text))
 
     def _shown(self, second: float) -> list[Callout]:
         shown = np.flatnonzero((self._begins <= second) & (second < self._ends))
@@ -151,7 +174,7 @@ class Calls:
             fade = min(1.0, (second - one.begin) / 0.12, (max(one.end, one.second) + CALL_STAYS - second) / CALL_STAYS)
             blit(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
-            share = min(1.0, max(0.0, (one.second - second) / max(one.second - one.begin, 1e-9)))
+            share = _left(one, second)
             bar = (label.shape[1] - 8 * self.scale) * share
             edge = x + 4 * self.scale
             line = (edge, y, edge + bar, y + 4 * self.scale)

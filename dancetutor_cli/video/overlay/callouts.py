@@ -5,19 +5,21 @@ What the linter found is for authors; it stands there only where it is asked for
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.play.let_go import MOVE
 from dancetutor_cli.play.played import Limb
-from dancetutor_cli.video.move_words import MINE, SAID_BY_A_BRACKET, filled
+from dancetutor_cli.play.turned import HALF_TURNS, moves_and_turns
+from dancetutor_cli.video.move_words import MINE, SAID_BY_A_BRACKET, filled, short_words
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.pads import Pad
@@ -26,8 +28,10 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.scroll import ScrollSegments
     from dancetutor_cli.video.tracks import OnMine
 
-JOIN = 2 * TICKS_PER_BEAT, 1.2  # moves that follow within so many ticks, or seconds, are called out together,
+JOIN = 2 * TICKS_PER_BEAT, 0.8  # moves that follow within so many ticks, or seconds, are called out together,
+REST = 1.2  # if there is not so long a rest before them, seconds, and no jump with uncrossed feet;
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
+APART = 0.4  # seconds between moves of one passage that have each its tag and its countdown
 KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
@@ -55,14 +59,17 @@ class _Passage:
     last: int
     words: dict[str, int] = field(default_factory=dict)
     weight: int = 0
+    moves: list[tuple[int, str]] = field(default_factory=list)
 
-    def takes(self, tick: int, said: str, weight: int, second: Mapping[int, float]) -> bool:
-        """Is a move at `tick` part of it? second : of every tick"""
+    def takes(self, tick: int, said: str, weight: int, told: _Told) -> bool:
+        """Is a move at `tick` part of it?"""
+        second = told.second
 
         def within(since: int, most: tuple[int, float]) -> bool:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
-        near = within(self.last, JOIN) and within(self.first, LONGEST)
+        near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
+        near = near and not told.parted(self.last, tick)
         short = len(self.words) < KINDS and len(", ".join([*self.words, said])) <= LETTERS
         return near and weight == self.weight and (said in self.words or short)
 
@@ -72,8 +79,27 @@ class _Passage:
     def tag(self) -> str:
         """What it begins with, for the narrow place beside the notes, whose markers say which foot it is."""
         said, count = next(iter(self.words.items()))
-        short = (said.partition(": ")[2] or said).partition(" (")[0]
-        return short if count == 1 else f"{short} ×{count}"
+        return short_words(said) if count == 1 else f"{short_words(said)} ×{count}"
+
+    def further(self, second: Mapping[int, float]) -> list[tuple[int, str]]:
+        """Tick and tag of each other move that is well apart from the one before it."""
+        found, before = [], self.first
+        for tick, said in self.moves:
+            if second[tick] - second[before] >= APART:
+                found.append((tick, short_words(said)))
+                before = tick
+        return found
+
+
+class _Told(NamedTuple):
+    """second : of every tick that is asked for; jumps : ticks of jumps with uncrossed feet, ascending"""
+
+    second: Mapping[int, float]
+    jumps: Sequence[int]
+
+    def parted(self, since: int, tick: int) -> bool:
+        """Does she jump between these, her feet uncrossed?"""
+        return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
 
 
 def callouts_of(
@@ -99,26 +125,40 @@ def callouts_of(
     found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
     found += ((tick, tick, style.words[MINE] + (f" ({under[tick]})" if tick in under else ""), 0) for tick in mined)
     timing = subject.chart.timing
-    told = sorted({tick for first, last, *_ in found for tick in (first, last)})
-    seconds = dict(zip(told, timing.seconds(np.array(told, dtype=np.int64)).tolist(), strict=True))
+    asked = sorted({tick for first, last, *_ in found for tick in (first, last)})
+    seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
+    told = _Told(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
     for first, last, said, weight in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, seconds)), None)
+        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, told)), None)
         if here is None:
             here = _Passage(first, last, weight=weight)
             passages.append(here)
         here.last = max(here.last, last)
         here.words[said] = here.words.get(said, 0) + 1
+        here.moves.append((first, said))
     ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
     starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
     beats = scrolls.shown(ticks[:, 0] / TICKS_PER_BEAT)
+
+    def further(passage: _Passage) -> Iterator[tuple[float, float, str]]:
+        for tick, tag in passage.further(seconds):
+            yield seconds[tick], float(scrolls.shown(np.array([tick / TICKS_PER_BEAT]))[0]), tag
+
     if style.ahead.in_beats:
         begins = timing.seconds(ticks[:, 0] - round(style.ahead.length * TICKS_PER_BEAT))
     else:
         begins = starts - style.ahead.length
     return tuple(
         Callout(
-            float(start), float(beat), passage.text(), _ORDER[passage.weight], float(begin), float(end), passage.tag()
+            float(start),
+            float(beat),
+            passage.text(),
+            _ORDER[passage.weight],
+            float(begin),
+            float(end),
+            passage.tag(),
+            tuple(further(passage)),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
@@ -146,24 +186,27 @@ def _moves(
     if play is None or pad is None:
         return
     ticks = play.rows.tick.tolist()
-    crossed: list[int] = []  # where each crossover began, of those that go on
-    kind = ""
-    for row, names in enumerate(play.moves):
+    crossed: dict[str, int] = {}  # kind of crossover -> where it began, of one that goes on
+    known: set[str] = set()  # kinds of it that are told, or that its half turn tells; a full one is a half one, too
+    for row, names in enumerate(moves_and_turns(play)):
         now = next((name for name in _CROSSED if name in names), "")
-        if crossed and now != kind:
-            if kind in words:
-                yield crossed[0], ticks[row - 1], words[kind], 0
-            crossed = []
-        if now and not crossed:
-            crossed = [ticks[row]]
-        kind = now
+        if not now:
+            yield from ((first, ticks[row - 1], words[kind], 0) for kind, first in crossed.items())
+            crossed, known = {}, set()
+        elif now not in known and now in words and not {*HALF_TURNS}.intersection(names).intersection(words):
+            crossed[now] = ticks[row]
+        known |= {now, _CROSSED[-1]} if now else set()
         told = {n for n in names if n in words and n not in _CROSSED}
         for name in sorted(told - SAID_BY_A_BRACKET if "bracket" in told else told):
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
             for said in filled(words[name], name, (play, row), pad, style.turned):
                 yield ticks[row], ticks[row], said + reason, 0
-    if crossed and kind in words:
-        yield crossed[0], ticks[-1], words[kind], 0
+    yield from ((first, ticks[-1], words[kind], 0) for kind, first in crossed.items())
+
+
+def _jumps(play: Play) -> list[int]:
+    rows = zip(play.rows.tick.tolist(), play.moves, strict=True)
+    return [tick for tick, names in rows if "jump" in names and not {*_CROSSED}.intersection(names)]
 
 
 def _findings(subject: ChartSubject, codes: bool) -> Iterator[tuple[int, int, str, int]]:

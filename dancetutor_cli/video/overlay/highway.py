@@ -56,8 +56,9 @@ class Highway:
     ) -> None:
         self.notes, self.presses, self.lines, self.callouts = score
         self.geometry, self.face = geometry, face
-        self._callout_seconds = np.array([c.second for c in self.callouts])
-        self._callout_beats = np.array([c.beat for c in self.callouts])
+        self._tags = tags.row_tags(self.callouts)
+        self._tag_seconds = np.array([tag.second for tag in self._tags])
+        self._tag_beats = np.array([tag.beat for tag in self._tags])
         self.by_time = scroll.mode == "C"
         self.spacing = scroll.factor(scroll_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
@@ -173,15 +174,15 @@ class Highway:
         ones are farther off, so that none covers another."""
         if not self.geometry.tags:
             return
-        y = self._y(self._callout_seconds, self._callout_beats, now)
+        y = self._y(self._tag_seconds, self._tag_beats, now)
         x = self.geometry.tags_left
         way, free = 1.0 if now.spacing >= 0 else -1.0, -np.inf
         shown = np.flatnonzero(self._visible(y, self.size))
         for i in shown[np.argsort(way * y[shown], kind="stable")]:
-            flag = self._flag(self.callouts[i].tag, self.callouts[i].severity)
+            flag = self._flag(self._tags[i].words, self._tags[i].severity)
             middle = max(way * y[i], free + flag.shape[0] / 2)
             free = middle + flag.shape[0] / 2 + TAGS_APART
-            if self._callout_seconds[i] > now.second:
+            if self._tag_seconds[i] > now.second:
                 blit(frame, flag, x, way * middle - flag.shape[0] / 2, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:

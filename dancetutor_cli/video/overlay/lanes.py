@@ -7,7 +7,7 @@ from dataclasses import dataclass
 NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045  # heights of the box beside a measure's number, and that three digits take
 NUMBERS = 0.26  # of the width that lanes leave, the part on their left, where numbers stand
 NUMBER_OFF, EDGE = 0.2, 0.14  # lane widths from numbers to the first lane, and from the last one to its frame
-TAG_OFF = 7  # pixels left and right of words beside the notes
+TAG_LEFT, TAG_EDGE = 3, 0.0105  # pixels on the left of words beside the notes; heights of the box on their right
 LEAST_LANES = 0.7  # of their usual width that lanes have at least, whatever words stand beside them
 
 
@@ -43,12 +43,12 @@ class HighwayGeometry:
     @property
     def tags_left(self) -> float:
         """x where words beside the notes begin."""
-        return self.left + self.lane * (len(self.directions) + EDGE) + 3
+        return self.left + self.lane * (len(self.directions) + EDGE) + TAG_LEFT
 
     @property
     def tags_room(self) -> float:
         """Pixels that such words may be wide, with their label."""
-        return self.box[2] - self.tags_left - TAG_OFF + 3
+        return self.box[2] - self.tags_left - TAG_EDGE * (self.box[3] - self.box[1])
 
     def corner(self, column: int, y: float, size: float) -> tuple[float, float]:
         """Top left corner of what is so large, in the middle of a column's lane at `y`."""
@@ -61,7 +61,7 @@ def lane_beside(words: float, lane: float, box: tuple[int, int, int, int], colum
     words : pixels; lane : pixels that a lane has where there are none
     """
     width, height = box[2] - box[0], box[3] - box[1]
-    free = width - words - TAG_OFF
+    free = width - words - TAG_LEFT - TAG_EDGE * height
     beside_numbers = (free - NUMBER_ROOM * height) / (columns + NUMBER_OFF + EDGE)
     beside_part = (free - NUMBERS * width) / ((1 - NUMBERS) * columns + EDGE)
     return max(LEAST_LANES * lane, min(lane, beside_numbers, beside_part))

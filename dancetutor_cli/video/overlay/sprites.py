@@ -207,7 +207,10 @@ def centre(target: Sprite, ink: Sprite) -> None:
     ys, xs = np.nonzero(ink[..., 3] > 8)
     ink = ink[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]
     top, left = ((t - i + 1) // 2 for t, i in zip(target.shape[:2], ink.shape[:2], strict=True))
-    place = target[top : top + ink.shape[0], left : left + ink.shape[1]]
+    _over(target[top : top + ink.shape[0], left : left + ink.shape[1]], ink)
+
+
+def _over(place: Sprite, ink: Sprite) -> None:
     keep = 255 - ink[..., 3:].astype(np.int64)
     place[...] = (place * keep + 127) // 255 + ink
 
@@ -217,19 +220,22 @@ def flag_height(lines: int, size: float) -> int:
     return max(6, round(1.5 * size)) + round(FLAG_STEP * size) * (lines - 1)
 
 
-def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface) -> Sprite:
-    """Lines of words on a dark label that stands beside the row they are about."""
+def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface, edge: RGB | None = None) -> Sprite:
+    """Lines of words on a dark label that stands beside the row they are about; edge : its colour, if another one."""
     words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
     step, height = round(FLAG_STEP * size), flag_height(len(lines), size)
     one = height - step * (len(lines) - 1)
     width = max(line.shape[1] for line in words) + round(FLAG_EDGE * size)
     p = shapes.Painter(height, width)
     d = shapes.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)
-    p.paint(shapes.cover(d), colour, 0.9)
+    p.paint(shapes.cover(d), colour if edge is None else edge, 0.9)
     p.paint(shapes.cover(d + 0.07 * size), (16, 18, 32))
     out = p.sprite()
+    block = np.zeros((words[0].shape[0] + step * (len(words) - 1), max(line.shape[1] for line in words), 4), out.dtype)
     for number, line in enumerate(words):
-        centre(out[number * step : number * step + one], line)
+        left = (block.shape[1] - line.shape[1]) // 2
+        _over(block[number * step : number * step + line.shape[0], left : left + line.shape[1]], line)
+    centre(out, block)
     return out
 
 

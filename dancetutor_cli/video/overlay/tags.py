@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from dancetutor_cli.video.clock import Pass
+from dancetutor_cli.video.move_words import short_words
 from dancetutor_cli.video.notes import Callout, NoteTrack
 from dancetutor_cli.video.overlay.sprites import FLAG_EDGE
 from dancetutor_cli.video.overlay.text import Typeface, fitted, narrowest
@@ -37,12 +39,30 @@ def limbs_seen(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
     return {int(limb) for limb in np.unique(notes.limb[here]) if limb >= 0}
 
 
+class RowTag(NamedTuple):
+    """Words beside a row. second : of the music; beat : the same as drawn; severity : as of `Callout`"""
+
+    second: float
+    beat: float
+    words: str
+    severity: str
+
+
+def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
+    """Each passage's tag where it begins, and those of its other moves, in order of time."""
+    found = [
+        RowTag(*one, call.severity) for call in callouts for one in ((call.second, call.beat, call.tag), *call.further)
+    ]
+    return sorted(found, key=lambda one: one.second)
+
+
 def told(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
     """What may be said beside the notes: what is, and what always is the same, so that lanes of most films are alike.
 
     words : of moves, some with {who} and {places} to be filled in
     """
-    return {one.tag for one in callouts} | {said for said in words if "{" not in said}
+    tags = {tag for one in callouts for tag in (one.tag, *(tag for *_, tag in one.further))}
+    return tags | {short_words(said) for said in words if "{" not in said}
 
 
 def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:

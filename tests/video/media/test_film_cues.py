@@ -73,7 +73,7 @@ def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
     limb = np.array([[-1, -1, -1, 1], [0, 0, 1, 1], [0, 1, 2, 3]], dtype=np.int8)
     feet = np.array([[0, 3], [0, 3], [0, 1]])
     moves = (("doublestep",), ("bracket", "doublestep"), ("hand",))
-    play: Any = SimpleNamespace(rows=rows, limb=limb, feet=feet, moves=moves)
+    play: Any = SimpleNamespace(rows=rows, limb=limb, feet=feet, moves=moves, facing=np.zeros(3))
     words, timing = subtitle_words(), charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing
     found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, pad)]
     assert found == [

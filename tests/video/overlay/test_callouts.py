@@ -10,6 +10,7 @@ import pytest
 
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play.turned import half_turned
 from dancetutor_cli.video.ahead import Ahead, parse_ahead
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay.callouts import CallStyle, _reasons, callouts_of
@@ -33,7 +34,11 @@ def subject(*rows: tuple[float, tuple[str, ...], dict[int, int], dict[int, int]]
             feet[number, foot] = column
     ticks = np.array([round(beat * 48) for beat, *_ in rows], dtype=np.int64)
     play = SimpleNamespace(
-        rows=SimpleNamespace(tick=ticks), moves=tuple(moves for _, moves, _, _ in rows), limb=limb, feet=feet
+        rows=SimpleNamespace(tick=ticks),
+        moves=tuple(moves for _, moves, _, _ in rows),
+        limb=limb,
+        feet=feet,
+        facing=np.zeros(len(rows)),
     )
     timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 96.0)
     return SimpleNamespace(play=play, pad=pad, chart=SimpleNamespace(timing=timing))
@@ -57,6 +62,49 @@ def test_crossovers_in_a_row_are_one_passage_with_a_count() -> None:
 def test_a_crossover_that_goes_on_is_counted_once() -> None:
     (one,) = called(moves((0.0, ""), (1.0, "crossover-half"), (1.5, "crossover-half"), (2.0, "")))
     assert (one.text, one.second, one.end) == ("crossover", 0.5, 0.75)
+
+
+def turning(*rows: tuple[float, str, float]) -> Any:
+    """Rows of (beat, moves, facing)."""
+    what = moves(*((beat, names) for beat, names, _ in rows))
+    what.play.facing = np.array([facing for *_, facing in rows])
+    return what
+
+
+def test_a_turn_away_from_the_screen_is_told_where_it_is_full() -> None:
+    """Left on right, right on left, and back: one crossing."""
+    half, full = "crossover-half", "crossover-full"
+    (one,) = called(turning((0, "", -45), (1, half, -135), (2, full, -180), (3, half, -135), (4, "", -45)))
+    assert (one.text, one.second, one.end) == ("crossover, back to the screen", 0.5, 1.5)
+    assert one.further == ((1.0, 2.0, "back to the screen"),)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [(45, -135, "half turn: back to the screen"), (-135, 45, "half turn: face the screen"), (90, -90, "half turn")],
+)
+def test_a_half_turn_is_told_by_the_rules_definition_and_before_its_crossover(
+    before: float, after: float, said: str
+) -> None:
+    crossed = "crossover-half" if abs(after) > 90 else ""
+    (one,) = called(turning((0, "", before), (1, crossed, after)))
+    assert (one.text, one.second) == (said, 0.5)
+    assert half_turned(np.array([before, after], dtype=float)).all()
+    assert called(turning((0, "", before), (1, "", after + 45))) == ()
+
+
+def test_an_uncrossed_jump_or_a_rest_parts_what_is_called_out() -> None:
+    x = "crossover-half"
+    found = called(moves((0, x), (1, "jump"), (2, x), (3, ""), (4, x), (5, ""), (7, x)))
+    assert [(one.text, one.second, one.end) for one in found] == [
+        ("crossover", 0.0, 0.0),
+        ("crossover ×2", 1.0, 2.0),
+        ("crossover", 3.5, 3.5),
+    ]
+    assert [one.further for one in found] == [(), ((2.0, 4.0, "crossover"),), ()]
+    slow = moves((0, x), (1, ""), (2, x))
+    slow.chart.timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 48.0)
+    assert len(called(slow)) == 2, "two beats, but two seconds"
 
 
 def test_moves_that_follow_closely_are_joined_and_others_are_not() -> None:

@@ -7,12 +7,13 @@ from itertools import product
 import numpy as np
 import pytest
 
+from dancetutor_cli.colours import limb_colours
 from dancetutor_cli.video.clear import CALLS_WIDE, calls_room
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.layout import PixelBox, layout_names, load_layout
 from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay import announce
-from dancetutor_cli.video.overlay.announce import CALL_STAYS, Calls, Runs, _phrases
+from dancetutor_cli.video.overlay.announce import CALL_STAYS, Calls, Runs, _foot_colour, _left, _phrases
 from dancetutor_cli.video.overlay.sprites import highway_style
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import Frame
@@ -94,6 +95,32 @@ def test_a_call_in_a_narrow_place_breaks_behind_the_foots_name_not_within_what_i
     assert lines == ["footswitch,", "right foot:", "heel on down,", "toe on right"]
 
 
+def test_a_bracket_names_its_foot_wherever_two_lines_have_room_for_it() -> None:
+    short = "heel on down-right, toe on up-left ×12"
+    for wide, said in ((250, "right: "), (180, "right foot: "), (150, "right: "), (110, "")):
+        lines, size = _phrases(f"right foot: {short}", 24, (wide, 94.0), FACE, short)
+        assert " ".join(lines) == said + short and len(lines) == 2 and size >= 12, wide
+
+
+def test_the_edge_of_a_call_has_the_colour_of_its_foot() -> None:
+    left, right = limb_colours().by_limb[:2]
+    assert (_foot_colour("right foot: toe on up ×2"), _foot_colour("left foot again")) == (right, left)
+    assert _foot_colour("crossover") is _foot_colour("left foot again, right foot again") is None
+
+
+@pytest.mark.parametrize("lines", [["crossover"], ["right foot: heel on", "down"], ["on", "toe up"]])
+def test_words_stand_in_the_middle_of_their_label(lines: list[str]) -> None:
+    picture = announce.flag(lines, 40, (255, 255, 255), FACE)
+    rows = np.flatnonzero((picture[:, 12:-12, 0] > 120).any(axis=1))[:, None]
+    inner = rows[(rows > 5) & (rows < len(picture) - 6)]
+    assert abs(inner[0] - (len(picture) - 1 - inner[-1])) <= 2
+
+
+def test_the_time_left_is_that_to_the_next_move_of_a_passage() -> None:
+    call = Callout(5.0, 10.0, "crossover ×2", "move", 4.0, 7.0, "crossover ×2", ((7.0, 14.0, "crossover"),))
+    assert [_left(call, second) for second in (4.0, 4.5, 5.0, 6.0, 7.0, 7.1)] == [1.0, 0.5, 1.0, 0.5, 0.0, 0.0]
+
+
 @pytest.mark.parametrize("name", ["side-by-side", "dancer", "vertical", "practice", "television"])
 @pytest.mark.parametrize("columns", [4, 10])
 def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -112,7 +139,7 @@ def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pyte
             one = Calls((), (0, top, int(wide), bottom), room.scale, FACE, highway_style())
             picture = one._plate(text, "move", tag)
             assert len(made[-1][0]) <= 2 and made[-1][1] >= 11.5, (text, wide)
-            assert " ".join(made[-1][0]) in (text, long)
+            assert " ".join(made[-1][0]) in (text, text.replace(" foot:", ":"), long)
             assert picture.shape[1] <= wide + 2
 
 
