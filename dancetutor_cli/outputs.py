@@ -8,20 +8,23 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.suffixes import EDIT_SUFFIX, SONG_SUFFIXES
 
-_CHARTS = (".sm", ".ssc")
 _DENIED = os.strerror(errno.EACCES)
 
 
-def check_file(path: Path, suffixes: Sequence[str] = ()) -> None:
+def check_file(path: Path, suffixes: Sequence[str] = (), *, or_device: bool = False) -> None:
     """Raise what in the end would keep a file from being written here; nothing is made.
 
     suffixes : how its name may end, in lower case; none: anyhow
+    or_device : or it may be a device or a pipe, whatever that is called
     """
-    if suffixes and path.suffix.lower() not in suffixes:
-        raise UsageError(f"{path}: the name must end in {one_of(suffixes)}")
-    if path.suffix.lower() in _CHARTS:
+    suffix = path.suffix.lower()
+    if suffix in (*SONG_SUFFIXES, EDIT_SUFFIX):
         raise FileError(path, "is a chart's name, and this would take its place; give another")
+    device = or_device and path.exists() and not path.is_file() and not path.is_dir()
+    if suffixes and suffix not in suffixes and not device:
+        raise UsageError(f"{path}: the name must end in {one_of(suffixes)}")
     if path.is_dir():
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():

@@ -12,9 +12,10 @@ from dancetutor_cli.chart import msd, names, timing_tags
 from dancetutor_cli.chart.decimals import number
 from dancetutor_cli.chart.model import ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
-from dancetutor_cli.chart.song_reader import EDIT_SUFFIX, SongReader
+from dancetutor_cli.chart.song_reader import SongReader
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, FileError
+from dancetutor_cli.suffixes import EDIT_SUFFIX
 
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")

@@ -17,6 +17,7 @@ from dancetutor_cli.chart.note_data import NoteForm, Value, read_notes, width_of
 from dancetutor_cli.chart.players import with_players
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.errors import ChartError, NoChartsError
+from dancetutor_cli.suffixes import EDIT_SUFFIX
 
 # Tags whose loss somebody sees or hears in a game.
 _SEEN = frozenset({
@@ -25,7 +26,6 @@ _SEEN = frozenset({
     "DISPLAYBPM", "BPMS", "STOPS", "DELAYS", "WARPS", "BGCHANGES", "FGCHANGES",
 })  # fmt: skip
 _OF_A_SONG = ("TITLE", "MUSIC", "BPMS")
-EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
 _LARGEST_METER = 2**31 - 1
 
 

@@ -135,7 +135,7 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     if result.plot is not None:
         check_file(result.plot, (".svg", ".png"))
     if report_to is not None and report_to != TABLE:
-        check_file(Path(report_to))
+        check_file(Path(report_to), (".json",), or_device=True)
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))

@@ -39,7 +39,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 )
 @click.option("--frames", type=GivenPath(), metavar="DIR", help="Write PNG pictures into this folder.")
 @click.option("--poses", type=GivenPath(), metavar="DIR", help="Write one PNG per row into this folder.")
-@click.option("--poster", type=GivenPath(), metavar="FILE", help="Also write a PNG for a title page.")
+@click.option("--poster", type=GivenPath(), metavar="FILE.png", help="Also write a picture for a title page.")
 @click.option("--srt", is_flag=True, help="Also write subtitles that name the moves, beside the film.")
 @click.option(
     "--background",
@@ -68,7 +68,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 @click.option(
     "--results",
     type=GivenPath(allow_dash=True),
-    metavar="FILE",
+    metavar="FILE.jsonl",
     help="Of a folder: a line of JSON per chart; - is standard output.",
 )
 def command(path: Path, output: Path | None, frames: Path | None, yes: bool, quiet: bool, **options: Any) -> None:
@@ -168,9 +168,10 @@ def _render_one(
     from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES, target_of
 
     kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
-    for file in (output, options["poster"]):
-        if file is not None:
-            check_file(file)
+    if output is not None:
+        check_file(output)
+    if options["poster"] is not None:
+        check_file(options["poster"], (".png",), or_device=True)
     if folder is not None:
         check_folder(folder)
     request = film_request(path, options, FORMATS[kind])

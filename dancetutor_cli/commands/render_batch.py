@@ -40,7 +40,7 @@ def render_batch(
     batch = _batch(path, output, frames, longest, options)
     check_folder(batch.folder)
     if options["results"] is not None and str(options["results"]) != "-":
-        check_file(options["results"])
+        check_file(options["results"], (".jsonl", ".json"), or_device=True)
     films, unreadable, without = film_list(batch)
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches, so there is nothing to render")

@@ -75,7 +75,7 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
     if wanted.report_to is not None and wanted.report_to != TABLE:
-        check_file(Path(wanted.report_to))
+        check_file(Path(wanted.report_to), (".json",), or_device=True)
     wishes = wishes_of(wanted.push, wanted.trip, corrections_of(wanted.correct)) or Wishes()
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)

@@ -22,8 +22,8 @@ from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
 from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.library.feet_files import feet_fingerprint
 from dancetutor_cli.resources import PACKAGE, config_path
+from dancetutor_cli.suffixes import SONG_SUFFIXES
 
-_CHARTS = (".sm", ".ssc")
 _ROOMS = ("chart", "library", "pads", "feet", "play", "meter", "lint", "jobs")
 _LARGEST = CHART_LIMIT  # bytes of a kept result
 _KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
@@ -93,7 +93,7 @@ class ResultCache:
             self._listings[path.parent] = _listing(path.parent)
         yield self._listings[path.parent]
         yield feet_fingerprint(path)
-        for suffix in _CHARTS:
+        for suffix in SONG_SUFFIXES:
             other = path.with_suffix(suffix)
             if other != path:
                 with suppress(FileError):
@@ -133,7 +133,7 @@ def _listing(folder: Path) -> str:
     lines = []
     for entry in sorted(os.scandir(folder), key=lambda e: e.name):
         with suppress(OSError):  # a circle of links
-            if entry.is_file() and not entry.name.lower().endswith(_CHARTS):
+            if entry.is_file() and not entry.name.lower().endswith(SONG_SUFFIXES):
                 stat = entry.stat()
                 lines.append(f"{entry.name} {stat.st_size} {stat.st_mtime_ns}")
     return "\n".join(lines)

@@ -6,7 +6,8 @@ import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-SUFFIXES = (".sm", ".ssc")
+from dancetutor_cli.suffixes import SONG_SUFFIXES
+
 _RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
 
 
@@ -35,7 +36,7 @@ def _below(folder: Path) -> Iterable[Path]:
 
 def is_chart_name(name: str) -> bool:
     """Whether a file of this name in a song's folder is a chart file."""
-    return name.lower().endswith(SUFFIXES) and not name.startswith(_RESOURCE_FORK)
+    return name.lower().endswith(SONG_SUFFIXES) and not name.startswith(_RESOURCE_FORK)
 
 
 def twin(path: Path) -> Path | None:

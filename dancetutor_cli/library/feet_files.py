@@ -13,9 +13,9 @@ from pathlib import Path
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.library.settings_file import find_settings_file, places_of_settings_file
+from dancetutor_cli.suffixes import SONG_SUFFIXES
 
 EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
-_CHARTS = (".sm", ".ssc")
 
 
 def places_of_feet(song: Path) -> Iterator[Path]:
@@ -62,4 +62,5 @@ def _content(path: Path) -> bytes:
 
 def song_stems(folder: Path) -> set[str]:
     """The names, without suffix, of the chart files in a folder; more than one means several songs."""
-    return {p.stem.lower() for p in folder.iterdir() if p.suffix.lower() in _CHARTS and not p.name.startswith(".")}
+    songs = (path for path in folder.iterdir() if path.suffix.lower() in SONG_SUFFIXES)
+    return {path.stem.lower() for path in songs if not path.name.startswith(".")}

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 from dancetutor_cli.resources import charts_path
 
@@ -122,6 +122,34 @@ def test_nothing_is_written_over_a_chart(
         == f"dancetutor: {demo}: is a chart's name, and this would take its place; give another"
     )
     assert demo.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "name", "why"),
+    [
+        ("render", "--poster", "own.edit", "is a chart's name, and this would take its place; give another"),
+        ("animate", "--report", "own.edit", "is a chart's name, and this would take its place; give another"),
+        ("render", "--results", "own.edit", "is a chart's name, and this would take its place; give another"),
+        ("render", "--poster", "m.ogg", "the name must end in .png"),
+        ("animate", "--report", "m.ogg", "the name must end in .json"),
+        ("render", "--results", "m.ogg", "the name must end in .jsonl or .json"),
+    ],
+)
+def test_nor_over_an_edit_or_music(
+    demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str, name: str, why: str
+) -> None:
+    taken = demo.parent / name
+    taken.write_bytes(b"somebody's")
+    assert run(command, demo.parent if option == "--results" else demo, *ONE, option, taken) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == f"dancetutor: {taken}: {why}"
+    assert taken.read_bytes() == b"somebody's"
+
+
+@pytest.mark.skipif(not Path(os.devnull).is_char_device(), reason="the null device has no path here")
+def test_what_is_beside_a_result_may_go_to_a_device() -> None:
+    check_file(Path(os.devnull), (".json",), or_device=True)
+    with pytest.raises(UsageError, match=r"must end in \.html"):
+        check_file(Path(os.devnull), (".html",))
 
 
 def test_folders_are_made_with_those_above(demo: Path) -> None:
