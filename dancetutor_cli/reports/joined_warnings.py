@@ -22,13 +22,14 @@ class JoinedWarnings:
 
     def __init__(self, *, every: bool = False) -> None:
         self._every = every
-        self._kinds: dict[str, list[tuple[Path, str]]] = {}
+        self._kinds: dict[tuple[Path, str] | str, list[tuple[Path, str]]] = {}
 
     def add(self, path: Path, warning: str) -> None:
-        """Take note of what is said of a file, which may name it first."""
-        said = _PLACE.sub("", warning.removeprefix(str(path)), count=1) if warning.startswith(str(path)) else warning
-        kind = _NUMBER.sub("0", _CHART.sub("", said))
-        self._kinds.setdefault(warning if self._every else kind, []).append((path, warning))
+        """Take note of what is said of a file, which may name it first; what is said twice is counted."""
+        if not warning.startswith(str(path)):
+            warning = f"{path}: {warning}"
+        kind = _NUMBER.sub("0", _CHART.sub("", _PLACE.sub("", warning.removeprefix(str(path)), count=1)))
+        self._kinds.setdefault((path, warning) if self._every else kind, []).append((path, warning))
 
     def lines(self) -> Iterator[str]:
         """The first of each kind, and of which files the same is true."""
@@ -44,4 +45,4 @@ class JoinedWarnings:
             elif len(found) > 1:
                 times = "once" if len(found) == 2 else f"{len(found) - 1} times"
                 more = f"; the same {times} more in this file"
-            yield f"warning: {safe(warning)}{more}" + (" (-v tells each)" if more else "")
+            yield f"warning: {safe(warning)}{more}" + (" (-v tells each)" if more and not self._every else "")

@@ -43,6 +43,20 @@ def test_each_where_that_is_wanted() -> None:
     assert told(stubs, every=True) == [f"warning: {name}.sm:1: {EMPTY}" for name in "abc"]
 
 
+def test_what_does_not_name_its_file_is_given_its_name() -> None:
+    said = "at rate 1.1 she lets 3 notes go"
+    both = [("a.sm", said), ("b.sm", said)]
+    assert told(both[:1]) == [f"warning: a.sm: {said}"]
+    assert told(both) == [f"warning: a.sm: {said}; the same of 1 more: b.sm (-v tells each)"]
+    assert told(both, every=True) == [f"warning: a.sm: {said}", f"warning: b.sm: {said}"]
+
+
+def test_the_same_words_twice_in_one_file() -> None:
+    twice = [("a.sm", f"a.sm:1: {EMPTY}")] * 2
+    assert told(twice) == [f"warning: a.sm:1: {EMPTY}; the same once more in this file (-v tells each)"]
+    assert told(twice, every=True) == [f"warning: a.sm:1: {EMPTY}; the same once more in this file"]
+
+
 def test_it_is_safe_to_print() -> None:
     (line,) = told([("a\n.sm", "a\n.sm: x\x1b[2J"), ("b\x1b[2J.sm", "b\x1b[2J.sm: x\x1b[2J")])
     assert "\x1b" not in line and "\n" not in line
