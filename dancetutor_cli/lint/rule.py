@@ -154,11 +154,15 @@ class TimedRule(ChartRule):
         longest = self.longest(subject) + EPSILON
         for passage in self.passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
             rows = [one.row for one in passage]
-            row, _, said, column = passage[subject.surest(rows) if self.about_feet and len(rows) > 1 else 0]
+            row, _, said, column = passage[self.told(subject, rows) if len(rows) > 1 else 0]
             if len(rows) > 1:
                 said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
             least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
             yield self.finding(said, subject.at_row(row, column), **least)
+
+    def told(self, subject: ChartSubject, rows: list[int]) -> int:
+        """Place in the rows of a passage of the one that its finding stands at and speaks of."""
+        return subject.surest(rows) if self.about_feet else 0
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether who plays this chart expects what happens in these rows: never more than an info."""

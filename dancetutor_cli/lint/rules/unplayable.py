@@ -57,6 +57,10 @@ class Unplayable(MoveRule):
         gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
         return gimmick or not any(subject.unplayed(row) for row in rows)
 
+    def told(self, subject: ChartSubject, rows: list[int]) -> int:
+        """The first with a step that no limb is left for: a hand in a hurry beside it is the lesser fault."""
+        return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
+
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
         if count := subject.unplayed(row):
