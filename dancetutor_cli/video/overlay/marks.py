@@ -2,7 +2,8 @@
 
 A mark stands on the arrow's tail, so that the head shows where it points. Where the notes of a lane are so dense that
 marks would cover each other, they are smaller, those of the left foot stand on the left of the lane and those of the
-right foot on the right, and of one foot's only as many are drawn as can be read.
+right foot on the right, and of one foot's only as many are drawn as can be read. A cross, of a note that is let go,
+stays in the middle, where it covers neither side's.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of t
 READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
 LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # the same where notes are dense
 BESIDE, BESIDE_MOST = 0.25, 0.46  # lanes from the middle at which those stand then, and how large they are at most
-STEPS = 4  # sizes are found for so many spacings in each doubling
+STEPS = 8  # sizes are found for so many spacings in each doubling
 
 
 class Places(NamedTuple):
@@ -55,7 +56,7 @@ class Marks:
         stepped = notes.judged & ~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))
         self._marked = stepped & ((notes.limb >= 0) | bool((notes.limb >= 0).any()))
         self._sprite = lru_cache(maxsize=256)(self._draw_sprite)
-        self._places = lru_cache(maxsize=32)(self._find)
+        self._places = lru_cache(maxsize=64)(self._find)
 
     def of(self, direction: float | None) -> int:
         """Pixels of a mark with room around it, on an arrow that points this way."""
@@ -70,8 +71,8 @@ class Marks:
         return -far * math.sin(way), far * math.cos(way)
 
     def places(self, spacing: float) -> Places:
-        """Of all marks where notes are so many pixels apart for a second, or a beat."""
-        return self._places(round(STEPS * math.log2(max(abs(spacing), 1e-3))))
+        """Of all marks where notes are so many pixels apart for a second, or a beat: never for more room than that."""
+        return self._places(math.floor(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
     def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
         """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it has been let go.
@@ -106,14 +107,20 @@ class Marks:
             here, along = here[order], along[order]
             gaps = np.diff(along, prepend=-np.inf, append=np.inf)
             dense = np.minimum(gaps[:-1], gaps[1:]) < usual
+            crosses = dense & (notes.limb[here] < 0)
+            size[here[crosses]] = 0
             for left in (True, False):
                 one = dense & np.isin(notes.limb[here], (0, 2) if left else (1, 3))
-                size[here[one]] = self._thinned(along[one], usual)
+                size[here[one]] = self._thinned(along[one], usual, along[crosses])
                 side[here[one]] = -1 if left else 1
+            size[here] = self._with_crosses(along, size[here], crosses, usual)
         return Places(size, side)
 
-    def _thinned(self, along: NDArray[np.float64], most: int) -> NDArray[np.int16]:
-        """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near."""
+    def _thinned(self, along: NDArray[np.float64], most: int, crosses: NDArray[np.float64]) -> NDArray[np.int16]:
+        """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near.
+
+        They are smaller beside `crosses`, as far as they can still be read then.
+        """
         kept: list[int] = []
         for k, y in enumerate(along.tolist()):
             if not kept or y - along[kept[-1]] >= self.least:
@@ -121,5 +128,19 @@ class Marks:
         gaps = np.diff(along[kept], prepend=-np.inf, append=np.inf)
         most = max(self.least, min(most, int(BESIDE_MOST * self.geometry.lane)))
         out = np.zeros(len(along), np.int16)
-        out[kept] = np.clip(np.minimum(gaps[:-1], gaps[1:]), self.least, most)
+        room = np.minimum(gaps[:-1], gaps[1:])
+        if len(crosses):
+            room = np.minimum(room, np.abs(along[kept][:, None] - crosses).min(axis=1))
+        out[kept] = np.clip(room, self.least, most)
         return out
+
+    def _with_crosses(
+        self, along: NDArray[np.float64], size: NDArray[np.int16], crosses: NDArray[np.bool_], most: int
+    ) -> NDArray[np.int16]:
+        """Sizes of all marks of a lane: a cross where there is room for one between those of both sides."""
+        for k in np.flatnonzero(crosses).tolist():
+            first, last = np.searchsorted(along, (along[k] - most, along[k] + most), side="left").tolist()
+            near = np.arange(first, last)[size[first:last] > 0]
+            room = np.min(2 * np.abs(along[near] - along[k]) - size[near], initial=most)
+            size[k] = room if room >= self.least else 0
+        return size

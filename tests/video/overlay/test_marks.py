@@ -61,7 +61,10 @@ def test_a_mark_stands_on_the_tail_of_an_arrow(direction: float, lane: float, bo
 
 @pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
 @pytest.mark.parametrize("apart", [0.5, 0.25, 0.12, 0.06, 0.01])
-@pytest.mark.parametrize("limbs", [[0] * 12, [0, 1] * 6, [0, 0, 1, 1, 1, 0] * 2])
+@pytest.mark.parametrize(
+    "limbs",
+    [[0] * 12, [0, 1] * 6, [0, 0, 1, 1, 1, 0] * 2, [0, -1] * 6, [-1, 0, 1] * 4, [-1] * 12, [0, 1, 1, -1, -1, 0] * 2],
+)
 def test_no_mark_covers_another_however_dense_notes_are(
     lane: float, box: tuple[int, int, int, int], apart: float, limbs: list[int]
 ) -> None:
@@ -74,9 +77,29 @@ def test_no_mark_covers_another_however_dense_notes_are(
             least = (places.size[i] + places.size[j]) / 2 - 1
             assert max(abs(middle[i] - middle[j]), (j - i) * apart * lane) >= least, (i, j)
     assert (places.size[shown] >= marks.least).all()
-    for limb in set(limbs):
+    for limb in set(limbs) - {-1}:
         assert places.size[limbs.index(limb)] > 0, "the first of each foot is marked"
     assert (abs(middle) + places.size / 2 <= lane / 2).all()
+
+
+@pytest.mark.parametrize("limbs", [[0, 1] * 6, [0, -1, 1] * 4])
+def test_marks_have_the_room_that_there_is(limbs: list[int]) -> None:
+    """Whatever the spacing: sizes are found for few of them, and none is for more room than there is."""
+    marks = highway([1 + 0.25 * k for k in range(12)], limbs, 76.0, USUAL).marks
+    for spacing in np.geomspace(20.0, 300.0, 40).tolist():
+        places = marks.places(spacing)
+        shown = np.flatnonzero(places.size)
+        for i in shown.tolist():
+            for j in shown[shown > i].tolist():
+                if places.side[i] == places.side[j] or 0 in (places.side[i], places.side[j]):
+                    assert (j - i) * 0.25 * spacing >= (places.size[i] + places.size[j]) / 2 - 1e-6, (spacing, i, j)
+
+
+def test_a_cross_is_seen_between_marks_where_there_is_room_for_it() -> None:
+    marks = highway([1 + 0.25 * k for k in range(6)], [0, -1, 1, -1, 0, 1], 76.0, USUAL).marks
+    roomy = marks.places(4 * (marks.least + 6) * 1.0)
+    assert (roomy.size >= marks.least).all() and roomy.side.tolist() == [-1, 0, 1, 0, -1, 1]
+    assert (marks.places(2 * marks.least).size > 0).tolist()[1] is False, "a foot's mark comes before it"
 
 
 def test_marks_say_the_foot_by_their_side_where_notes_are_dense() -> None:
