@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -56,3 +57,10 @@ def test_a_count_in_counts_as_fast_as_people_do(bpm: float, rate: float, heard: 
     assert (one.sound_from - one.start) / 4 / rate == pytest.approx(heard)
     ticks = [click.second for click in clicks_of(practice, one, chart.timing, np.array([]))]
     assert ticks == pytest.approx([one.start + n * heard * rate for n in range(4)])
+
+
+def test_no_beat_is_heard_while_she_comes_to_rest() -> None:
+    chart, practice = _chart(1), Practice(metronome=True)
+    one = replace(passes_of(chart, practice, 4.0, 8.0)[0], end=10.0, rest=2.0)
+    ticks = [click.second for click in clicks_of(practice, one, chart.timing, np.array([]))]
+    assert ticks == pytest.approx(np.arange(one.start, 8.0, 60 / BPM))

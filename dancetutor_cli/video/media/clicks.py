@@ -28,7 +28,7 @@ def clicks_of(practice: Practice, one: Pass, timing: Timing, steps: NDArray[np.f
         counted = range(one.count, 0, -1)
         out += [Click(one.sound_from - n * pulse, ACCENT if n % 4 == 0 else TICK, 0.4) for n in counted]
     if practice.metronome:
-        span = timing.beats(np.array([max(one.start, one.sound_from), one.end]))
+        span = timing.beats(np.array([max(one.start, one.sound_from), one.until]))
         beats = np.arange(math.ceil(span[0] - 1e-6), math.ceil(span[1] - 1e-6))
         seconds = timing.seconds_of_beats(beats.astype(np.float64))
         out += [Click(float(s), ACCENT if b % 4 == 0 else TICK, 0.4) for b, s in zip(beats, seconds, strict=True)]
