@@ -66,9 +66,12 @@ def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np
     if play is None:
         return out
     row, column = np.nonzero((play.rows.steps == StepKind.ROLL_TAP) & (play.limb == Limb.UNPLAYED))
-    for tick, of in zip(play.rows.tick[row].tolist(), column.tolist(), strict=True):
-        mine = (table.kind == Kind.ROLL) & (table.column == of) & (table.tick < tick) & (tick <= table.end)
-        out[mine & (out < 0)] = tick
+    for of in np.unique(column).tolist():
+        taps = play.rows.tick[row[column == of]]  # in order of time, as rows are
+        rolls = np.flatnonzero((table.kind == Kind.ROLL) & (table.column == of) & (out < 0) & (table.tick < taps[-1]))
+        first = taps[np.searchsorted(taps, table.tick[rolls], side="right")]
+        left = first <= table.end[rolls]
+        out[rolls[left]] = first[left]
     return out
 
 
