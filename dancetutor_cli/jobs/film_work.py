@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import DancetutorError, FileError
-from dancetutor_cli.files import encoded, write_atomic
+from dancetutor_cli.files import encoded, place_of, write_atomic
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.jobs.film_segments import Segment, segments, write_plan
 from dancetutor_cli.jobs.pool import Report
@@ -165,6 +165,7 @@ def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder:
     if encoding.target == PICTURES:
         _place_pictures(parts[0].path, output)
         return
+    output = place_of(output)  # a link stays one, and the film is where it leads
     film = folder / f"film.{encoding.target}"
     join([part.path for part in parts], encoding, sound, folder, film)
     try:

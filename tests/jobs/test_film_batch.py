@@ -84,6 +84,15 @@ def test_a_changed_chart_or_wish_is_made_again(pack: Path, tmp_path: Path) -> No
     assert [o.status for o in run(film_list(slower)[0]).values()] == ["done"]
 
 
+def test_a_link_in_the_place_of_a_film_stays_one(pack: Path, tmp_path: Path) -> None:
+    jobs, _, _ = film_list(batch_request((pack / "two",), tmp_path / "videos"))
+    kept = tmp_path / "kept.mp4"
+    kept.write_bytes(b"")
+    jobs[0].output.symlink_to(kept)
+    assert [outcome.status for outcome in run(jobs).values()] == ["done"]
+    assert jobs[0].output.is_symlink() and kept.stat().st_size > 1000
+
+
 def test_one_bad_chart_does_not_stop_the_rest(pack: Path, tmp_path: Path) -> None:
     (pack / "bad").mkdir()
     (pack / "bad" / "bad.sm").write_text("nothing")
