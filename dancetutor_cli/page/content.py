@@ -121,6 +121,8 @@ def _style() -> dict[str, Any]:
         "callouts": {name: name.replace("-", " ") if "{" in said else said for name, said in callout_words().items()},
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],
+        # on an arrow's tail, in sizes of an arrow: how far from its middle, straight and diagonal, and how large
+        "mark": {"aside": [round(far / style.arrow, 4) for far in style.mark_aside], "size": style.mark_tail / 2},
         "flash": style.flash_seconds,
         "panel": style.panel_seconds,
     }

@@ -197,7 +197,7 @@ export class Highway {
       const changed = scene.feet.has(n);
       const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
       const row = this.rowOf.get(n);
-      const mark = markerAt(this.way(column, scene.mirror), m.size);
+      const mark = markerAt(this.way(column, scene.mirror), m.size, style.mark);
       if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
         drawMarker(c, { limb, colour: style.limbs[limb], changed }, x + mark.x, top + mark.y, mark.size);
       } else if (!fake && limb === UNPLAYED) {

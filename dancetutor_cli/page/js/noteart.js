@@ -92,14 +92,15 @@ export function drawMine(c, colour, x, y, size) {
 
 /**
  * Where a marker stands on a note, from its middle, and how large it is: on an arrow's tail, so that it is seen where that
- * points (configs/highway.yaml).
+ * points.
  * @param {number | null} way @param {number} size
+ * @param {{aside: number[], size: number}} mark the style's, for arrows of size 1
  */
-export function markerAt(way, size) {
+export function markerAt(way, size, mark) {
   if (way === null) return { x: 0, y: 0, size: 0.5 * size };
-  const far = (way % 90 ? 0.25 : 0.135) * size;
+  const far = mark.aside[way % 90 ? 1 : 0] * size;
   const angle = (way * Math.PI) / 180;
-  return { x: -far * Math.sin(angle), y: far * Math.cos(angle), size: 0.44 * size };
+  return { x: -far * Math.sin(angle), y: far * Math.cos(angle), size: mark.size * size };
 }
 
 /**
