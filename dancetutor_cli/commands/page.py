@@ -104,8 +104,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
         jobs=wish.jobs, form=wish.form,
     )  # fmt: skip
     task = PageTask(bake, wish.character, wish.music, wish.beside)
-    if not wish.quiet:
-        tell_of_compiling(choice_for(file, wish.preset))
+    tell_of_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
     if file.is_dir():
         _pages(task, output or Path("pages"), wish)
         return
@@ -123,8 +122,8 @@ def _page(task: PageTask, output: Path | None, quiet: bool) -> None:
     check_file(target, SUFFIXES)
     page = pack_page(asked)
     write_atomic(target, page.html)
-    _warn(page.warnings)
     if not quiet:
+        _warn(page.warnings)
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
 
 

@@ -141,7 +141,7 @@ def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
     from dancetutor_cli.reports.safe import safe
 
     for line in enter(film, files):
-        if not quiet or line.startswith("warning"):
+        if not quiet:
             click.echo(safe(line), err=line.startswith("warning"))
 
 
@@ -228,22 +228,23 @@ def _make(
         film = prepare(request, subject)
         return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
 
-    _warn(subject.warnings)
+    warn = (lambda _warnings: None) if quiet else _warn
+    warn(subject.warnings)
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
-    if subject.clock.seconds > encoding.format.largest:
+    if subject.clock.seconds > encoding.format.largest and not quiet:
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
         click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
     if encoding.format.h264:
         encoding = replace(encoding, encoder=choose(options["encoder"]))
     with FilmProgress(target.name, quiet) as progress:
         film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
-    _warn(film.warnings)
+    warn(film.warnings)
     if options["poses"]:
         extras.write_pose_index(target, subject.song, subject.chart, film.plan)
     if options["poster"]:
         extras.write_poster(options["poster"], film.plan)
     if options["srt"] and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
-        _warn([warning])
+        warn([warning])
     if not quiet:
         width, height = request.look.size
         length = f"{film.plan.clock.frames} pictures" if kind == PICTURES else f"{film.plan.clock.seconds:.1f} s"

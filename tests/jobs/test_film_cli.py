@@ -146,8 +146,18 @@ def test_a_charts_own_music_stays_in_the_folder_too(tmp_path: Path, capsys: pyte
 def test_a_long_gif_is_made_with_a_note(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     song = tmp_path / "song.sm"
     song.write_text(SONG + "1000\n0100\n0010\n0001\n,\n" * 12 + "1000\n0000\n0000\n0000\n;\n")
-    assert render(song, "-o", tmp_path / "film.gif", "-q", "--jobs", "1", *TINY) == 0
+    assert render(song, "-o", tmp_path / "film.gif", "--jobs", "1", *TINY) == 0
     assert "choose a part with --section" in capsys.readouterr().err and (tmp_path / "film.gif").exists()
+
+
+def test_quiet_is_without_warnings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    song = tmp_path / "song.sm"
+    song.write_text(SONG.replace("#TITLE", "#TITLE:a;\n#TITLE", 1) + "1000\n0100\n0010\n0001\n;\n")
+    said = []
+    for more in ((), ("-q",)):
+        assert render(song, "-o", tmp_path / "film.mp4", "--jobs", "1", *more, *TINY) == 0
+        said.append(capsys.readouterr())
+    assert "warning: " in said[0].err and (said[1].err, said[1].out) == ("", "")
 
 
 def test_a_film_of_a_passage_has_time_to_come_to_rest_and_pictures_of_it_have_not(

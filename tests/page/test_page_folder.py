@@ -40,6 +40,21 @@ def test_a_folder_becomes_pages_and_an_index(tmp_path: Path, capsys: pytest.Capt
     assert len(links) == 1 and (tmp_path / "out" / links[0]).stat().st_size > 100_000
 
 
+def test_quiet_is_without_warnings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    song, said = tmp_path / "s.sm", []
+    trill = "2000\n" + "0000\n" * 7 + "0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"  # the dancer lets some go
+    song.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{trill};\n")
+    for path in (song, tmp_path):
+        for more in ((), ("-q",)):
+            target = tmp_path / ("page.html" if path is song else "pages")
+            with pytest.raises(SystemExit) as stop:
+                main(["page", str(path), "-o", str(target), *more])
+            assert stop.value.code == 0
+            said.append(capsys.readouterr())
+    assert all("warning: " in one.err for one in said[::2])
+    assert all((one.out, one.err) == ("", "") for one in said[1::2])
+
+
 def test_the_index_never_holds_people_s_markup() -> None:
     text = index_page([IndexEntry("a b&c.html", TITLE, "<i>me</i>", 'x "Hard" 9')], "<pack>").decode()
     assert "<script" not in text and "<img" not in text and "<i>" not in text
