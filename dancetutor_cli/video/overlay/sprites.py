@@ -17,8 +17,6 @@ from dancetutor_cli.video.overlay import shapes
 from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.text import Typeface
 
-CENTRE = None  # the direction of a panel in the middle of the pad
-
 # Corners of an arrow that points up, in halves of its size.
 _ARROW = np.array([
     (0.0, -0.94), (0.94, 0.0), (0.62, 0.32), (0.36, 0.06), (0.36, 0.88),
