@@ -9,6 +9,7 @@ import pytest
 
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.motion.gait import Gait, gait_names, load_gait
+from dancetutor_cli.motion.plan import LEAST_FLIGHT
 from dancetutor_cli.motion.settings import default_settings, load_settings
 from dancetutor_cli.resources import config_path
 
@@ -80,3 +81,8 @@ def test_a_new_gait_is_one_file(tmp_path: Path) -> None:
         load_gait(str(path))
     with pytest.raises(UsageError, match=r"no gait 'heel' \(did you mean heels\?\); there are: flat, heels"):
         load_gait("heel")
+
+
+def test_the_least_flight_is_no_more_than_a_frame() -> None:
+    """So long a flight that nobody is told of is never seen: at 60 pictures per second it is one at most."""
+    assert 0.0 < LEAST_FLIGHT <= 1 / 60
