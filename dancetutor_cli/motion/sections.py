@@ -53,7 +53,13 @@ class LookSettings:
 
     torso_limit: float
     head_limit: float
+    head_rate: float
     eyes_limit: float
+    eyes_give_up: float
+    away_from: float
+    away_to: float
+    head_leads: float
+    head_lead: float
     torso_weight: float
     head_weight: float
     eyes_weight: float

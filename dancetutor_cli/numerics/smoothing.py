@@ -68,6 +68,20 @@ def upper_envelope(times: Array, values: Array, span: float) -> Array:
     return np.asarray(np.interp(times, grid, np.convolve(highest, bell / bell.sum(), mode="valid")))
 
 
+def no_faster(values: Array, rate: float, most: float) -> Array:
+    """The path (n,) that changes by at most `most` per second and is least far from `values` (n,), `rate` per second.
+
+    Half-way between the lowest one over them and the highest one under them; where they are slow enough, it is theirs.
+    """
+    drop = most / rate * np.arange(len(values))
+
+    def over(v: Array) -> Array:
+        later = np.maximum.accumulate((v - drop)[::-1])[::-1] + drop
+        return np.asarray(np.maximum(np.maximum.accumulate(v + drop) - drop, later))
+
+    return np.asarray((over(values) - over(-values)) / 2.0)
+
+
 def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
     """Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are held."""
     pad = min(int(rate), max(len(values) - 1, 0))

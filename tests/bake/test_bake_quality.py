@@ -76,6 +76,14 @@ def test_a_twirled_pelvis_turns_too_fast(steps: Motion, good: MotionReport) -> N
     assert report(replace(steps, rotations=rotations))["pelvis turns at"].met is False
 
 
+def test_a_head_on_backward_is_seen(steps: Motion, good: MotionReport) -> None:
+    rotations = steps.rotations.copy()
+    j = steps.skeleton.index("skullbase")
+    rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle((0, 1, 0), np.full(len(steps.times), 2.4)))
+    assert good["head from the chest"].met is True
+    assert report(replace(steps, rotations=rotations))["head from the chest"].met is False
+
+
 def test_a_broken_knee_is_past_its_limit(steps: Motion) -> None:
     rotations = steps.rotations.copy()
     j = steps.skeleton.index("r_knee")

@@ -10,10 +10,12 @@ from dancetutor_cli.bake.quality.resampled import Body, intervals
 from dancetutor_cli.bake.quality.smoothness import knee_angles
 from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.play.played import StepKind
+from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
 WRIST, TURN = 4.0, 650.0  # metres per second that a wrist goes at most; degrees per second that the pelvis turns
+NECK = 80.0  # degrees that a neck turns the head from the chest
 JUMP, BEFORE = 0.15, 0.35  # seconds in the air, and on the ground before it, of a jump that legs have time for
 FOLD, GIVE = 0.5, 0.16  # the middle half of a flight; seconds after landing in which knees give
 WAIT = 4.5  # seconds without a note that are a wait
@@ -28,6 +30,8 @@ def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...
     shift = weight_shifts(body, contacts)
     wrists = np.maximum.reduce([speeds(body, skeleton.index(f"{s}_radiocarpal")) for s in "lr"])
     turning = np.abs(np.diff(pelvis_yaw(body, skeleton))) * body.rate
+    neck = neck_yaw(body, skeleton)
+    whipped = np.abs(np.diff(np.unwrap(neck))) * body.rate
     return (
         Figure("knee flexion, median", float(np.median(knees)), "degrees"),
         Figure("trunk lean, median", float(np.median(trunk_lean(body, skeleton))), "degrees"),
@@ -36,6 +40,8 @@ def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...
         Figure("knee flexion after landing", give, "degrees"),
         Figure("wrist speed", float(wrists.max(initial=0.0)), "m/s", WRIST),
         Figure("pelvis turns at", float(np.degrees(turning.max(initial=0.0))), "degrees/s", TURN),
+        Figure("head from the chest", float(np.degrees(np.abs(neck).max(initial=0.0))), "degrees", NECK),
+        Figure("head turns on the chest at", float(np.degrees(whipped.max(initial=0.0))), "degrees/s"),
         Figure("weight shift in waits", 100.0 * float(np.median(shift)) if len(shift) else float("nan"), "cm"),
     )
 
@@ -88,6 +94,13 @@ def pelvis_yaw(body: Body, skeleton: Skeleton) -> Array:
     """Which way (f,) the pelvis faces, radians, unwrapped: square to the line between the hips."""
     across = body.joints[:, skeleton.index("l_hip")] - body.joints[:, skeleton.index("r_hip")]
     return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))
+
+
+def neck_yaw(body: Body, skeleton: Skeleton) -> Array:
+    """How far (f,) the face is turned from where the chest faces, radians, positive left."""
+    neck, skull = (body.rotations[:, skeleton.index(name)] for name in ("vc4", "skullbase"))
+    face = quat.rotate(quat.multiply(neck, skull), np.array([0.0, 0.0, 1.0]))
+    return np.asarray(np.arctan2(face[:, 0], face[:, 2]))
 
 
 def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:

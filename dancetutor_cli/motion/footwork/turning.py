@@ -21,14 +21,25 @@ SPIN = 1.1  # times as fast as the feet, on average, may a body go that spins
 ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
 
 
-def turn_of(row: Row, footing: Footing) -> float:
-    """By how many degrees the feet normal turns at a row, positive left: the shorter way round."""
-    turn = float((row.play.facing[row.index] - footing.normal + 180.0) % 360.0 - 180.0)
-    if abs(abs(turn) - 180.0) < HALF_TURN:  # either way is as far: how the feet stand decides, or which foot steps
-        stand = (footing.line() - footing.normal + 180.0) % 360.0 - 180.0
-        first = row.feet[0] if len(row.feet) == 1 else footing.lead
-        turn = 180.0 * float(np.sign(stand) if ASIDE < abs(stand) < 180.0 - ASIDE else 2 * first - 1)
-    return turn
+def shorter(normal: float, facing: float) -> float:
+    """By how many degrees, positive left, from one to the other the shorter way; half a turn is negative."""
+    return float((facing - normal + 180.0) % 360.0 - 180.0)
+
+
+def is_half(turn: float) -> bool:
+    """Whether either way round is as far, degrees."""
+    return abs(abs(turn) - 180.0) < HALF_TURN
+
+
+def rounds(normal: float, turn: float, rounded: float) -> float:
+    """How far all the way round, a multiple of 360 degrees, she has gone after a turn from a feet normal.
+
+    rounded : before the turn. Her back to the screen she is in the round that she came from.
+    """
+    after = normal + turn
+    if is_half(shorter(0.0, after)):
+        return rounded if turn == 0.0 else after - float(np.copysign(180.0, turn))
+    return 360.0 * round(after / 360.0)
 
 
 def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
@@ -74,6 +85,7 @@ class Facing:
         # Which way round she goes at rows that turn half around, as she saw it coming.
         self.halves: dict[int, float] = {}
         self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
+        self.rounded = 0.0  # degrees that she has gone all the way round, 360 for each spin to the left
 
     def aim(self, row: Row, normal: float, lead: int) -> float:
         """The yaw to aim at for a row's feet normal, degrees; rows are asked for in order."""
@@ -90,8 +102,32 @@ class Facing:
         return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
-        """By how many degrees the feet normal turns at a row, positive left: seen coming, a form's or the shorter."""
-        return self._as_formed(row.index, self.halves.get(row.index, turn_of(row, footing)), footing.normal)
+        """By how many degrees the feet normal turns at a row, positive left: a form's way, the play's or the shorter.
+
+        Rows are asked for in order, each before its aim.
+        """
+        j, normal = row.index, footing.normal
+        self.rounded = rounds(normal, 0.0, self.rounded)  # she may have gone home meanwhile
+        turn = shorter(normal, float(self.play.facing[j]))
+        if is_half(turn):
+            # where the play leaves it open, how the feet stand decides, unless she saw it coming
+            stand = shorter(footing.normal, footing.line())
+            first = float(np.sign(stand)) if ASIDE < abs(stand) < 180.0 - ASIDE else 0.0
+            turn = self.halves.get(j, self._half(j, normal, self.rounded, first or self._side(j, footing.lead)))
+        turn = self._as_formed(j, turn, normal)
+        self.rounded = rounds(normal, turn, self.rounded)
+        return turn
+
+    def _half(self, j: int, normal: float, rounded: float, side: float) -> float:
+        """The way of half a turn at row `j`: not on round the back, for in the play that were a spin.
+
+        side : 1 left, -1 right, where she turns her back to the screen straight from it and not aside from there
+        """
+        facing = self.play.facing[self.rows[self.rows >= j]]
+        if not is_half(float(facing[0])):
+            return 180.0 * float(np.sign(rounded + facing[0] - normal))
+        aside = facing[~np.isclose(np.abs(facing), 180.0)]
+        return 180.0 * float(np.sign(aside[0]) if len(aside) and abs(aside[0]) > ASIDE else side)
 
     def _as_formed(self, j: int, turn: float, normal: float) -> float:
         """The turn at row `j` of the play as the form has it, where one foot steps."""
@@ -102,9 +138,10 @@ class Facing:
         second = self.play.rows.second
         return passing(turn, normal, feet[0], float(second[j] - second[self.rows[k - 1]]), self.settings.step)
 
-    def _first(self, j: int, lead: int) -> int:
+    def _side(self, j: int, lead: int) -> float:
+        """The side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""
         feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
-        return feet[0] if len(feet) == 1 else lead
+        return 2.0 * (feet[0] if len(feet) == 1 else lead) - 1.0
 
     def begin_anew(self) -> None:
         """What was before a stand is of no account: she has turned to the screen."""
@@ -113,14 +150,15 @@ class Facing:
     def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
         """The rows to come, as far as they matter."""
         second, facing = self.play.rows.second, self.play.facing
-        k = int(np.searchsorted(self.rows, row.index, side="right"))
-        for j in self.rows[k:]:
+        k, rounded = int(np.searchsorted(self.rows, row.index, side="right")), self.rounded
+        for j in self.rows[k:].tolist():
             if second[j] > row.time + ALL_ROUND / self.settings.step.turn_rate:
                 return
-            turn = float((facing[j] - normal + 180.0) % 360.0 - 180.0)
-            if abs(abs(turn) - 180.0) < HALF_TURN:
-                turn = self.halves.setdefault(int(j), 180.0 * (2 * self._first(int(j), lead) - 1))
-            normal += self._as_formed(int(j), turn, normal)
+            turn = shorter(normal, float(facing[j]))
+            if is_half(turn):
+                turn = self.halves.setdefault(j, self._half(j, normal, rounded, self._side(j, lead)))
+            turn = self._as_formed(j, turn, normal)
+            rounded, normal = rounds(normal, turn, rounded), normal + turn
             yield float(second[j]), body_yaw(normal, self.settings)
 
 

@@ -29,7 +29,9 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     # who bends down to a panel looks at it: no neck turns so far back
     shallow, deep = np.radians(settings.look.bent_from), np.radians(settings.look.bent_to)
     bent = smooth((np.linalg.norm(tilt, axis=1) - shallow) / (deep - shallow))
-    head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * (head_yaw - chest_yaw)
+    most = np.radians(settings.look.head_limit)  # of a chest that turned against the legs meanwhile, too
+    turned = np.clip(head_yaw - chest_yaw, -most, most)
+    head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
     chin = quat.from_axis_angle(ACROSS, -np.radians(settings.look.chin) * (1.0 - bent))
     whole = quat.multiply(quat.conjugate(chest), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
@@ -38,6 +40,8 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)
     limit = np.radians(np.sqrt(max(settings.look.eyes_limit**2 - settings.look.chin**2, 0.0)))
     gap = (screen_yaw(root[:, [0, 2]], settings) - head_yaw + np.pi) % (2 * np.pi) - np.pi
-    eyes = quat.from_axis_angle(UP, np.clip(settings.look.eyes_weight * gap, -limit, limit))
+    beyond = (np.abs(gap) - np.radians(settings.look.eyes_limit)) / np.radians(settings.look.eyes_give_up)
+    seen = 1.0 - smooth(2.0 * beyond - 1.0)  # eyes in their corners for nothing show their white
+    eyes = quat.from_axis_angle(UP, seen * np.clip(settings.look.eyes_weight * gap, -limit, limit))
     for side in "lr":
         rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)

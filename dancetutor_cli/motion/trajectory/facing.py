@@ -11,7 +11,7 @@ from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.reach import press_share, turned_for_hands, wrapped
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.numerics.smoothing import smooth_path
+from dancetutor_cli.numerics.smoothing import no_faster, smooth_path
 
 Array = NDArray[np.float64]
 
@@ -40,8 +40,8 @@ def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
 
 
 def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSettings) -> tuple[Array, Array]:
-    """Yaws (n,) of chest and head: they keep to the screen as far as they can; when the body turns past, they whip
-    round.
+    """Yaws (n,) of chest and head: they keep to the screen as far as they can; turned farther away, she looks whereto
+    she turns.
 
     ahead (n,) : how much she looks where she walks and not at the screen
     """
@@ -59,7 +59,21 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     smoothed = smooth_path(torso[:, None], ones, course.rate, settings.inertia.chest_turn)
     chest = course.yaw + follow(smoothed, course.rate, controller)[:, 0]
-    gap = wrapped(to_screen - chest)
-    head = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
-    head = head * (1.0 - settings.walk.ahead * ahead)
+    head = _head(wrapped(to_screen - chest), course, settings) * (1.0 - settings.walk.ahead * ahead)
+    head = no_faster(head, course.rate, np.radians(look.head_rate))
     return chest, chest + smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0]
+
+
+def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:
+    """How far (n,) the head would turn from the chest, radians, where the screen is `gap` (n,) from that."""
+    look = settings.look
+    to_screen = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
+    away = away_from_screen(gap, settings)
+    coming = np.interp(course.times + look.head_leads, course.times, course.yaw) - course.yaw
+    return np.asarray(to_screen + away * (np.radians(look.head_lead) * np.tanh(coming) - to_screen))
+
+
+def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
+    """How far (n,) she has given up looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
+    first, last = np.radians(settings.look.away_from), np.radians(settings.look.away_to)
+    return np.asarray(smooth((np.abs(gap) - first) / (last - first)))

@@ -11,6 +11,7 @@ from bake_plays import Event, chart, context, pad, play
 from dancetutor_cli.bake import bake
 from dancetutor_cli.bake.quality import report
 from dancetutor_cli.motion.footwork.chart_row import Row, pressed_by
+from dancetutor_cli.motion.footwork.footing import Footing
 from dancetutor_cli.motion.footwork.planner import Planner
 from dancetutor_cli.motion.footwork.steps import _lift
 from dancetutor_cli.motion.footwork.turning import Facing, body_yaw
@@ -71,6 +72,37 @@ def test_a_half_turn_goes_the_way_that_was_seen_coming() -> None:
         facing.aim(row, 0.0, 0)
         ways.append(facing.halves[2])
     assert ways == [-180.0, 180.0]
+
+
+def turns(danced: Play) -> list[float]:
+    """By how many degrees the feet normal turns, row by row."""
+    facing, footing, out = Facing(danced, default_settings()), Footing.at_home(context(), 0), []
+    for i in range(len(danced.rows)):
+        row = Row(danced, context(), i, float(danced.rows.second[i]), pressed_by(danced, i))
+        out.append(facing.turn(row, footing))
+        footing = replace(footing, normal=footing.normal + out[-1])
+        facing.aim(row, footing.normal, 0)
+    return out
+
+
+@pytest.mark.parametrize("gap", [0.2, 1.5])
+@pytest.mark.parametrize("first", [L, R])
+@pytest.mark.parametrize(
+    ("facing", "wanted"),
+    [
+        ([0, 45, -135, -45, 45], [0, 45, -180, 90, 90]),  # not on round the back, which were a spin
+        ([0, -90, 90, -90, 0], [0, -90, 180, -180, 90]),
+        ([0, 90, 180, 0], [0, 90, 90, -180]),  # undone the way it came
+        ([0, 180, 180, 90, 0], [0, 180, 0, -90, -90]),
+        ([0, 90, 180, -90, 0, 45, -135], [0, 90, 90, 90, 90, 45, -180]),  # the play spins: once round, no farther
+    ],
+)
+def test_half_a_turn_goes_as_the_play_faces(facing: list[float], wanted: list[float], first: Limb, gap: float) -> None:
+    danced = turning(gap, facing)
+    if first == R:
+        swap = {L: R, R: L}
+        danced = replace(danced, limb=np.vectorize(lambda who: swap.get(who, who))(danced.limb).astype(np.int8))
+    assert turns(danced) == pytest.approx(wanted)
 
 
 def test_the_pelvis_does_not_whip_in_a_stream_that_turns_to_and_fro() -> None:

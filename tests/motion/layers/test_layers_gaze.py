@@ -46,7 +46,10 @@ def test_where_head_and_eyes_can_they_look_at_the_screen(motion: Motion) -> None
     off = np.degrees(np.arctan2(gaze[:, 0], gaze[:, 2]) - np.arctan2(to[:, 0], to[:, 2]))
     off = np.abs((off + 180) % 360 - 180)
     turned = np.degrees(quat.angle_between(rotations[:, eye], quat.IDENTITY))
-    free = turned < look.eyes_limit - 1.0
+    body = quat.rotate(world[:, motion.skeleton.index("vt4")], np.array([0.0, 0.0, 1.0]))
+    chest = np.degrees(np.arctan2(body[:, 0], body[:, 2]) - np.arctan2(to[:, 0], to[:, 2]))
+    can = np.abs((chest + 180) % 360 - 180) < look.away_from
+    free = can & (turned < look.eyes_limit - 1.0)
     assert free.mean() > 0.5
     assert off[free].max() < 12.0
     face = quat.rotate(world[:, head], np.array([0.0, 0.0, 1.0]))

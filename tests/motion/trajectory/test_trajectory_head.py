@@ -1,0 +1,44 @@
+"""The head turns on the chest as necks do, and gives the screen up where she is turned too far from it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.motion.plan import FootTrack, Plan
+from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.trajectory.course import Course
+from dancetutor_cli.motion.trajectory.facing import chest_and_head
+from dancetutor_cli.numerics.ease import smooth
+
+SETTINGS = default_settings()
+TIMES = np.arange(0.0, 6.0, 1 / 240)
+NONE = Plan((FootTrack((0.0, 0.0), 0.0, ()),) * 2, (), (), (), 0.0, 6.0)
+
+
+def turned(degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Degrees (n,) that the chest faces, and the head farther, where the pelvis turns so."""
+    still = np.zeros((len(TIMES), 2))
+    course = Course(TIMES, still, np.zeros((len(TIMES), 3)), np.radians(degrees))
+    chest, head = chest_and_head(NONE, course, np.zeros(len(TIMES)), SETTINGS)
+    return np.degrees(chest), np.degrees(head - chest)
+
+
+@pytest.mark.parametrize("seconds", [0.35, 0.7, 2.0])
+@pytest.mark.parametrize("far", [-360.0, 180.0, 360.0])
+def test_a_turn_away_and_back_snaps_no_neck(far: float, seconds: float) -> None:
+    yaw = far * (smooth((TIMES - 1.0) / seconds) - smooth((TIMES - 4.0) / seconds))
+    _, neck = turned(yaw)
+    assert np.abs(neck).max() <= SETTINGS.look.head_limit + 1.0
+    # what smooths the path lets it be a little quicker in the middle
+    assert np.abs(np.diff(neck)).max() * 240 <= SETTINGS.look.head_rate * 1.1
+
+
+def test_with_her_back_to_the_screen_she_looks_ahead() -> None:
+    _, neck = turned(180.0 * smooth((TIMES - 1.0) / 0.5))
+    assert np.abs(neck[TIMES > 2.5]).max() < 2.0
+
+
+def test_turned_aside_she_looks_at_the_screen() -> None:
+    chest, neck = turned(90.0 * smooth((TIMES - 1.0) / 0.5))
+    assert np.abs(chest + neck)[TIMES > 2.5].max() < SETTINGS.look.eyes_limit
