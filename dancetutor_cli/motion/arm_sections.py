@@ -82,6 +82,7 @@ class ArmSettings:
     swing_time: float
     swing_up: float
     elbow_out: float
+    bend_elbow_out: float
     elbow_down: float
     elbow_back: float
     bend_from: float

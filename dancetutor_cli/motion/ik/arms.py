@@ -71,7 +71,9 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     wrists += held[..., None] * kept_clear(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
     wrists += beside_hips(wrists, below.hips, arms)
-    out = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
+    out = np.empty((len(at), 2, 3))
+    out[..., 0] = np.array([1.0, -1.0]) * (arms.elbow_out + (arms.bend_elbow_out - arms.elbow_out) * bent)[:, None]
+    out[..., 1:] = -arms.elbow_down, -arms.elbow_back
     elbows = quat.rotate(upright[:, None], out)
     wrists += beside_legs(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
     inward = _on_her_own_pad(wrists[..., 0], context)
