@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import module_file
 import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
@@ -24,7 +24,6 @@ from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig import quaternion as quat
 
-TOOLS = Path(__file__).resolve().parents[2] / "tools"
 SECTION, FPS = "13:19", 120.0  # steps, a jump with time to crouch, a stream
 Rows = dict[str, Any]
 
@@ -49,16 +48,7 @@ SAME = (
 
 @pytest.fixture(scope="module")
 def tool() -> SimpleNamespace:
-    if not TOOLS.is_dir():
-        pytest.skip("the tools are not in an installed package")
-    sys.path.insert(0, str(TOOLS))
-    try:
-        import judge_figures
-        import judge_files
-        import judge_motion
-    finally:
-        sys.path.remove(str(TOOLS))
-    return SimpleNamespace(figures=judge_figures, files=judge_files, motion=judge_motion)
+    return SimpleNamespace(**{name: module_file.tool(f"judge_{name}") for name in ("figures", "files", "motion")})
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +89,7 @@ def test_flights_fall_as_things_fall_by_another_table_of_masses(good: Rows) -> N
 
 def test_it_imports_nothing_of_the_package() -> None:
     for name in ("judge_motion.py", "judge_files.py", "judge_body.py", "judge_figures.py"):
-        lines = (TOOLS / name).read_text("utf-8").splitlines()
+        lines = (module_file.TOOLS / name).read_text("utf-8").splitlines()
         assert not [line for line in lines if line.lstrip().startswith(("import ", "from ")) and "dancetutor" in line]
 
 

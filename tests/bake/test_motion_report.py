@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from types import ModuleType
 
+import module_file
 import numpy as np
 import pytest
 
 from dancetutor_cli.resources import charts_path
 
-TOOLS = Path(__file__).resolve().parents[2] / "tools"
-
 
 @pytest.fixture(scope="module")
 def tool() -> ModuleType:
-    if not TOOLS.is_dir():
-        pytest.skip("the tools are not in an installed package")
-    sys.path.insert(0, str(TOOLS))
-    try:
-        import motion_report
-    finally:
-        sys.path.remove(str(TOOLS))
-    return motion_report
+    return module_file.tool("motion_report")
 
 
 def test_peak_is_that_of_the_fastest_eight_gaps(tool: ModuleType) -> None:
