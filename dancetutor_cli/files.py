@@ -95,18 +95,11 @@ def back_up(path: Path) -> Path:
         number += 1
 
 
-def remove_leftover(path: Path) -> bool:
-    """Remove the temporary file that a killed process may have left beside `path`; True if there was one.
+def remove_leftovers(folder: Path) -> int:
+    """Remove the temporary files that killed processes have left in a folder (not below it); how many there were.
 
     One that a living process is writing stays.
     """
-    with contextlib.suppress(OSError, FileError):
-        return _discard(temporary_name(_target(path)))
-    return False
-
-
-def remove_leftovers(folder: Path) -> int:
-    """Remove all such temporary files in a folder (not below it); how many there were."""
     try:
         found = [entry for entry in folder.iterdir() if entry.name.startswith(".") and entry.name.endswith(SUFFIX)]
     except OSError:

@@ -17,7 +17,7 @@ import pytest
 
 from dancetutor_cli import files
 from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import remove_leftover, remove_leftovers, temporary_name, write_atomic
+from dancetutor_cli.files import remove_leftovers, temporary_name, write_atomic
 
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX modes, links and locks")
 ROOT = os.name != "nt" and os.geteuid() == 0
@@ -166,9 +166,8 @@ def test_leftovers_are_removed(tmp_path: Path) -> None:
     path.write_bytes(b"old")
     temporary_name(path).write_bytes(b"half of the ne")
     temporary_name(tmp_path / "gone.sm").write_bytes(b"half")
-    assert remove_leftover(path)
-    assert not remove_leftover(path)
-    assert remove_leftovers(tmp_path) == 1
+    assert remove_leftovers(tmp_path) == 2
+    assert remove_leftovers(tmp_path) == 0
     assert names(tmp_path) == ["a.sm"]
     temporary_name(path).write_bytes(b"half of the ne")
     write_atomic(path, b"new")
@@ -183,7 +182,6 @@ def test_a_file_that_a_living_process_writes_is_no_leftover(tmp_path: Path, monk
     monkeypatch.setattr(files, "PATIENCE", 0.1)
 
     def meanwhile(file: BinaryIO) -> None:
-        assert not remove_leftover(path)
         assert remove_leftovers(tmp_path) == 0
         with pytest.raises(files.BusyError, match="another process"):
             write_atomic(path, b"other")
@@ -207,7 +205,7 @@ def test_without_locks_only_old_leftovers_are_removed(tmp_path: Path, monkeypatc
     write_atomic(path, b"new")
     temporary = temporary_name(path)
     temporary.write_bytes(b"perhaps somebody is writing this")
-    assert not remove_leftover(path)
+    assert remove_leftovers(tmp_path) == 0
     with pytest.raises(files.BusyError):
         write_atomic(path, b"newer")
     os.utime(temporary, (0, 0))
@@ -304,7 +302,7 @@ def test_killed_at_any_moment_the_file_is_the_old_or_the_new_one(tmp_path: Path)
         leftovers += temporary_name(path).exists()
         assert names(tmp_path) in (["a.sm"], [temporary_name(path).name, "a.sm"])
     assert leftovers > 10, "no kill hit the middle of a write: this test tests nothing"
-    remove_leftover(path)
+    remove_leftovers(tmp_path)
     assert names(tmp_path) == ["a.sm"]
 
 

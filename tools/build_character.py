@@ -180,7 +180,7 @@ def _piece(part: Part, made: Lofted, weights: Array, atlas: Atlas) -> Piece:
     if part.tint:
         return Piece(part, points, normals, triangles, weights, -1, sides)
     shade = occlusion(points, normals, part.shade) if part.shade else np.ones(len(points))
-    source, triangles = atlas.add(points, normals, triangles, part.density, part.paint, shade)
+    source, triangles = atlas.add(made, part.density, part.paint, shade)
     return Piece(part, points[source], normals[source], triangles, weights[source], len(atlas.parts) - 1, sides)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from build_character_loft import Lofted
 from build_character_mesh import Triangles
 from build_character_sdf import Array
 from numba import njit
@@ -119,13 +120,12 @@ class Atlas:
         self.parts: list[tuple[Array, Array, Triangles, Paint, Array]] = []
         self.charts: list[tuple[int, NDArray[np.int64], Array]] = []  # part, vertices, place in texels
 
-    def add(
-        self, points: Array, normals: Array, triangles: Triangles, density: float, paint: Paint, shade: Array
-    ) -> tuple[NDArray[np.int64], Triangles]:
+    def add(self, made: Lofted, density: float, paint: Paint, shade: Array) -> tuple[NDArray[np.int64], Triangles]:
         """Cut a part into charts; gives the source vertex of every new vertex, and the new triangles.
 
         density : texels per metre; shade (v,) : factor on the paint, interpolated.
         """
+        points, normals, triangles = made
         source: list[NDArray[np.int64]] = []
         fresh = np.empty_like(triangles)
         count = 0
