@@ -177,7 +177,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         section=options["section"],
         sync=options["sync_offset"] / 1000,
         mute=options["mute"],
-        practice=_practice(options, layout, film=form.h264),
+        practice=_practice(options, layout, film=not options.get("poses")),
         play=options["play"],
         character=check_character(options["character"]),
         bar=options["bar"],
@@ -192,7 +192,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
 
 
 def _practice(options: dict[str, Any], layout: Layout, film: bool) -> Practice:
-    """film : of a passage she comes to rest after it; a GIF goes round, and pictures are those asked for"""
+    """film : of a passage she comes to rest after it; poses are single pictures of its rows"""
     from dancetutor_cli.video.layout import PracticePart
     from dancetutor_cli.video.practice import REST, Practice, parse_rates
 

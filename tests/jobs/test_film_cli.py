@@ -160,14 +160,15 @@ def test_quiet_is_without_warnings(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "warning: " in said[0].err and (said[1].err, said[1].out) == ("", "")
 
 
-def test_a_film_of_a_passage_has_time_to_come_to_rest_and_pictures_of_it_have_not(
+def test_a_passage_has_time_to_come_to_rest_in_whatever_it_is_written_to(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     small = ("--index", "0", "--layout", "highway", "--size", "64x64", "--section", "8:9", "--mute", "--jobs", "1")
     for to, length in (
         (("-o", str(tmp_path / "a.mp4")), "2.5 s"),
-        (("-o", str(tmp_path / "a.gif")), "1.0 s"),
-        (("--frames", str(tmp_path / "frames")), "30 pictures"),
+        (("-o", str(tmp_path / "a.gif")), "2.5 s"),
+        (("--frames", str(tmp_path / "frames")), "75 pictures"),
+        (("--poses", str(tmp_path / "poses")), "2 pictures"),
     ):
         assert render(DEMO, *small, *to) == 0
         assert f": {length}, 64x64" in capsys.readouterr().out

@@ -81,12 +81,14 @@ def test_at_the_end_of_a_song_she_stays_on_the_pad(song: Path) -> None:
 
 
 @pytest.mark.parametrize(("section", "rest"), [(None, REST), ("6:19", REST), ("6:8", 0.0)])
-def test_no_rest_is_added_behind_a_song_nor_to_pictures(song: Path, section: str | None, rest: float) -> None:
+def test_no_rest_is_added_behind_a_song_nor_where_none_is_asked_for(
+    song: Path, section: str | None, rest: float
+) -> None:
     clock = look_up(asked(song, section, Practice(rest=rest))).clock
     assert clock.passes[-1].rest == 0.0 and quiet_after(clock.passes) is None
 
 
-def test_the_picture_goes_dark_at_the_end_of_a_film_and_of_no_other_pictures(song: Path, prepared: Prepared) -> None:
+def test_the_picture_goes_dark_at_the_end_of_a_film_and_not_of_poses(song: Path, prepared: Prepared) -> None:
     plan = prepared.plan
     assert plan.fade > 0
     last = plan.clock.frames - 1
