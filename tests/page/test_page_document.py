@@ -18,6 +18,10 @@ from dancetutor_cli.jobs.page import Page
 from dancetutor_cli.lint.registry import all_rules
 from dancetutor_cli.page.blob import Blob
 from dancetutor_cli.page.document import languages
+from dancetutor_cli.play.turned import HALF_TURNS
+from dancetutor_cli.play.vocabulary import EVENTS
+from dancetutor_cli.resources import config_path
+from dancetutor_cli.video.move_words import move_words
 
 
 def unpacked(html: bytes) -> dict[str, Any]:
@@ -89,6 +93,18 @@ def test_every_rule_is_told_in_every_language() -> None:
         for code in all_rules():
             name, _, meaning = labels.get(f"finding-{code}", "").partition(": ")
             assert name and meaning.endswith("."), f"{language}: finding-{code}"
+
+
+def test_moves_are_called_what_films_call_them() -> None:
+    """One table: configs/words.yaml. Who and where stand beside the list of a row's moves, so not in it."""
+    every = (*EVENTS, *HALF_TURNS)
+    english = languages()["en"]
+    for name, said in move_words(every, config_path("words.yaml")).items():
+        if "{" not in said:
+            assert english[f"move-{name}"] == said.replace(": ", ", "), name
+    for labels in languages().values():
+        said = " ".join(labels[f"move-{name}"] for name in every).lower()
+        assert not [word for word in ("candle", "jack", "gallop", "stream", "drill", "doublestep") if word in said]
 
 
 def test_every_label_that_the_modules_use_exists() -> None:

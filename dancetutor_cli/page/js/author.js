@@ -1,7 +1,7 @@
 // The author's panel: another foot for a note, what it costs, and files to take home.
 
 import { download, el } from "./dom.js";
-import { moveName, panelName } from "./labels.js";
+import { moveNames, panelName } from "./labels.js";
 import { placeOf } from "./places.js";
 
 const LETTERS = ["L", "R", "<", ">"];
@@ -57,7 +57,7 @@ function describe(app, row) {
   const { t, redance } = app;
   const who = row.steps.map((step) => `${panelName(t, app.doc.pad.names[step.column])} ${LETTERS[redance.limbOf(step)] ?? "?"}`).join(", ");
   const given = row.steps.some((step) => redance.given.has(step.note));
-  const moves = row.moves.map((name) => moveName(t, name)).join(", ");
+  const moves = moveNames(t, row.moves);
   return [
     el("p", {}, el("strong", {}, placeOf(t, row.beat)), ` ${who}`),
     el("p", {}, moves ? t(given ? "movesBefore" : "moves", { moves }) : ""),

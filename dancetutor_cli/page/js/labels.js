@@ -14,6 +14,15 @@ export function moveName(t, name) {
   return label === `move-${name}` ? name.replaceAll("-", " ") : label;
 }
 
+/**
+ * All that a row's moves are called, each once: no "crossover" beside "crossover in front".
+ * @param {import("./words.js").Translate} t @param {string[]} names
+ */
+export function moveNames(t, names) {
+  const words = [...new Set(names.map((name) => moveName(t, name)))];
+  return words.filter((word) => !words.some((other) => other.startsWith(`${word} `))).join(", ");
+}
+
 /** A move's or a rule's shortest name; its sign for a rule without one. @param {import("./words.js").Translate} t @param {string} name */
 function shortName(t, name) {
   const label = t(`short-${name}`);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
-import { findingFigures, labelsOf } from "../../../dancetutor_cli/page/js/labels.js";
+import { findingFigures, labelsOf, moveNames } from "../../../dancetutor_cli/page/js/labels.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
@@ -126,6 +126,17 @@ test("quick charts have their rows farther apart, so that notes do not lie over 
   assert.ok(quick / 12 > 0.08 && quick < 1.1, String(quick));
   assert.equal(scrollSpeed(rows(1 / 30)), 1.2);
   assert.equal(scrollSpeed([]), 0.42);
+});
+
+test("a row's moves are named in a dancer's words, each once", () => {
+  const named = (file, ...names) => {
+    const words = JSON.parse(readFileSync(new URL(`../../../dancetutor_cli/page/words/${file}.json`, import.meta.url), "utf8"));
+    return moveNames((name) => words[name] ?? name, names);
+  };
+  assert.equal(named("en", "crossover-front", "crossover-half"), "crossover in front");
+  assert.equal(named("en", "crossover-half", "candle", "stream"), "crossover, long step, long run");
+  assert.equal(named("en", "doublestep", "forced-doublestep"), "same foot again");
+  assert.equal(named("de", "crossover-back", "crossover-half", "jack"), "Überkreuzen hinten, noch einmal dasselbe Feld");
 });
 
 test("words beside the notes have short forms for narrow lanes", () => {
