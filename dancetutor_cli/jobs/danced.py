@@ -74,7 +74,8 @@ def _by_two(request: FilmRequest, subject: Subject) -> Danced:
         play, pad = _known(request, one)
         shown, baked = _motions(request, replace(subject, chart=one.chart), (play, pad), sides)
         baked, under = _mines_told(baked, shown, pad)
-        on_mines += [mine._replace(column=mine.column + one.chart.first_column) for mine in under]
+        at, who = one.chart.first_column, one.chart.player
+        on_mines += [mine._replace(column=mine.column + at, player=who) for mine in under]
         plays.append(shown)
         place = place_on(whole, one.chart, pad)
         motions.append({rate: shifted(motion, *place) for rate, motion in baked.items()})

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.notes import Callout, Cue, NoteTrack
 
 
-FADE = 0.6  # seconds in which a film's picture goes dark at its end; GIFs and pictures do not
+FADE = 0.6  # seconds in which a film's picture goes dark at its end, and that of a GIF before it goes round
 HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
 
 
@@ -124,11 +124,21 @@ def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
 
 
 def _callouts(dance: Danced, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
-    """What is called out; of two who dance what both do, for no call says whom it means."""
+    """What is called out; of two who dance what both do, for no call says whom it means, but for one's mines."""
     if len(dance.solved) == 1:
         return callouts_of(dance.solved[0], dance.play, style, scrolls, dance.on_mines)
     first, *others = (callouts_of(one, one.play, style, scrolls) for one in dance.solved)
-    return tuple(call for call in first if all(call in of_other for of_other in others))
+    both = [call for call in first if all(call in of_other for of_other in others)]
+    return tuple(sorted([*both, *_mines_of_each(dance, style, scrolls)], key=lambda call: call.second))
+
+
+def _mines_of_each(dance: Danced, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
+    """Of two who dance the mines that a foot is on, with whose foot it is."""
+    mines_alone = replace(style, findings=False)
+    for one in dance.solved:
+        under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
+        for call in callouts_of(one, None, mines_alone, scrolls, under):
+            yield replace(call, text=f"player {one.chart.player}: {call.text.replace(': ', ' ')}")
 
 
 def _calls(look: FilmLook) -> CallStyle:

@@ -16,11 +16,15 @@ from dancetutor_cli.video.scroll import ScrollSegments
 
 
 class OnMine(NamedTuple):
-    """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right"""
+    """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right
+
+    player : of two who dance whose foot, 1 or 2; 0 where one dances
+    """
 
     tick: int
     column: int
     foot: int
+    player: int = 0
 
 
 def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mines: Sequence[OnMine] = ()) -> NoteTrack:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,6 +45,20 @@ def test_words_say_it_and_what_the_linter_finds_there(film: Prepared) -> None:
     (one,) = (one for one in film.plan.callouts if "mine" in one.text)
     assert one.text == "mine: not cleared (DT303 mine under hold)" and one.tag == "not cleared"
     assert one.severity == "move"
+
+
+@pytest.mark.parametrize("whose", [1, 2])
+def test_of_two_who_dance_it_says_whose_foot_it_is(whose: int, tmp_path: Path) -> None:
+    clear = [row.replace("M", "0") for row in ROWS]
+    rows = "\n".join(map("".join, zip(*((ROWS, clear) if whose == 1 else (clear, ROWS)), strict=True)))
+    path = tmp_path / "two.sm"
+    path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-couple::Hard:9::\n{rows}\n;\n")
+    look = FilmLook(load_layout("side-by-side"), (320, 180), quality="draft", renderer="cpu")
+    request = FilmRequest(path, Selection(), look, fps=10, mute=True)
+    plan = prepare(request, look_up(request)).plan
+    (one,) = (one for one in plan.callouts if "mine" in one.text)
+    assert one.text == f"player {whose}: mine not cleared (DT303 mine under hold)" and one.tag == "not cleared"
+    assert plan.notes.limb[(plan.notes.kind == Kind.MINE) & (plan.notes.column == 4 * whose - 4)].tolist() == [0]
 
 
 def test_its_panel_is_lit_and_it_is_no_step(film: Prepared) -> None:

@@ -123,6 +123,7 @@ def test_what_both_do_is_called_out_and_what_one_does_is_not(monkeypatch: pytest
     one, two, both = (Callout(at, at, "crossover", "move", at - 0.9, at, "crossover") for at in (1.0, 2.0, 3.0))
     told = {"first": (one, both), "second": (two, both)}
     monkeypatch.setattr(film_plan, "callouts_of", lambda solved, *_: told[solved.name])
+    monkeypatch.setattr(film_plan, "_mines_of_each", lambda *_: ())
     dance = SimpleNamespace(solved=[SimpleNamespace(name=name, play=None) for name in told])
     assert film_plan._callouts(dance, None, None) == (both,)  # type: ignore[arg-type]
 
