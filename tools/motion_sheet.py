@@ -4,13 +4,15 @@
 usage: tools/motion_sheet.py FILE --out SHEET.png [--index N] --at 12.0:14.0 [--count 12] [--bar] [--steps]
                              [--beside COMMIT]
 The section's moments are even; with --steps they are those at which the section's notes fall. Each column is a moment.
-With --beside the same moments as an earlier commit bakes them stand below today's, drawn by today's renderer with
-today's dancer, so that only the motion is another one.
+With --beside the same moments as an earlier commit bakes them stand above today's, drawn by today's renderer with
+today's dancer, so that only the motion is another one. tools/before_after.py has a list of such sheets.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,30 +29,51 @@ from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.motion.settings import load_settings
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video.scene import renderer
+from dancetutor_cli.video.scene.look import default_look
+from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FrameState, Scene
 
+Array = np.ndarray[Any, Any]
 SIZE = (168, 250)  # pixels of one picture
-VIEWS = {"front": (0.0, 1.05, 3.3), "side": (3.3, 1.05, 0.0)}  # of the camera from her place, metres
-TARGET = 0.86  # metres over the pad that the camera looks at
+VIEWS = {"front": (0.0, 1.05, 3.5), "side": (3.5, 1.05, 0.0)}  # of the camera from her place, metres
+TARGET = 0.84  # metres over the pad that the camera looks at
 AROUND = 1.5  # seconds baked before and after the section
 BAND = 16  # pixels over the pictures of a commit, for its name
 
 
+@dataclass(frozen=True)
+class Moments:
+    """Which moments of which chart. at : first and last second of the music; steps : those of the notes there."""
+
+    chart: Path
+    at: tuple[float, float]
+    index: int = 0
+    count: int = 12
+    steps: bool = False
+    bar: bool = False
+
+    @property
+    def section(self) -> tuple[float, float]:
+        """What is baked, seconds."""
+        return max(self.at[0] - AROUND, 0.0), self.at[1] + AROUND
+
+    def times(self, motion: Motion) -> Array:
+        start, end = self.at
+        if self.steps:
+            return np.unique([c.start for c in motion.contacts if start <= c.start <= end])[: self.count]
+        return np.linspace(start, end, self.count)
+
+
 def main() -> None:
     options = _options()
-    asked = ask(BakeTask(options.file, Selection(index=options.index)))
     start, end = (float(x) for x in options.at.split(":"))
-    settings = load_settings(options.motion)
-    section = (start - AROUND, end + AROUND)
-    motion = bake(asked.chart, asked.play, asked.pad, section=section, bar=options.bar, settings=settings)
-    times = np.linspace(start, end, options.count)
-    if options.steps:
-        times = np.unique([c.start for c in motion.contacts if start <= c.start <= end])[: options.count]
-    picture = sheet(motion, asked.pad, times)
+    moments = Moments(options.file, (start, end), options.index, options.count, options.steps, options.bar)
+    motion, pad = baked(moments, options.motion)
+    times = moments.times(motion)
+    picture = sheet(motion, pad, times)
     if options.beside is not None:
-        call = ["--index", str(options.index), "--section", f"{max(section[0], 0.0):g}:{section[1]:g}"]
-        earlier = baked_by(options.beside, [str(options.file.resolve()), *call, *(["--bar"] if options.bar else [])])
-        picture = under({"now": picture, f"before: {options.beside}": sheet(earlier, asked.pad, times)})
+        before = sheet(baked_before(options.beside, moments), pad, times)
+        picture = under({f"before: {options.beside}": before, "now": picture})
     picture.save(options.out)
     print(f"{options.out}: {len(times)} moments")
 
@@ -64,15 +87,29 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--steps", action="store_true", help="moments of the notes")
     parser.add_argument("--bar", action="store_true", help="she holds the bar")
     parser.add_argument("--motion", type=Path, help="a file of changed numbers, as for animate")
-    parser.add_argument("--beside", metavar="COMMIT", help="the same as this commit bakes it, below today's")
+    parser.add_argument("--beside", metavar="COMMIT", help="the same as this commit bakes it, above today's")
     parser.add_argument("--out", type=Path, required=True)
     return parser.parse_args()
 
 
-def sheet(motion: Motion, pad: Any, times: np.ndarray[Any, Any]) -> Image.Image:
-    """A picture with a column for each of the times, seconds, and a row for each view."""
+def baked(moments: Moments, changed: Path | None = None) -> tuple[Motion, Any]:
+    """The motion around these moments, and its pad; changed : a file of changed numbers of the motion."""
+    asked = ask(BakeTask(moments.chart, Selection(index=moments.index)))
+    settings = load_settings(changed)
+    section = moments.section
+    return bake(asked.chart, asked.play, asked.pad, section=section, bar=moments.bar, settings=settings), asked.pad
+
+
+def baked_before(commit: str, moments: Moments) -> Motion:
+    """The same as an earlier commit bakes it."""
+    call = ["--index", str(moments.index), "--section", "{:g}:{:g}".format(*moments.section)]
+    return baked_by(commit, moments.chart, [*call, *(["--bar"] if moments.bar else [])])
+
+
+def sheet(motion: Motion, pad: Any, times: Array, words: Sequence[str] = ()) -> Image.Image:
+    """A picture with a column for each of the times, seconds, and a row for each view; words : beside each time."""
     character = load_dancer()
-    scene = Scene(character, pad)
+    scene = Scene(with_bar(character, motion.bar, -default_look().stage.pad_height), pad)
     ours = [j for j, name in enumerate(character.skeleton.names) if name in motion.skeleton.names]
     theirs = [motion.skeleton.names.index(character.skeleton.names[j]) for j in ours]
     sampled, root = sample(motion, times)
@@ -80,6 +117,9 @@ def sheet(motion: Motion, pad: Any, times: np.ndarray[Any, Any]) -> Image.Image:
     turns[..., 0] = 1.0
     turns[:, ours] = sampled[:, theirs]
     joints = joint_matrices(character.skeleton, turns, root)
+    if motion.bar is not None:
+        still = np.broadcast_to(bar_matrix(motion.bar), (len(times), 1, 4, 4))
+        joints = np.concatenate((joints, still), axis=1)
     draw = renderer.create(scene, SIZE, "draft", "cpu")
     out = Image.new("RGB", (SIZE[0] * len(times), SIZE[1] * len(VIEWS)))
     pen = ImageDraw.Draw(out)
@@ -95,13 +135,13 @@ def sheet(motion: Motion, pad: Any, times: np.ndarray[Any, Any]) -> Image.Image:
             out.paste(
                 Image.fromarray(draw.frame(FrameState(joints[k], camera, lit, by)).copy()), (SIZE[0] * k, SIZE[1] * row)
             )
-        pen.text((SIZE[0] * k + 4, 4), f"{time:.2f}", fill=(255, 255, 255))
+        pen.text((SIZE[0] * k + 4, 4), "  ".join((f"{time:.2f}", *words[k : k + 1])), fill=(255, 255, 255))
     draw.close()
     return out
 
 
 def under(pictures: dict[str, Image.Image]) -> Image.Image:
-    """Pictures of one width below each other, each under its name."""
+    """Pictures below each other, each under its name."""
     width, height = max(p.width for p in pictures.values()), sum(p.height + BAND for p in pictures.values())
     out, y = Image.new("RGB", (width, height), (20, 20, 26)), 0
     pen = ImageDraw.Draw(out)

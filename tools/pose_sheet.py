@@ -9,15 +9,15 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import yaml
 from numba import njit
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.character.gltf_reader import read_character
-from dancetutor_cli.character.mesh import Character
+if TYPE_CHECKING:  # tools/before_after.py draws these poses with an earlier commit's package, too
+    from dancetutor_cli.character.mesh import Character
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = 3
@@ -200,6 +200,8 @@ def sheet(character: Character, pictures: list[Cell], columns: int, width: int, 
 
 def main(arguments: list[str]) -> None:
     """Draw what the arguments name; by default the pose sheet of the package's dancer."""
+    from dancetutor_cli.character.gltf_reader import read_character
+
     data = ROOT / "dancetutor_cli/character/data/dancer.glb"
     character = read_character(Path(arguments[0]) if arguments else data)
     target = Path(arguments[1]) if len(arguments) > 1 else ROOT / "build" / "pose_sheet.png"
