@@ -10,6 +10,7 @@ import pytest
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.chart import load
+from dancetutor_cli.commands import render
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.resources import charts_path
@@ -69,6 +70,21 @@ def test_the_film_is_made_entered_and_taken_out_again(song: Path, capsys: pytest
     assert (song / "s.sm").read_bytes() == changed
     assert run("annotate", song, "--strip") == 0
     assert (song / "s.sm").read_bytes() == before and film.exists()
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_quietly_an_entry_is_made_without_a_word(
+    song: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, quiet: bool
+) -> None:
+    """Nor of what takes the film away again; the film itself is not looked at."""
+    text = (song / "s.sm").read_text()
+    (song / "s.sm").write_text(text.replace("#BPMS", "#BGCHANGES:2=other.mp4=1=0=0=0;\n#BPMS"))
+    monkeypatch.setattr(render, "_render_one", lambda *_: None)
+    assert run("render", song, "--background", "--into-file", *(["-q"] if quiet else [])) == 0
+    assert "s.dancetutor.mp4" in load(song / "s.sm").tags["BGCHANGES"]
+    told = capsys.readouterr()
+    assert ("behind the notes" in told.out) is not quiet and ("takes the film away" in told.err) is not quiet
+    assert not quiet or told.out + told.err == ""
 
 
 @pytest.mark.parametrize(
