@@ -169,6 +169,7 @@ class HairSettings:
     stiffness: float
     head_radius: float
     back_radius: float
+    shoulder_radius: float
     upper_arm_radius: float
     forearm_radius: float
     rubbing: float

@@ -1,4 +1,4 @@
-"""The braid: four segments that hang from the head, swing, and never go into head, back or arms.
+"""The braid: four segments that hang from the head, swing, and never go into head, back, shoulders or arms.
 
 Position-based dynamics (Mueller and others 2007) in fixed steps of the song's clock: the same motion gives the same
 hair on every machine. Segments only swing; they never twist, for a bone is turned by the shortest arc.
@@ -25,7 +25,9 @@ JOINTS = ("braid1", "braid2", "braid3", "braid4")
 TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the rest pose, metres
 HEAD = (0.0, 0.085, 0.005)  # middle of the head's ball from the skullbase
 BACK = ((0.0, 0.0, 0.015), (0.0, 0.17, 0.020))  # the back's capsule: its ends from vt10 and from vt4
-TRUNK = 2  # capsules before those of the arms: head and back
+NECK = (0.030, 0.135, 0.004)  # where the left shoulder's capsule begins, from vt4; it ends at the arm's joint
+ROUND = 2  # capsules that are rounder than a segment is long: head and back
+TRUNK = 4  # capsules before those of the arms: these and the shoulders
 ITERATIONS = 5  # of the constraints in each step
 SPARE = 1.0  # radians that arms push it higher than it may rise by itself
 LAST = 3  # rounds of pushing it out at the end of a step
@@ -56,7 +58,8 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
     fixed = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * settings.rate)) + 2) / settings.rate
     points = np.empty((len(fixed), len(bones) + 1, 3))
     parent = np.empty((len(times), 4))
-    radii = (settings.head_radius, settings.back_radius, *(settings.upper_arm_radius, settings.forearm_radius) * 2)
+    trunk = (settings.head_radius, settings.back_radius, *(settings.shoulder_radius,) * 2)
+    radii = (*trunk, *(settings.upper_arm_radius, settings.forearm_radius) * 2)
     braid = _Braid(settings.rate, settings.gravity, settings.damping, settings.stiffness, radii, settings.rubbing,
                    settings.fastest, settings.struck * settings.fastest, settings.highest, settings.droop)  # fmt: skip
     state = np.zeros((2, len(bones) + 1, 3))
@@ -86,8 +89,9 @@ def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, f
 
     turn = cubic(times, quat.continuous(world[:, skeleton.index("skullbase")]), fixed)
     head, arms = placed("skullbase", HEAD), [placed(name) for name in _ARMS]
-    low = [head, placed("vt10", BACK[0]), *(arms[k] for k in (0, 1, 3, 4))]
-    high = [head, placed("vt4", BACK[1]), *(arms[k] for k in (1, 2, 4, 5))]
+    necks = placed("vt4", NECK), placed("vt4", (-NECK[0], *NECK[1:]))
+    low = [head, placed("vt10", BACK[0]), *necks, *(arms[k] for k in (0, 1, 3, 4))]
+    high = [head, placed("vt4", BACK[1]), arms[0], arms[3], *(arms[k] for k in (1, 2, 4, 5))]
     ends = np.stack((np.stack(low, axis=1), np.stack(high, axis=1)), axis=1)
     return Anchors(placed("braid1"), quat.normalize(turn), np.ascontiguousarray(ends))
 
@@ -102,13 +106,13 @@ def _along(p: Vec, a: Vec, b: Vec) -> float:
 
 @inner_kernel
 def _cleared(p: Vec, above: Vec, ends: Array, radii: tuple[float, ...], last: int, inside: float) -> Vec:
-    """p, the lower end of a segment: out of the first capsules, ends (2, c, 3), and its middle out of arms.
+    """p, the lower end of a segment: out of the first capsules, ends (2, c, 3), its middle out of the thin ones.
 
     inside : metres that it may be inside
     """
     for c in range(last - 1, -1, -1):  # the trunk last: it gives way least
         a, b = _vec(ends[0, c]), _vec(ends[1, c])
-        for middle in range(1 if c < TRUNK else 2):
+        for middle in range(1 if c < ROUND else 2):
             at = scale(add(p, above), 0.5) if middle else p
             away = sub(at, add(a, scale(sub(b, a), _along(at, a, b))))
             distance = length(away)
@@ -239,7 +243,7 @@ def _limited(
             break  # an arm that would stand it on end goes through it
     now = _no_further(was, scale(sub(here, above), 1.0 / size), most[2])
     here = add(above, scale(now, size))
-    return free, _lengthened(_cleared(here, above, ends, radii, TRUNK, WITHIN), above, size)
+    return free, _lengthened(_cleared(here, above, ends, radii, ROUND, WITHIN), above, size)
 
 
 @njit(cache=True)

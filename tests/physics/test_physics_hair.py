@@ -11,7 +11,7 @@ import pytest
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.physics import hair
-from dancetutor_cli.physics.hair import BACK, HEAD, JOINTS, TIP, add_hair
+from dancetutor_cli.physics.hair import BACK, HEAD, JOINTS, NECK, TIP, add_hair
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
@@ -157,7 +157,7 @@ def half_turns(seconds: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("arms", [True, False])
 def test_in_fast_half_turns_it_neither_whips_nor_stands_out(seconds: float, arms: bool) -> None:
     times, rotations, root = half_turns(seconds)
-    settings = HAIR if arms else replace(HAIR, upper_arm_radius=0.001, forearm_radius=0.001)
+    settings = HAIR if arms else replace(HAIR, shoulder_radius=0.001, upper_arm_radius=0.001, forearm_radius=0.001)
     add_hair(SKELETON, times, rotations, root, settings)
     bones = np.diff(points_of(rotations, root)[0], axis=1)
     bones /= np.linalg.norm(bones, axis=2, keepdims=True)
@@ -165,6 +165,31 @@ def test_in_fast_half_turns_it_neither_whips_nor_stands_out(seconds: float, arms
     assert turned.max() < 1.02 * HAIR.struck * HAIR.fastest, "it was up to 5,400 degrees per second"
     raised = np.degrees(np.arccos(np.clip(-bones[..., 1], -1, 1)))
     assert (raised.min(axis=1) < 55).all(), "never all of it out like a rod"
-    if not arms:  # which turn with her as fast as she does, and carry it along
+    if not arms:  # nor shoulders, which turn with her as fast as she does, and carry it along
         assert np.percentile(turned, 95) < 1.001 * HAIR.fastest
         assert raised.max() < HAIR.highest + 10 and raised[:, 3].max() < 60
+
+
+def test_over_a_shoulder_it_lies_on_it() -> None:
+    """In turns her head stays behind, and the braid comes over a shoulder: it was as deep in it as cloth is thick."""
+    times, rotations, root = half_turns(0.4)
+    yaw = np.unwrap(2 * np.arctan2(rotations[:, 0, 2], rotations[:, 0, 0]))
+    behind = np.clip(np.interp(times - 0.15, times, yaw) - yaw, -np.radians(70), np.radians(70))
+    for name in ("vc4", "skullbase"):
+        rotations[:, SKELETON.index(name)] = quat.from_axis_angle((0, 1, 0), behind / 2)
+    before, gap = rotations.copy(), {}
+    bare = replace(HAIR, upper_arm_radius=0.001, forearm_radius=0.001)  # arms at her sides would push it up
+    for settings in (bare, replace(bare, shoulder_radius=0.001)):
+        rotations = before.copy()
+        add_hair(SKELETON, times, rotations, root, settings)
+        points, joints = points_of(rotations, root)
+        _, world = world_transforms(SKELETON, rotations, root)
+        chest, gaps = SKELETON.index("vt4"), []
+        for side, sign in (("l", 1.0), ("r", -1.0)):
+            neck = joints[:, chest] + quat.rotate(world[:, chest], np.array(NECK) * [sign, 1.0, 1.0])
+            shoulder = joints[:, SKELETON.index(f"{side}_shoulder")]
+            gaps += [segments_apart(points[:, k], points[:, k + 1], neck, shoulder) for k in (1, 2, 3)]
+        gap[settings.shoulder_radius] = np.min(gaps, axis=0)
+    within, without = gap[HAIR.shoulder_radius], gap[0.001]
+    assert within.min() > 0.030 and np.sum(within < 0.050) <= 10
+    assert without.min() < 0.010 and np.sum(without < 0.050) >= 50, "this motion would bring it there"
