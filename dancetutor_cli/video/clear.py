@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -59,14 +60,15 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
 
 
 def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
-    """Moments from the first to the last step of a pass, of one of each rate."""
-    first, last = float(presses.start.min()), float(presses.end.max())
+    """Moments from the first to the last step of a pass, of one of each rate; of one without a step all of it."""
+    first, last = float(presses.start.min(initial=math.inf)), float(presses.end.max(initial=-math.inf))
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
         low, high = max(first, one.start), min(last, one.end)
-        if low < high:
-            step = max(STEP, (high - low) / MOST)
-            found += [Moment(second, rate) for second in np.arange(low, high, step)[:MOST].tolist()]
+        if low >= high:
+            low, high = one.start, one.end
+        step = max(STEP, (high - low) / MOST)
+        found += [Moment(second, rate) for second in np.arange(low, high, step)[:MOST].tolist()]
     return found
 
 

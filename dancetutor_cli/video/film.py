@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.video.blocks import JointBlocks
 from dancetutor_cli.video.clear import CALLS_OFF, CALLS_WIDE, calls_room, clear, dancing, moments
-from dancetutor_cli.video.layout import WIDE_PAD, PixelBox
+from dancetutor_cli.video.layout import WIDE_PAD, PixelBox, lowered, overlap
 from dancetutor_cli.video.lights import PanelLights, lighting
 from dancetutor_cli.video.make_way import Stay, stay
 from dancetutor_cli.video.overlay import captions
@@ -37,7 +38,6 @@ LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of
 ALL_LANES = 0.87  # where none do, but the measures' numbers
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
-BLOCK = 64  # frames whose joints are made at once
 
 
 class Film:
@@ -50,7 +50,6 @@ class Film:
         self.scale = self.layout.scale(self.size)
         self.face = Typeface(plan.look.font)
         self._stays: dict[tuple[int, int], Stay] = {}
-        self._block, self._block_joints = -1, np.zeros((0, 0, 4, 4))
         self.style = highway_style()
         self.lights = PanelLights(lighting(plan.notes, plan.presses), self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
@@ -70,7 +69,8 @@ class Film:
         assert part is not None
         box = self._box("highway")
         scale = 1.0 if self.layout.screen else self.scale
-        share = (LANES if self._breadth <= WIDE_PAD else WIDE_LANES) if part.tags else ALL_LANES
+        usual = (LANES if self._breadth <= WIDE_PAD else WIDE_LANES) if part.tags else ALL_LANES
+        share = self.layout.lanes(self._breadth) or usual
         lane = min(part.lane * scale, share * (box[2] - box[0]) / max(1, self.columns))
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
@@ -118,19 +118,30 @@ class Film:
         if (part := self.layout.legend) is None:
             return None
         limbs = beside.limbs_seen(self.plan.notes, self.plan.clock.passes)
-        left, top, right, bottom = self._box("legend")
-        if self._header is not None and left < self._header.right:
-            below = round(self._header.bottom + LEGEND_OFF * self.scale * part.text)
-            if below > top > self._header.top:  # many words: it stands below them
-                top, bottom = below, bottom + below - top
+        box = self._below(self._box("legend"), LEGEND_OFF * self.scale * part.text)
+        if (pads := self._feet_box) is not None and overlap(pads, box):
+            box = lowered(box, pads[3] + LEGEND_OFF * self.scale)
         return captions.Legend(
             limbs,
-            (left, top, right, bottom),
+            box,
             self.scale * part.text,
             self.face,
             FACING if self.turned and not self.layout.highway else "",
             self.style.players if self.plan.notes.player.any() else (),
         )
+
+    def _below(self, box: PixelBox, off: float) -> PixelBox:
+        """A box clear of the song's words, which may be many."""
+        return box if self._header is None else self._header.clear(box, off)
+
+    @cached_property
+    def _feet_box(self) -> PixelBox | None:
+        """Where the feet from above are; beside her in her own picture there is no room for them where two dance."""
+        if (part := self.layout.feet) is None or not (part.wide or self._breadth <= WIDE_PAD):
+            return None
+        box = self._box("feet")
+        taken = bool(self.plan.partners) and overlap(box, self._box("dancer"))
+        return None if taken else self._below(box, LEGEND_OFF * self.scale)
 
     @cached_property
     def _progress(self) -> captions.ProgressStrip | None:
@@ -174,7 +185,7 @@ class Film:
 
     def _heads(self) -> NDArray[np.float64]:
         """The same all the time that she dances; feet are below what stands there."""
-        if not (self.layout.dancer and self.plan.motions and len(self.plan.presses)):
+        if not (self.layout.dancer and self.plan.motions):
             return np.zeros((0, 4))
         return self._beside(self._dancer.heads_and_feet(dancing(self.plan.presses, self.plan.clock.passes)))
 
@@ -211,15 +222,14 @@ class Film:
 
     @cached_property
     def _diagrams(self) -> tuple[FeetDiagram | None, NextRows | None]:
-        plan, feet, after = self.plan, self.layout.feet, self.layout.next
+        plan, feet, after = self.plan, self._feet_box, self.layout.next
         if plan.pad is None:
             return None, None
         large, small = None, None
         view = PadView(plan.pad, self._directions, self.turned)
-        if feet and (feet.wide or self._breadth <= WIDE_PAD):
-            pads = PadMap(view, self._box("feet"))
+        if feet:
             rims = self.style.players if plan.partners else (captions.WHITE,)
-            large = FeetDiagram(pads, self.lights, self.face, rims)
+            large = FeetDiagram(PadMap(view, feet), self.lights, self.face, rims)
         if after and plan.rows is not None:
             box = self._box("next")
             small = NextRows(plan.rows, view, box, after.count, self.face, self.scale)
@@ -237,7 +247,8 @@ class Film:
             self.highway.draw(picture, second, beat, self._speed(number))
         large, small = self._diagrams
         if large:
-            large.draw(picture, second, self._dancer.feet(self._joints(number)))
+            seen = self._stay(large, run).opacity(second)
+            large.draw(picture, second, self._dancer.feet(self._joints.at(number)), seen)
         if small:
             small.draw(picture, second)
         for words in (*(self._header.parts if self._header else ()), self._legend):
@@ -249,7 +260,7 @@ class Film:
         self._runs.draw(picture, second, run, self._stay(self._runs, run).opacity(second))
         return darkened(picture, BACKGROUND, self.plan.light(number))
 
-    def _stay(self, words: Lines | captions.Legend | Runs, run: int) -> Stay:
+    def _stay(self, words: Lines | captions.Legend | Runs | FeetDiagram, run: int) -> Stay:
         """When these words are in the picture: not while she walks through them."""
         if (key := (id(words), run)) not in self._stays:
             self._stays[key] = self._passed(words.boxes, run)
@@ -269,23 +280,14 @@ class Film:
     def _speed(self, number: int) -> float:
         return 1.0 if self.plan.speeds is None else float(self.plan.speeds[number])
 
-    def _joints(self, number: int) -> NDArray[np.float64]:
-        """The dancer's joints in one frame. They are made in blocks, which is quick; always the same blocks, so that
-
-        no bit of a frame depends on which frames were drawn before it.
-        """
-        block = number // BLOCK
-        if block != self._block:
-            frames = range(block * BLOCK, min((block + 1) * BLOCK, self.plan.clock.frames))
-            self._block_joints = self._dancer.joints([self.plan.clock.moment(k) for k in frames])
-            self._block = block
-        joints: NDArray[np.float64] = self._block_joints[number - block * BLOCK]
-        return joints
+    @cached_property
+    def _joints(self) -> JointBlocks:
+        return JointBlocks(self._dancer.joints, self.plan.clock)
 
     def _room(self, number: int, beat: float) -> Frame:
         """The dancer in her room, with the screen if the layout has one."""
         screen, moment = self._screen, self.plan.clock.moment(number)
-        frame, second = self._dancer.frame(moment, self._joints(number)), moment.second
+        frame, second = self._dancer.frame(moment, self._joints.at(number)), moment.second
         if screen is not None and self.highway is not None:
             shown = self.screen_base.copy()
             self.highway.draw(shown, second, beat, self._speed(number))

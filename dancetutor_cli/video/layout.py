@@ -91,7 +91,10 @@ class PracticePart:
 
 @dataclass(frozen=True, slots=True)
 class WideBoxes:
-    """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's."""
+    """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's.
+
+    lanes : share of the highway's width that they take at most
+    """
 
     dancer: Box | None = None
     region: Box | None = None
@@ -103,6 +106,7 @@ class WideBoxes:
     count: Box | None = None
     feet: Box | None = None
     next: Box | None = None
+    lanes: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +148,10 @@ class Layout:
         usual = (0.0, 0.0, 1.0, 1.0) if self.dancer is None else self.dancer.region
         return self._other("region", columns) or usual
 
+    def lanes(self, columns: int) -> float | None:
+        """The share of the highway's width that its lanes take at most, if the layout says it."""
+        return None if self.wide is None or columns <= WIDE_PAD else self.wide.lanes
+
     def _other(self, name: str, columns: int) -> Box | None:
         """What holds instead on a wide pad."""
         return getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
@@ -153,6 +161,17 @@ def pixels(box: Box, size: tuple[int, int]) -> PixelBox:
     """A box in shares of the picture as (left, top, right, bottom) in pixels."""
     left, top, right, bottom = box
     return round(left * size[0]), round(top * size[1]), round(right * size[0]), round(bottom * size[1])
+
+
+def lowered(box: PixelBox, top: float) -> PixelBox:
+    """A box of the same size that begins at `top`."""
+    down = round(top) - box[1]
+    return box[0], box[1] + down, box[2], box[3] + down
+
+
+def overlap(a: PixelBox, b: PixelBox) -> bool:
+    """Do two boxes share a pixel?"""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def layout_names() -> list[str]:
@@ -211,6 +230,8 @@ def _check_numbers(path: Path, layout: Layout) -> None:
         parse_scroll(high.scroll)
     if layout.header is not None:
         ranges.append(("header.room", layout.header.room, 0.05, 1))
+    if layout.wide is not None and layout.wide.lanes is not None:
+        ranges.append(("wide.lanes", layout.wide.lanes, 0.1, 1))
     if screen is not None:
         ranges += [("screen.size", side, 0.05, 100) for side in screen.size]
         ranges += [("screen.centre", side, -100, 100) for side in screen.centre]

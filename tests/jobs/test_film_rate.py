@@ -50,7 +50,7 @@ def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -
         frames = [k for k in range(clock.frames) if clock.at(k)[1] == run]
         heard = np.array([clock.at(k)[0] for k in frames]) / rate
         expected = joint_matrices(load_dancer().skeleton, *sample(motion, heard))
-        shown = np.array([film._joints(k) for k in frames])
+        shown = np.array([film._joints.at(k) for k in frames])
         np.testing.assert_allclose(shown, expected, atol=1e-9)
 
 

@@ -92,7 +92,7 @@ def test_all_four_feet_are_in_the_diagram(tmp_path: Path) -> None:
     wanted = request_for(tmp_path, "dance-couple")
     look = replace(wanted.look, layout=load_layout("practice"), size=(640, 360))
     film = Film(prepare(replace(wanted, look=look), look_up(wanted)).plan)
-    feet = film._dancer.feet(film._joints(8))
+    feet = film._dancer.feet(film._joints.at(8))
     assert len(feet) == 4 and all(foot is not None for foot in feet)
     first, second = ([foot.toe[0] for foot in pair if foot] for pair in (feet[:2], feet[2:]))
     assert max(first) < min(second), "each on her own pad"

@@ -11,12 +11,12 @@ from film_plans import film_plan
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.rig.skeleton import dancer_skeleton
-from dancetutor_cli.video.clear import MOST, clear, moments
+from dancetutor_cli.video.clear import MOST, STEP, clear, dancing, moments
 from dancetutor_cli.video.clock import Clock, Pass
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import layout_names, load_layout
-from dancetutor_cli.video.notes import Callout
+from dancetutor_cli.video.notes import Callout, Presses
 
 BOX = (100, 10, 300, 60)
 
@@ -57,6 +57,18 @@ def test_moments_are_those_in_which_something_is_called_out() -> None:
     assert [one.rate for one in twice] == [0.5] * len(found) + [1.0] * len(found)
     assert len(moments([callout(0.0, 900.0, 9000.0)], [Pass(0.0, 9000.0)])) <= MOST
     assert moments([], [Pass(0.0, 9.0)]) == moments([callout(9.0, 10.0, 10.0)], [Pass(0.0, 5.0)]) == []
+
+
+def test_without_a_step_she_stands_there_for_a_whole_run() -> None:
+    """The song's words keep off her head then, too."""
+    run = Pass(10.0, 12.0)
+    for steps in ([], [3.0], [15.0, 16.0]):
+        at = np.array(steps)
+        presses = Presses(at, at, np.zeros(len(at), np.int16), np.zeros(len(at), np.int8))
+        assert [moment.second for moment in dancing(presses, [run])] == pytest.approx(np.arange(10.0, 12.0, STEP))
+    at = np.array([11.0, 20.0])
+    danced = dancing(Presses(at, at, np.zeros(2, np.int16), np.zeros(2, np.int8)), [run])
+    assert danced[0].second == 11.0 and len(danced) == round(1.0 / STEP)
 
 
 def jumping(layout: str, camera: str | None) -> Film:

@@ -112,7 +112,7 @@ def test_what_is_called_out_on_a_phone_does_not_cover_her_head() -> None:
     assert calls is not None and film._header is not None
     said = calls._sprite(CALL.text, CALL.severity).shape
     box = (calls.box[2] - said[1] - left, calls.box[1] - top, calls.box[2] - left, calls.box[1] + said[0] - top)
-    joints, who = film._joints(20), film._dancer
+    joints, who = film._joints.at(20), film._dancer
     outline = Silhouette(who.scene.character)
     assert not outline.behind([box], joints, who.camera, (right - left, bottom - top))
     assert box[0] + left >= max(line[2] for part in film._header.parts for line in part.boxes)

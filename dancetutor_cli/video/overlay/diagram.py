@@ -15,7 +15,7 @@ from dancetutor_cli.play.played import Limb, StepKind
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import EPSILON, PanelLights
 from dancetutor_cli.video.overlay import shapes, sprites
-from dancetutor_cli.video.overlay.blit import Sprite, blit
+from dancetutor_cli.video.overlay.blit import Box, Sprite, blit
 from dancetutor_cli.video.overlay.text import Typeface
 from dancetutor_cli.video.picture import FootFromAbove, Frame
 
@@ -109,15 +109,15 @@ class PadMap:
         beside = max(low[0] - x, x - high[0], low[1] - y, y - high[1], 0.0)
         return float(max(0.0, 1.0 - 2.0 * beside))
 
-    def draw(self, frame: Frame, lit: list[tuple[float, int]]) -> None:
+    def draw(self, frame: Frame, lit: list[tuple[float, int]], opacity: float = 1.0) -> None:
         """Draw the panels; `lit` gives brightness and limb of each."""
         size = max(4, round(0.95 * self.unit))
         for (x, y), direction, (level, limb) in zip(self.panels, self.directions, lit, strict=True):
             px, py = self.place(x, y)
             at = (round(px - size / 2), round(py - size / 2))
-            blit(frame, panel_sprite(size, direction, None), *at)
+            blit(frame, panel_sprite(size, direction, None), *at, opacity)
             if level > 0 and limb >= 0:
-                blit(frame, panel_sprite(size, direction, limb), *at, level)
+                blit(frame, panel_sprite(size, direction, limb), *at, level * opacity)
 
 
 @lru_cache(maxsize=128)
@@ -170,9 +170,14 @@ class FeetDiagram:
     ) -> None:
         self.pads, self.lights, self.face, self.rims = pads, lights, face, rims
 
-    def draw(self, frame: Frame, second: float, feet: Sequence[FootFromAbove | None]) -> None:
+    @property
+    def boxes(self) -> list[Box]:
+        """Where the pad is: left, top, right, bottom."""
+        return [self.pads.edges]
+
+    def draw(self, frame: Frame, second: float, feet: Sequence[FootFromAbove | None], opacity: float = 1.0) -> None:
         """Draw pad and feet, left and right in turn; a lifted foot is larger and lighter."""
-        self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))])
+        self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
         for number, foot in enumerate(feet):
             if foot is None:
                 continue
@@ -184,7 +189,7 @@ class FeetDiagram:
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
             x, y = self.pads.place(*middle)
             if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
-                blit(frame, shoe, round(x - size / 2), y - size / 2, seen)
+                blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
 
 
 def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:

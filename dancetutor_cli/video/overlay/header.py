@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.video.layout import PixelBox
+from dancetutor_cli.video.layout import PixelBox, lowered
 from dancetutor_cli.video.overlay.blit import Box, Sprite, blit
 from dancetutor_cli.video.overlay.captions import SOFT, WHITE, box_of, pill
 from dancetutor_cli.video.overlay.sprites import HighwayStyle
@@ -169,6 +169,11 @@ class Header:
     def right(self) -> float:
         """x behind the longest line."""
         return float(max(x + ink.shape[1] for ink, x, _ in self.lines))
+
+    def clear(self, box: PixelBox, off: float) -> PixelBox:
+        """A box that begins `off` pixels below these words where they reach into it; else as it is."""
+        reached = box[0] < self.right and self.bottom + off > box[1] > self.top
+        return lowered(box, self.bottom + off) if reached else box
 
     @cached_property
     def parts(self) -> tuple[Lines, Lines]:

@@ -13,11 +13,12 @@ from dancetutor_cli.video.notes import Callout, NoteTrack
 from dancetutor_cli.video.overlay.sprites import FLAG_EDGE
 from dancetutor_cli.video.overlay.text import Typeface, fitted, narrowest
 
-LETTERS, LEAST = 12.5, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
+LETTERS, LEAST = 15.0, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
 LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
 SEEN = 4.0  # seconds before its row that a tag, or a note, may be in the picture
 LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
 NEAR = 0.95  # of the letters' size that is as good as all of it: sizes are tried in steps
+FEWER = 0.85  # and so much that is better than more lines, if these are not smaller than `LEAST`
 
 
 def letters(scale: float) -> float:
@@ -77,8 +78,9 @@ def laid(tag: str, size: float, least: float, room: float, face: Typeface) -> tu
 
     room : pixels for the label
     """
+    enough = NEAR * max(FEWER * least, min(least, LEAST))
     for most in range(LINES, MOST_LINES + 1):
         lines, fits = fitted(tag, size, room - FLAG_EDGE * size - LABEL, face, most)
-        if fits >= NEAR * least:
+        if fits >= enough:
             break
     return lines, fits

@@ -214,7 +214,7 @@ def test_parts_of_a_layout_do_not_cover_each_other(name: str, columns: int) -> N
     boxes = {n: layout.box(n, layout.size, columns) for n in names}
     for (one, a), (other, b) in combinations(boxes.items(), 2):
         apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
-        assert apart or {one, other} == {"calls", "dancer"}, f"{one} and {other}"
+        assert apart or {one, other} in ({"calls", "dancer"}, {"feet", "dancer"}), f"{one} and {other}"
 
 
 @pytest.mark.parametrize("name", ["side-by-side", "vertical", "dancer"])

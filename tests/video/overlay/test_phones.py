@@ -34,8 +34,15 @@ def test_vertical_keeps_free_what_short_video_apps_lay_buttons_over(columns: int
     for name in ("header", "calls", "legend", "progress", "count", "feet"):
         _, top, right, bottom = layout.box(name, layout.size, columns)
         assert top >= 0.07 * height and bottom <= 0.82 * height and right <= 0.88 * width, name
-    _, top, right, bottom = layout.box("highway", layout.size, columns)
-    assert right <= 0.88 * width
+    _, top, _, bottom = layout.box("highway", layout.size, columns)
+    plan = film_plan(np.arange(1.0, 1.0 + columns), columns=np.arange(columns))
+    ways = (DIRECTIONS * 3)[:columns]
+    highway = Film(replace(plan, look=FilmLook(layout, layout.size), directions=ways)).highway
+    assert highway is not None
+    first, lanes = highway.geometry.left, highway.geometry.lane * columns
+    assert first + lanes <= 0.88 * width
+    if columns > 5:  # in the middle: no empty column beside them
+        assert first + lanes / 2 == pytest.approx(width / 2, abs=1) and lanes > 0.7 * width
     part = layout.highway
     assert part is not None and top + part.receptor * (bottom - top) < 0.7 * height
 
@@ -103,6 +110,25 @@ def test_only_pads_of_more_than_a_square_have_the_wide_boxes(steps: str, wide: b
     layout = load_layout("side-by-side")
     film = Film(replace(plan, look=FilmLook(layout, layout.size), pad=pad, directions=pad.directions))
     assert film._box("dancer") == layout.box("dancer", layout.size, 8 if wide else 4)
+
+
+@pytest.mark.parametrize("two", [False, True])
+def test_on_a_phone_the_feet_are_seen_from_above_on_doubles_too(two: bool) -> None:
+    """Beside her head, below the song's words however many; where two dance there is no room for them."""
+    pad, layout = load_pad("dance-double"), load_layout("vertical")
+    plan = film_plan(np.arange(1.0, 9.0), columns=np.arange(8))
+    partners = {1.0: plan.motions} if two else {}
+    for title in ("Title", "A Title of Very Many Words That Never Ends, Not Even Here " * 2):
+        words = replace(plan.words, title=title)
+        look = FilmLook(layout, layout.size)
+        film = Film(replace(plan, look=look, pad=pad, directions=pad.directions, partners=partners, words=words))  # type: ignore[union-attr, arg-type]
+        box = film._feet_box
+        assert (box is None) == two
+        assert film._legend is not None and film._header is not None
+        if box is not None:
+            assert box[1] > film._header.bottom and film._legend.boxes[0][1] > box[3]
+            assert box[3] < layout.box("dancer", layout.size, 8)[3]
+            assert (box[2] - box[0]) / 6 > 48, "pixels of a panel"
 
 
 def test_a_gif_is_at_least_640_pixels_wide() -> None:
