@@ -35,7 +35,7 @@ if words[0] == "animate":
     shutil.copy(here / "dance.npz", words[-1])
 else:
     Path(words[-1]).mkdir()
-    for k in range(3):
+    for k in range(3 if (here / "colour.txt").read_text() == "red" else 5):
         Image.new("RGB", (40, 30), (here / "colour.txt").read_text()).save(Path(words[-1]) / f"frame_{k}.png")
 """
 
@@ -126,7 +126,7 @@ def test_films_are_each_commits_own(repository: Path, points: ModuleType) -> Non
     assert list(made) == ["then", "now"]
     for picture, colour in zip(made.values(), ((255, 0, 0), (0, 0, 255)), strict=True):
         assert picture.size == (40, 30) and picture.getpixel((0, 0)) == colour
-        assert picture.getpixel((39, 29)) == (0, 0, 0)  # three pictures in rows of two
+        assert picture.getpixel((39, 29)) == (0, 0, 0)  # three pictures in rows of two, though today has five
 
 
 def test_the_worst_moments_are_of_the_section_and_apart(points: ModuleType, sheets: ModuleType) -> None:

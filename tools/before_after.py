@@ -64,8 +64,8 @@ def sheets(path: Path = POINTS) -> list[Sheet]:
 
 def main() -> None:
     options = _options()
-    wanted = [one for one in sheets() if not options.points or one.point in options.points]
-    if unknown := set(options.points) - {one.point for one in wanted}:
+    wanted = [one for one in sheets() if not options.points or {one.point, one.name} & set(options.points)]
+    if unknown := set(options.points) - {name for one in wanted for name in (one.point, one.name)}:
         sys.exit(f"there is no point {', '.join(sorted(unknown))}; --list tells them")
     for one in wanted:
         if options.list:
@@ -80,7 +80,7 @@ def main() -> None:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("points", nargs="*", metavar="POINT", help="only these points")
+    parser.add_argument("points", nargs="*", metavar="POINT", help="only these points, or sheets")
     parser.add_argument("--beside", metavar="COMMIT", default="HEAD", help="whose pictures stand above today's")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "before-after", help="folder of the sheets")
     parser.add_argument("--list", action="store_true", help="only tell points and sheets")
@@ -125,11 +125,12 @@ def film(commit: str, chart: str, section: str, fps: int, **how: Any) -> Beside:
     call = ["--section", section, "--fps", str(fps), "--jobs", "1", *(str(word) for word in how.get("options", ()))]
     if "character" in how:
         call += ["--character", str(CHARACTERS / how["character"])]
-    path, out = place(chart), {}
-    for name in (commit, HERE):
-        pictures = [_cut(one, how) for one in filmed_by(name, path, call, how.get("gif", False))]
-        out[name] = _row(pictures, how.get("columns", 4))
-    return out
+    films = {name: filmed_by(name, place(chart), call, how.get("gif", False)) for name in (commit, HERE)}
+    count = min(len(pictures) for pictures in films.values())  # today's go on after the section
+    return {
+        name: _row([_cut(one, how) for one in pictures[:count]], how.get("columns", 4))
+        for name, pictures in films.items()
+    }
 
 
 def character(commit: str, groups: str, columns: int = 4) -> Beside:

@@ -38,6 +38,7 @@ SIZE = (168, 250)  # pixels of one picture
 VIEWS = {"front": (0.0, 1.05, 3.5), "side": (3.5, 1.05, 0.0)}  # of the camera from her place, metres
 TARGET = 0.84  # metres over the pad that the camera looks at
 AROUND = 1.5  # seconds baked before and after the section
+NEAR = 0.35  # metres; who goes no farther from her middle place is seen from one camera, so that one sees her sway
 BAND = 16  # pixels over the pictures of a commit, for its name
 
 
@@ -120,6 +121,8 @@ def sheet(motion: Motion, pad: Any, times: Array, words: Sequence[str] = ()) -> 
     if motion.bar is not None:
         still = np.broadcast_to(bar_matrix(motion.bar), (len(times), 1, 4, 4))
         joints = np.concatenate((joints, still), axis=1)
+    middle = root.mean(axis=0)
+    stays = np.hypot(*(root - middle)[:, [0, 2]].T).max() < NEAR
     draw = renderer.create(scene, SIZE, "draft", "cpu")
     out = Image.new("RGB", (SIZE[0] * len(times), SIZE[1] * len(VIEWS)))
     pen = ImageDraw.Draw(out)
@@ -130,7 +133,7 @@ def sheet(motion: Motion, pad: Any, times: Array, words: Sequence[str] = ()) -> 
             if contact.start - 1e-3 <= time <= max(contact.end, contact.start + 0.05):
                 lit[contact.column], by[contact.column] = 1.0, contact.limb
         for row, (dx, y, dz) in enumerate(VIEWS.values()):
-            x, z = root[k, 0], root[k, 2]
+            x, _, z = middle if stays else root[k]
             camera = scene.camera(f"{x + dx:.3f},{y},{z + dz:.3f}/{x:.3f},{TARGET},{z:.3f}", SIZE)
             out.paste(
                 Image.fromarray(draw.frame(FrameState(joints[k], camera, lit, by)).copy()), (SIZE[0] * k, SIZE[1] * row)
