@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parent.parent / "dancetutor_cli"
+ROOT = Path(__file__).resolve().parent.parent
 MOST = 6
 
 
@@ -20,10 +20,11 @@ def parameters(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 def too_many(path: Path) -> Iterator[str]:
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and parameters(node) > MOST:
-            yield f"{path.relative_to(PACKAGE)}:{node.lineno} {node.name} takes {parameters(node)}"
+            yield f"{path.relative_to(ROOT)}:{node.lineno} {node.name} takes {parameters(node)}"
 
 
 def test_no_function_takes_more_than_six() -> None:
-    files = list(PACKAGE.rglob("*.py"))
-    assert len(files) > 300
+    """Of the package or its tools."""
+    files = [*(ROOT / "dancetutor_cli").rglob("*.py"), *(ROOT / "tools").glob("*.py")]
+    assert len(files) > 350
     assert [line for path in sorted(files) for line in too_many(path)] == []
