@@ -19,6 +19,7 @@ from dancetutor_cli.motion.ik.full_body import Poses, Targets, solve
 from dancetutor_cli.motion.ik.targets import ik_targets
 from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
+from dancetutor_cli.motion.trajectory.momentum import moved_by_turning
 from dancetutor_cli.motion.trajectory.posture import Known, Trajectory, body_trajectory
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.ease import smooth
@@ -76,7 +77,11 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         gives[body.reaching[::COARSE].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
         knees += _around(coarse, gives, times)
         last = number == rounds - 1
-        known = Known(body, above, deeper, keep=number > 0 and not last, tightened=TIGHTENED if last else 0)
+        turning = moved_by_turning(context.skeleton, poses.rotations, poses.root, rate / COARSE)
+        known = Known(
+            body, above, cubic(coarse, turning, times), deeper, keep=number > 0 and not last,
+            tightened=TIGHTENED if last else 0,
+        )  # fmt: skip
         body = replace(body_trajectory(plan, times, feet, context, known), heels=heels, knees=knees)
     return Settled(body, tuple(residuals))
 

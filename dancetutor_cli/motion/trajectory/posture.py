@@ -72,13 +72,16 @@ class Trajectory:
 class Known:
     """What a rough bake has shown. trajectory : that it was of
 
-    above : (n, 3), centre of mass minus root; deeper : (p,) how far each press of a palm drew the root below where it
+    above : (n, 3), centre of mass minus root
+    turning : (n, 2) as of `momentum.moved_by_turning`, or None if it is not known
+    deeper : (p,) how far each press of a palm drew the root below where it
     was wanted, metres, or None for none
     keep : leave the path over the ground as it was; tightened : as in `balanced_path`
     """
 
     trajectory: Trajectory
     above: Array
+    turning: Array | None = None
     deeper: Array | None = None
     keep: bool = False
     tightened: int = 0
@@ -143,7 +146,10 @@ def _course(
     if known is not None and known.keep:
         softened = tuple(what for what in known.trajectory.softened if what == BALANCE)
         return Course(times, known.trajectory.mass, above, yaw), softened
-    pendulum = _pendulum(times, None if known is None else known.trajectory.mass_height, above)
+    pendulum = _pendulum(times, known, above)
+    gait = walking(plan.walks, times, settings.walk)
+    if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
+        pendulum = replace(pendulum, turning=(1.0 - gait.own)[:, None] * pendulum.turning)
     shift = waiting_at(plan, times, context).shift
     if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
         up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
@@ -162,18 +168,19 @@ def _above_at_rest(skeleton: Skeleton, count: int) -> Array:
     return np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (count, 1))
 
 
-def _pendulum(times: Array, height: HeightPath | None, above: Array) -> Pendulum:
+def _pendulum(times: Array, known: Known | None, above: Array) -> Pendulum:
     """The inverted pendulum that she is; standing still as long as the height of her centre of mass is not known."""
     offset = above[:, [0, 2]]
-    if height is None:
+    if known is None:
         still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
-        return Pendulum(times, still, still, offset)
-    step = 1.0 / 60.0
+        return Pendulum(times, still, still, offset, np.zeros((len(times), 2)))
+    turning = np.zeros((len(times), 2)) if known.turning is None else known.turning
+    height, step = known.trajectory.mass_height, 1.0 / 60.0
     y = height.at(times)
     acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
     rate = 1.0 / float(times[1] - times[0])
     seen = _slowness(low_pass(y, rate), low_pass(acceleration, rate), LEAST_SEEN)
-    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), seen, offset)
+    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), seen, offset, turning)
 
 
 def _slowness(y: Array, acceleration: Array, least: float) -> Array:

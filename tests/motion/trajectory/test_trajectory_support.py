@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from dancetutor_cli.motion.swing.foot_path import FootPath
-from dancetutor_cli.motion.trajectory.balance import support_of
+from dancetutor_cli.motion.trajectory.support import support_of
 from dancetutor_cli.rig.dimensions import SOLE_BACK_HEEL, SOLE_FRONT, SOLE_HALF_WIDTH
 
 HEEL = np.radians(1.2)
