@@ -42,7 +42,7 @@ def test_the_whole_bodys_point_is_the_masss_and_what_turning_adds() -> None:
     def accelerations(x: np.ndarray) -> np.ndarray:
         return np.gradient(np.gradient(x, 1 / RATE, axis=0), 1 / RATE, axis=0)
 
-    push = accelerations(places) + [0.0, GRAVITY, 0.0]
+    push = accelerations(places) + np.array([0.0, GRAVITY, 0.0])
     total = np.einsum("m,fm->f", masses, push[..., 1])
     whole = np.column_stack(
         [
@@ -82,7 +82,8 @@ def test_the_own_point_stays_within_the_soles(down: tuple[bool, bool]) -> None:
 
 def test_little_is_made_up_for_wholly() -> None:
     zeros = np.zeros(3)
-    feet = [FootPath(np.zeros((3, 3)) + [x, 0, 0], zeros, zeros, np.full(3, True), zeros) for x in (0.2, -0.2)]
+    down = np.full(3, True)
+    feet = [FootPath(np.tile([x, 0.0, 0.0], (3, 1)), zeros, zeros, down, zeros) for x in (0.2, -0.2)]
     turning = np.array([[0.02, 0.0], [0.0, -0.02], [0.0, 0.0]])
     support = support_of((feet[0], feet[1]), np.radians(1.2))
     np.testing.assert_allclose(against_turning(support, turning), support.middle - turning, atol=1e-12)
