@@ -134,6 +134,7 @@ def _grip(bar: Bar, grip: Grip) -> dict[str, Any]:
         "end": _round(grip.end),
         "to": _place((grip.x, bar.behind)),
         "height": _round(bar.height),
+        **({"across": True} if grip.across else {}),
     }
 
 

@@ -23,6 +23,7 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
 | bar_spans | (k, 2) | x from and to of its pieces |
 | grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
+| grip_across | (g,) | 1 where it has crossed over before her |
 
 A reader must survive added arrays.
 """
@@ -46,7 +47,7 @@ from dancetutor_cli.rig.skeleton import Skeleton
 SCHEMA = 1
 _ARRAYS = ("schema", "names", "parents", "offsets", "fps", "times", "rotations", "root")
 _CONTACTS = ("start", "end", "limb", "column", "kind", "part", "row", "panel")
-_GRIPS = {"start": "f8", "end": "f8", "side": "i1", "x": "f8"}
+_GRIPS = {"start": "f8", "end": "f8", "side": "i1", "x": "f8", "across": "i1"}
 _LET_GO = {"second": "f8", "row": "i4", "column": "i4", "why": "i1"}
 _CONTACT_TYPES = {"limb": "i1", "kind": "i1", "part": "i1", "column": "i4", "row": "i4"}
 
@@ -98,8 +99,11 @@ def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
         return None, ()
     height, behind, radius = (float(v) for v in arrays["bar"])
     spans = tuple((float(low), float(high)) for low, high in arrays["bar_spans"])
-    columns = [arrays.get(f"grip_{name}", np.zeros(0)) for name in _GRIPS]
-    grips = tuple(Grip(float(a), float(b), int(side), float(x)) for a, b, side, x in zip(*columns, strict=True))
+    none = np.zeros(len(arrays.get("grip_start", ())))  # files of before hands crossed over do not say so
+    columns = [arrays.get(f"grip_{name}", none) for name in _GRIPS]
+    grips = tuple(
+        Grip(float(a), float(b), int(side), float(x), bool(over)) for a, b, side, x, over in zip(*columns, strict=True)
+    )
     return Bar(height, behind, radius, spans), grips
 
 

@@ -144,3 +144,25 @@ class BarSettings:
     comfort: float
     place_time: float
     inward: float
+
+
+@dataclass(frozen=True, slots=True)
+class AcrossSettings:
+    """Turns in which the far hand crosses over before her to the bar."""
+
+    turned: float
+    past: float
+    settle: float
+    shortest: float
+    often: float
+    both: float
+    ahead: float
+    near: float
+    facing: float
+    twist: float
+    lean: float
+    nearer: float
+    ease: float
+    early: float
+    free_out: float
+    free_back: float

@@ -45,12 +45,16 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """A hand that rests on the bar from `start` to `end` seconds, its palm over `x`; side 0 left, 1 right."""
+    """A hand that rests on the bar from `start` to `end` seconds, its palm over `x`; side 0 left, 1 right.
+
+    across : it has come there before her, for she is turned with its side away from the bar
+    """
 
     start: float
     end: float
     side: int
     x: float
+    across: bool = False
 
 
 @dataclass(frozen=True, slots=True)

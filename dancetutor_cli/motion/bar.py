@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SEED = 19981121
+ACROSS_SLOWER = 1.5  # as long a hand takes to the rail that crosses over
 
 
 def bar_of(pad: Pad, settings: BarSettings) -> Bar:
@@ -79,11 +80,23 @@ def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
     """How much each hand is at the rail, (n, 2), 0 to 1: all of it from a grip's start to its end."""
     out = np.zeros((len(times), 2))
     for grip in grips:
-        near = slice(*np.searchsorted(times, (grip.start - reach, grip.end + reach)).tolist())
+        near = around(grip, times, reach)
         out[near, grip.side] += grip_share(grip, times[near], reach)
     return np.minimum(out, 1.0)
 
 
+def around(grip: Grip, times: Array, reach: float) -> slice:
+    """Those of the times (n,) at which the hand of a grip is on its way or there."""
+    long = way_time(grip, reach)
+    return slice(*np.searchsorted(times, (grip.start - long, grip.end + long)).tolist())
+
+
+def way_time(grip: Grip, reach: float) -> float:
+    """Seconds that the hand of a grip takes to the rail and from it: before her it has farther to go."""
+    return ACROSS_SLOWER * reach if grip.across else reach
+
+
 def grip_share(grip: Grip, times: Array, reach: float) -> Array:
     """How much of a grip there is at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
-    return smooth((times - grip.start + reach) / reach) * smooth((grip.end + reach - times) / reach)
+    long = way_time(grip, reach)
+    return smooth((times - grip.start + long) / long) * smooth((grip.end + long - times) / long)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from dancetutor_cli.marked_yaml import MarkedYaml, read
-from dancetutor_cli.motion.arm_sections import ArmSettings, BarSettings, FingerSettings, HandSettings
+from dancetutor_cli.motion.arm_sections import AcrossSettings, ArmSettings, BarSettings, FingerSettings, HandSettings
 from dancetutor_cli.motion.foot_sections import (
     AsideSettings,
     HomeSettings,
@@ -41,6 +41,7 @@ else:
     Kind = TypeVar("Kind")
 
 __all__ = [
+    "AcrossSettings",
     "ArmSettings",
     "AsideSettings",
     "BarSettings",
@@ -87,6 +88,7 @@ class MotionSettings:
     groove: GrooveSettings
     hair: HairSettings
     bar: BarSettings
+    across: AcrossSettings
     walk: WalkSettings
     aside: AsideSettings
     home: HomeSettings

@@ -22,6 +22,7 @@ from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
 from dancetutor_cli.motion.plan import Plan, Press
 from dancetutor_cli.motion.settings import ArmSettings, MotionSettings
 from dancetutor_cli.motion.swing.foot_path import foot_path
+from dancetutor_cli.motion.trajectory.crossing import crossing_share
 from dancetutor_cli.motion.trajectory.crouch import jump_swing, tempo_factor
 from dancetutor_cli.motion.trajectory.posture import Trajectory
 from dancetutor_cli.motion.waits import waiting_at
@@ -138,6 +139,10 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
     hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander
     hang += waiting_at(plan, body.times, context).hands
+    share = crossing_share(plan.grips, body.times, settings.across)
+    for side, sign in ((0, 1.0), (1, -1.0)):  # the near hand is behind her, out of the other one's way
+        behind = np.array([sign * settings.across.free_out, -arms.down, -settings.across.free_back])
+        hang[:, side] += np.maximum(sign * share, 0.0)[:, None] * (behind - hang[:, side])
     free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)
     hang += free[..., None] * (_behind_the_chest(hang, body.chest_yaw, rate, arms) - hang)
     chest = leaning(body.tilt, body.chest_yaw)

@@ -14,6 +14,8 @@ from dancetutor_cli.rig.soles import SIDES, hand_direction, palm_normal, palm_po
 
 Array = NDArray[np.float64]
 BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # where the fingers of a hand on the bar point
+STRAIGHT_BACK = np.array([0.0, 0.0, -1.0])  # and those of one that has crossed over before her
+ACROSS = np.array([[0.4, -0.55, 0.7], [-0.4, -0.55, 0.7]])  # where its elbow points: outward, down, ahead of the chest
 
 
 def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
@@ -39,14 +41,14 @@ def _from_matrix(m: Array) -> Array:
 
 
 def rest_on_bar(
-    bar: Bar, side: int, x: float | Array, skeleton: Skeleton, settings: BarSettings
+    bar: Bar, side: int, x: float | Array, skeleton: Skeleton, settings: BarSettings, across: bool = False
 ) -> tuple[Array, Array]:
     """Wrist (3,), or (f, 3) for x (f,), and rotation (4,) of a hand whose palm lies on the rail at x.
 
-    The fingers point back, a little outward, and down behind the rail.
+    The fingers point back, a little outward, and down behind the rail; straight back where it has come `across` her.
     """
     dip = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), -np.radians(settings.dip))
-    hand = quat.multiply(dip, palm_down(skeleton, side, BACKWARD[side]))
+    hand = quat.multiply(dip, palm_down(skeleton, side, STRAIGHT_BACK if across else BACKWARD[side]))
     out = quat.rotate(dip, np.array([0.0, bar.radius, 0.0]))  # from the rail's middle to where the palm lies on it
     along = np.asarray(x)[..., None] * np.array([1.0, 0.0, 0.0])
     over = np.array([0.0, bar.height, bar.behind]) + out - quat.rotate(hand, palm_points(skeleton)[side].offset)
@@ -61,3 +63,8 @@ def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
     inward = settings.elbows_in
     upright = quat.swing_twist(chest, UP)[1]
     return quat.rotate(upright[:, None], np.array([[-inward, 0.0, -1.0], [inward, 0.0, -1.0]]))
+
+
+def elbows_across(chest: Array) -> Array:
+    """Where elbows of hands point (f, 2, 3) that have crossed over to the bar before a chest turned by (f, 4)."""
+    return quat.rotate(quat.swing_twist(chest, UP)[1][:, None], ACROSS)

@@ -6,18 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.motion.baked import Grip
-from dancetutor_cli.motion.bar import grip_share
+from dancetutor_cli.motion.bar import around, grip_share
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
-from dancetutor_cli.motion.ik.palms import elbows_on_bar, rest_on_bar
+from dancetutor_cli.motion.ik.palms import elbows_across, elbows_on_bar, rest_on_bar
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.quaternion import UP
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
 TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
 INWARD = 0.3  # radians from straight inward within which a hand ahead counts as behind
+LEAST = np.pi / 4  # radians inward from straight outward that the rail is at least for a hand that crosses over
 SOFT, FIRST, LAST = 8.0, 0.4, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
 PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
 
@@ -27,24 +29,26 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
     bar, settings = context.bar, context.settings.bar
     if bar is None:
         return
-    goal, weight = np.zeros_like(hands.wrists), np.zeros_like(hands.pinned)
+    goal, weight, across = np.zeros_like(hands.wrists), np.zeros_like(hands.pinned), np.zeros_like(hands.pinned)
     for grip in grips:
-        near = slice(*np.searchsorted(at, (grip.start - settings.reach_time, grip.end + settings.reach_time)).tolist())
-        wrist, hand = rest_on_bar(bar, grip.side, grip.x, context.skeleton, settings)
+        near = around(grip, at, settings.reach_time)
+        wrist, hand = rest_on_bar(bar, grip.side, grip.x, context.skeleton, settings, grip.across)
         share = grip_share(grip, at[near], settings.reach_time)
         weight[near, grip.side] += share
+        across[near, grip.side] += share * grip.across
         goal[near, grip.side] += share[:, None] * (wrist + [0.0, settings.lift, 0.0] * (1.0 - share[:, None]))
         hands.rotation[near, grip.side] = hand
     goal /= np.maximum(weight, 1e-9)[..., None]
     weight = np.minimum(weight, 1.0)
-    hands.wrists[:] += _around(hands.wrists, goal, weight, torso)
+    hands.wrists[:] += _around(hands.wrists, goal, weight, torso, across > 0.0)
     hands.pinned[:] = np.maximum(hands.pinned, weight**PIN)
-    hands.elbows[:] += weight[..., None] * (elbows_on_bar(torso.chest, settings) - hands.elbows)
+    poles = np.where(across[..., None] > 0.0, elbows_across(torso.chest), elbows_on_bar(torso.chest, settings))
+    hands.elbows[:] += weight[..., None] * (poles - hands.elbows)
 
 
-def _around(wrists: Array, goal: Array, weight: Array, torso: Torso) -> Array:
+def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Flags) -> Array:
     """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way: around the trunk, each on its
-    own side of it.
+    own side of it or, where `across` (f, 2), before it to the other one.
 
     In the ellipse's measure they go evenly about its middle and outward or inward; both ends are where they are.
     """
@@ -52,7 +56,8 @@ def _around(wrists: Array, goal: Array, weight: Array, torso: Torso) -> Array:
     upright, middle = _trunk_of(torso)
     scale = np.array([CLEAR[0], 1.0, CLEAR[1]])
     begin, end = (quat.rotate(quat.conjugate(upright), place - middle) / scale for place in (wrists, goal))
-    far, along = (np.stack([f(begin), f(end)]) for f in (_distance, _bearing))
+    far = np.stack([_distance(begin), _distance(end)])
+    along = np.stack([_bearing(begin, across, -np.pi), _bearing(end, across, LEAST)])
     share = weight[..., None]
     there = begin + share * (end - begin)
     distance = far[0] + weight * (far[1] - far[0])
@@ -65,11 +70,15 @@ def _around(wrists: Array, goal: Array, weight: Array, torso: Torso) -> Array:
     return np.where(going[..., None], placed - wrists, share * (goal - wrists))
 
 
-def inward(place: Array, side: int, torso: Torso) -> Array:
-    """How far (f,) a place (f, 3) for a hand is from straight outward of the trunk, radians: pi is straight inward."""
+def inward(place: Array, side: int, torso: Torso, across: bool = False) -> Array:
+    """How far (f,) a place (f, 3) for a hand is from straight outward of the trunk, radians: pi is straight inward.
+
+    across : by the way before her, from `LEAST` on; else by the shorter way
+    """
     upright, middle = _trunk_of(torso)
     off = quat.rotate(quat.conjugate(upright), place[:, None] - middle)[:, 0]
-    return np.abs(np.arctan2(off[:, 2] / CLEAR[1], off[:, 0] * (1.0, -1.0)[side] / CLEAR[0]))
+    angle = np.arctan2(off[:, 2] / CLEAR[1], off[:, 0] * (1.0, -1.0)[side] / CLEAR[0])
+    return (angle - LEAST) % (2 * np.pi) + LEAST if across else np.abs(angle)
 
 
 def _distance(off: Array) -> Array:
@@ -77,11 +86,12 @@ def _distance(off: Array) -> Array:
     return np.hypot(off[..., 0], off[..., 2])
 
 
-def _bearing(off: Array) -> Array:
+def _bearing(off: Array, across: Flags, least: float) -> Array:
     """How far (f, 2) places (f, 2, 3) of the left and right hand are ahead of where is straight outward, radians; what
-    is straight inward counts as behind the back."""
+    is straight inward counts as behind the back, but of hands that cross over, for which it is from `least` on."""
     turned = np.arctan2(off[..., 2], off[..., 0] * [1.0, -1.0])
-    return np.where(turned > np.pi - INWARD, turned - 2 * np.pi, turned)
+    before = (turned - least) % (2 * np.pi) + least
+    return np.where(across, before, np.where(turned > np.pi - INWARD, turned - 2 * np.pi, turned))
 
 
 def _trunk_of(torso: Torso) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.plan import Plan, Turn
 from dancetutor_cli.motion.settings import MotionSettings
 from dancetutor_cli.motion.trajectory.course import Course
+from dancetutor_cli.motion.trajectory.crossing import crossing_share, turned_across
 from dancetutor_cli.motion.trajectory.reach import press_share, turned_for_hands, wrapped
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
@@ -56,6 +57,8 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     for press in (p for p in plan.presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
         share = press_share(press, course.times, settings.hands.reach_down)
         torso = torso + share * (np.copysign(np.radians(look.torso_limit), press.turn) - torso)
+    share = crossing_share(plan.grips, course.times, settings.across)
+    torso = turned_across(torso, course.yaw, share, settings.across)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     smoothed = smooth_path(torso[:, None], ones, course.rate, settings.inertia.chest_turn)
     chest = course.yaw + follow(smoothed, course.rate, controller)[:, 0]

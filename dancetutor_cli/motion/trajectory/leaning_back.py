@@ -27,9 +27,13 @@ def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) 
     return out
 
 
-def kept_back(path: Array, share: Array, bar: Bar, settings: BarSettings) -> Array:
-    """A path (n, 2) over the ground that stays within reach of the bar, softly, as far as `share` (n,) says."""
-    over = (path[:, 1] - bar.behind - settings.forward) / settings.soft
+def kept_back(path: Array, share: Array, bar: Bar, settings: BarSettings, nearer: Array) -> Array:
+    """A path (n, 2) over the ground that stays within reach of the bar, softly, as far as `share` (n,) says.
+
+    nearer : (n,) metres that it must be nearer than usual
+    """
+    most = settings.forward - nearer
+    over = (path[:, 1] - bar.behind - most) / settings.soft
     # a soft least of the place and the farthest one: -log(exp(-a) + exp(-b))
-    near = bar.behind + settings.forward - settings.soft * np.logaddexp(0.0, -over)
+    near = bar.behind + most - settings.soft * np.logaddexp(0.0, -over)
     return np.column_stack((path[:, 0], path[:, 1] + share * (near - path[:, 1])))

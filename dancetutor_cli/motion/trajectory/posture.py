@@ -15,6 +15,7 @@ from dancetutor_cli.motion.swing.foot_path import Feet
 from dancetutor_cli.motion.trajectory.balance import Pendulum, balanced_path
 from dancetutor_cli.motion.trajectory.counter_rotation import counter_rotation
 from dancetutor_cli.motion.trajectory.course import Course
+from dancetutor_cli.motion.trajectory.crossing import crossing_share, leaned_across
 from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_drive, jump_lean, tempo_factor
 from dancetutor_cli.motion.trajectory.facing import chest_and_head, pelvis_yaw
 from dancetutor_cli.motion.trajectory.groove import Engaged, groove_of
@@ -116,8 +117,10 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     chest = chest + loose * counter_rotation(feet, course, chest, head, context)
     calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
     lean = settings.body.lean + settings.body.stream_lean * calm
-    lean = np.radians(lean - held * (lean + settings.bar.lean_back))
-    tilt = leaning_tilt(plan.presses, course, chest, lean[:, None] * ahead, settings)
+    across = crossing_share(plan.grips, times, settings.across)
+    lean = np.radians(lean - held * (1.0 - np.abs(across)) * (lean + settings.bar.lean_back))
+    leant = lean[:, None] * ahead + leaned_across(across, settings.across)
+    tilt = leaning_tilt(plan.presses, course, chest, leant, settings)
     chest += waiting.turn
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
@@ -157,7 +160,8 @@ def _course(
         feet = left, right
     mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
-        mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar)
+        nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
+        mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
     return Course(times, mass, above, yaw), (BALANCE,) if swept else ()
 
 
