@@ -35,7 +35,7 @@ POINTS = ROOT / "tools" / "before_after.yaml"
 CHARTS = (ROOT / "charts", ROOT / "build" / "corpus" / "dev")
 CHARACTERS = ROOT.parent / "shared" / "data" / "characters"
 APART = 0.15  # seconds between two of the worst moments
-HOW = ("options", "character", "gif", "crop", "width", "columns")  # of `film`
+HOW = ("options", "character", "gif", "count", "crop", "width", "columns")  # of `film`
 LABEL = (255, 255, 255)
 Beside = dict[str, Image.Image]
 Curve = tuple[Array, Array, str]  # seconds, values, words for a value
@@ -119,16 +119,17 @@ def motion(commit: str, chart: str, at: list[float], figure: str = "", worst: bo
 def film(commit: str, chart: str, section: str, fps: int, **how: Any) -> Beside:
     """Pictures of a film.
 
-    how : options of `render`; character, a file of the test data; gif; crop, (left, top, right, bottom) of 1; width of
-    a picture, pixels; columns of them
+    section : goes on after the pictures, for notes behind its end are not shown
+    how : options of `render`; character, a file of the test data; gif; count of the pictures; crop, (left, top, right,
+    bottom) of 1; width of a picture, pixels; columns of them
     """
     call = ["--section", section, "--fps", str(fps), "--jobs", "1", *(str(word) for word in how.get("options", ()))]
     if "character" in how:
         call += ["--character", str(CHARACTERS / how["character"])]
     films = {name: filmed_by(name, place(chart), call, how.get("gif", False)) for name in (commit, HERE)}
-    count = min(len(pictures) for pictures in films.values())  # today's go on after the section
+    both = min(len(pictures) for pictures in films.values())  # today's go on after the section
     return {
-        name: _row([_cut(one, how) for one in pictures[:count]], how.get("columns", 4))
+        name: _row([_cut(one, how) for one in pictures[:both][: how.get("count")]], how.get("columns", 4))
         for name, pictures in films.items()
     }
 
