@@ -17,6 +17,7 @@ from dancetutor_cli.motion.trajectory.reach import wrapped
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SEED = 20011109
+JUMP = 0.08  # seconds; what is shorter is a quick step
 APART = 0.8  # of the way of a hand that crosses over, in which the other one is not where it comes to
 BESIDE = (0.0, -0.03, 0.03, -0.06)  # metres farther ahead where it may be better, as a hand stays there longer
 
@@ -28,6 +29,9 @@ def turns(plan: Plan, times: Array, trunk: Trunk, busy: Flags, context: Context)
     """
     out, numbers, reach = [], context.settings.across, context.settings.bar.reach_time
     free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # nor is a hand on its way when it still has a panel
+    for start, end in plan.flights:
+        if end - start > JUMP:  # who jumps is upright
+            free[_between(times, start - numbers.ease - numbers.early, end + numbers.ease + numbers.early)] = False
     turned = np.degrees(wrapped(trunk.turned))
     for side, yaw in ((1, turned), (0, -turned)):  # turned to the left, the right hand is the far one
         for a, b in runs((yaw >= numbers.turned) & (yaw <= numbers.past) & free):

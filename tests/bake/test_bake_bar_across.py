@@ -93,7 +93,9 @@ def test_hands_take_turns(crossed: Motion) -> None:
     assert not [g for g in alone.grips if not g.across and g.start < grip.end and g.end > grip.start]
 
 
-def test_not_in_turns_that_soon_end() -> None:
+def test_not_in_turns_that_soon_end_nor_around_jumps() -> None:
+    jump = [*SLOW[:7], (5.3, {1: R, 2: L}), *SLOW[8:]]
+    assert all(g.end < 5.3 - 0.5 or g.start > 5.3 + 0.5 for g in across(danced(jump)))
     assert across(danced(QUICK)) == [] == across(danced(SLOW, often=0.0))
 
 
