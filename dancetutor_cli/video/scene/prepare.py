@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.partner import PREFIX
 from dancetutor_cli.video.choices import Quality
 from dancetutor_cli.video.scene.camera import NEAR, Camera
-from dancetutor_cli.video.scene.scene import FrameState, Scene, foot_marks, hand_marks, light_direction, shadow_axes
+from dancetutor_cli.video.scene.scene import (
+    FootMark,
+    FrameState,
+    Scene,
+    foot_marks,
+    hand_marks,
+    light_direction,
+    shadow_axes,
+)
+from dancetutor_cli.video.scene.stage import PANEL
 
 Array = NDArray[np.float64]
 SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
@@ -20,6 +29,8 @@ SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the 
 _MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
 _MARK_HEIGHT = 1.0  # a foot higher than this has no mark
 NO_FOOT = -1.0
+_UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
+BESIDE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
 PLANTED = (0.88, 0.95)  # nearness to the ground from which on a foot stands: 26 mm above it, and 11 mm
 
 
@@ -83,9 +94,9 @@ def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> fl
 
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
     """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
-    strength of the mark 0..1), (4, 10). A hand that is not near the floor leaves nothing on it. Of two who dance the
-    feet of the second come in place of hands."""
-    out = np.zeros((4, 10))
+    strength of the mark 0..1, how much it presses a lit panel 0..1), (4, 11). A hand that is not near the floor
+    leaves nothing on it. Of two who dance the feet of the second come in place of hands."""
+    out = np.zeros((4, 11))
     out[:, 5] = NO_FOOT
     if state.joints is None:
         return out
@@ -99,14 +110,33 @@ def feet_on_floor(scene: Scene, state: FrameState) -> Array:
         if mark is not None and mark.height < (_MARK_HEIGHT if foot else low):
             near = max(0.0, 1.0 - mark.height / low)
             strength = scene.look.stage.mark * (_strength(near) if foot else near)
-            out[limb] = (*mark.heel, *mark.toe, mark.ground, near, *colour, strength)
+            pressed = _pressed(scene, state, mark, limb % 2 if partner else limb) * (_planted(near) if foot else near)
+            out[limb] = (*mark.heel, *mark.toe, mark.ground, near, *colour, strength, pressed)
     return out
+
+
+def _pressed(scene: Scene, state: FrameState, mark: FootMark, limb: int) -> float:
+    """How lit a panel is that this limb presses and that is under it, or partly so, 0..1."""
+    ours = np.flatnonzero((np.asarray(state.lit) > 0.0) & (np.asarray(state.lit_by) == limb))
+    if len(ours) == 0:
+        return 0.0
+    places = (np.asarray(scene.pad.panels, dtype=np.float64)[ours] - scene.pad.centre) * (-PANEL, PANEL)
+    heel, line = np.array(mark.heel), np.subtract(mark.toe, mark.heel)
+    along = np.clip((places - heel) @ line / max(float(line @ line), 1e-9), 0.0, 1.0)
+    far = np.linalg.norm(places - heel - along[:, None] * line, axis=1)
+    lit = np.asarray(state.lit, dtype=np.float64)[ours[far < _UNDER * PANEL]]
+    return float(np.clip(lit, 0.0, 1.0).max(initial=0.0))
+
+
+def _planted(near: float) -> float:
+    """Whether a foot stands, 0..1."""
+    t = min(1.0, max(0.0, (near - PLANTED[0]) / (PLANTED[1] - PLANTED[0])))
+    return t * t * (3.0 - 2.0 * t)
 
 
 def _strength(near: float) -> float:
     """How strong a foot's ring is: solid where it stands, a faded trace of where it is in the air."""
-    t = min(1.0, max(0.0, (near - PLANTED[0]) / (PLANTED[1] - PLANTED[0])))
-    planted = t * t * (3.0 - 2.0 * t)
+    planted = _planted(near)
     return planted + (1.0 - planted) * (0.12 + 0.38 * near)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
-from dancetutor_cli.video.scene.prepare import PLANTED, Cast
+from dancetutor_cli.video.scene.prepare import BESIDE, PLANTED, Cast
 
 Array = NDArray[np.float64]
 # Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
@@ -211,7 +211,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
                         v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
                         keep = 1.0 - dark * _bilinear(shadow, u, v)
-                    ring, owner = 0.0, 0
+                    ring, owner, pressed = 0.0, 0, 0.0
                     for f in range(near_feet):
                         if (
                             feet[f, 5] < 0.0
@@ -232,8 +232,21 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
                         band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
                         band *= feet[f, 9]
+                        if band <= ring:
+                            continue
+                        light = 0.0  # of the panel that this foot presses: its colour is the foot's
+                        if (
+                            feet[f, 10] > 0.0
+                            and p >= 0
+                            and lit_colour[p, 0] == feet[f, 6]
+                            and lit_colour[p, 1] == feet[f, 7]
+                            and lit_colour[p, 2] == feet[f, 8]
+                        ):
+                            light = lit[p] * feet[f, 10]
+                        if light <= 0.0:
+                            band *= 1.0 - (1.0 - BESIDE) * feet[f, 10]
                         if band > ring:
-                            ring, owner = band, f
+                            ring, owner, pressed = band, f, light
                     if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
                         continue
                     keep = 1.0 - (1.0 - keep) * take
@@ -244,5 +257,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                             bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
                             value += (bright - value) * shine
                             value += (255.0 - value) * hot
-                        value += (feet[owner, 6 + k] - value) * ring * take
+                        ink = feet[owner, 6 + k]
+                        ink += (255.0 - ink) * pressed
+                        value += (ink - value) * ring * take
                         out[row, column, k] = quantise(value, row, c)

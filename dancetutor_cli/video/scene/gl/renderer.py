@@ -29,6 +29,7 @@ from dancetutor_cli.video.scene.gl.standing import Standing
 from dancetutor_cli.video.scene.gl.state import bind_texture, cover, scissor, set_state
 from dancetutor_cli.video.scene.look import LightLook
 from dancetutor_cli.video.scene.prepare import (
+    BESIDE,
     SAMPLES,
     SHADOW_MAP,
     Cast,
@@ -193,7 +194,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
             foot=feet[:, :4],
-            foot_state=feet[:, [4, 5, 9]],
+            foot_state=feet[:, [4, 5, 9, 10]],
+            beside=BESIDE,
             foot_colour=feet[:, 6:9] / 255.0,
             shadow=_SHADOW_UNIT,
             **{name: unit for unit, name in enumerate(units)},

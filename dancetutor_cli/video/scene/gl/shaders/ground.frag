@@ -14,7 +14,8 @@ uniform vec3 contact;         // darkness, softness, strength of lit panels
 uniform float radius;
 uniform int feet;             // how many can reach what is drawn
 uniform vec4 foot[4];         // heel x, z, toe x, z
-uniform vec3 foot_state[4];   // ground, nearness to it (< 0: no foot), strength of the mark
+uniform vec4 foot_state[4];   // ground, nearness to it (< 0: no foot), strength of the mark, how much it presses a panel
+uniform float beside;         // of its mark that it keeps beside that panel
 uniform vec3 foot_colour[4];
 
 out vec4 colour;
@@ -53,6 +54,7 @@ void main() {
     vec4 at = texelFetch(ground, pixel, 0);
     vec4 info = texelFetch(panels, pixel, 0);
     float keep = dark > 0.0 ? 1.0 - dark * shadowed(at.xyz) : 1.0;
+    vec4 lit = info.x >= 0.0 ? texelFetch(lights, ivec2(int(info.x + 0.5), 0), 0) : vec4(0.0);
     float ring = 0.0;
     vec3 ring_colour = vec3(0.0);
     for (int f = 0; f < feet; ++f) {
@@ -66,12 +68,14 @@ void main() {
         float planted = smoothstep(0.88, 0.95, near);
         float band = clamp((0.0040 + 0.0060 * planted - abs(d - (0.0220 - 0.0090 * planted))) / at.w + 0.5, 0.0, 1.0);
         band *= foot_state[f].z;
+        float pressed = foot_state[f].w;
+        float light = info.x >= 0.0 && distance(lit.rgb, foot_colour[f]) < 0.004 ? lit.a * pressed : 0.0;
+        band *= light > 0.0 ? 1.0 : 1.0 - (1.0 - beside) * pressed;
         if (band > ring) {
             ring = band;
-            ring_colour = foot_colour[f];
+            ring_colour = mix(foot_colour[f], vec3(1.0), light);
         }
     }
-    vec4 lit = info.x >= 0.0 ? texelFetch(lights, ivec2(int(info.x + 0.5), 0), 0) : vec4(0.0);
     float shine = info.y * lit.a * contact.z;
     if (keep >= 1.0 && shine <= 0.0 && ring <= 0.0) {
         discard;
