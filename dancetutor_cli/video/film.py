@@ -20,7 +20,7 @@ from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
 from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
 from dancetutor_cli.video.overlay.header import Header, Lines, WordsRoom
-from dancetutor_cli.video.overlay.highway import Highway, Score
+from dancetutor_cli.video.overlay.highway import TURNED, Highway, Score
 from dancetutor_cli.video.overlay.lanes import HighwayGeometry, lane_beside
 from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.video.scene.dancer import Dancer
 
 BACKGROUND = (12, 14, 26)
-FACING = "she faces you"  # said where no highway says that its arrows are turned with her
 LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of wide pads; words stand beside them
 ALL_LANES = 0.87  # where none do, but the measures' numbers
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
@@ -126,7 +125,7 @@ class Film:
             box,
             self.scale * part.text,
             self.face,
-            FACING if self.turned and not self.layout.highway else "",
+            TURNED if self.turned and not self.layout.highway else "",
             self.style.players if self.plan.notes.player.any() else (),
         )
 
