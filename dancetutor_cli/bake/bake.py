@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.grips import grips_of
 from dancetutor_cli.bake.keys import doubtful, key_times, refined
 from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, in_turn, joined, piece_ends, trimmed
-from dancetutor_cli.bake.settle import mass_of, settle, targets_at
+from dancetutor_cli.bake.settle import heels_may_rise, mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.motion.baked import Motion
@@ -22,6 +22,7 @@ from dancetutor_cli.motion.footwork import plan_footwork
 from dancetutor_cli.motion.ik.ankles import ease_ankles
 from dancetutor_cli.motion.ik.arms import free_hands
 from dancetutor_cli.motion.ik.full_body import Poses, solve
+from dancetutor_cli.motion.ik.rolling import rolled_soles
 from dancetutor_cli.motion.ik.targets import moved
 from dancetutor_cli.motion.layers.additive import Doing, add_layers
 from dancetutor_cli.motion.layers.fingers import add_fingers, curls, hand_use
@@ -194,7 +195,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
 
 def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     """Solve the body at times `at` (f,), and move it so that its centre of mass, head and all, is where it shall be."""
-    skeleton, reach = context.skeleton, context.settings.body.reach
+    skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
     targets = targets_at(plan, body, at, context)
     poses = solve(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
@@ -215,7 +216,11 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     for k in range(CORRECTIONS):
         targets = moved(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
         poses = solve(skeleton, targets, reach, 0.0)
-    ease_ankles(skeleton, poses.rotations, feet)
+    rises = heels_may_rise(plan, at, settings.step.press_time)
+    rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)
+    if rolled is not None:
+        poses = solve(skeleton, rolled, reach, 0.0)
+    ease_ankles(skeleton, poses, feet)
     look(poses, body, at, context)
     add_layers(poses, at, doing, context)
     add_fingers(skeleton, poses, curls(at, hands, context.settings.fingers))

@@ -60,7 +60,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
     body = body_trajectory(plan, times, feet, context)
     coarse, ones = times[::COARSE], np.ones(len(times))
     deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
-    may_rise, residuals = _may_rise(plan, times, settings.step.press_time), []
+    may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
     for number in range(rounds):
         targets = targets_at(plan, body, coarse, context)
@@ -129,7 +129,7 @@ def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
     return out[0], out[1]
 
 
-def _may_rise(plan: Plan, times: Array, down: float) -> Array:
+def heels_may_rise(plan: Plan, times: Array, down: float) -> Array:
     """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel.
 
     down : seconds in which it comes down for that

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.motion.swing.foot_path import FootPath
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.limits import beyond, excess, within
@@ -46,7 +47,8 @@ def test_feet_that_stand_are_left_alone() -> None:
     stands = np.arange(count) % 2 == 0
     ball = np.column_stack((still, np.where(stands, 0.0, 0.05), still))
     foot = FootPath(ball, still, still, stands, still)
-    ease_ankles(SKELETON, rotations, (foot, foot))
+    root = np.tile([0.0, 3.0, 0.0], (count, 1))  # far over the ground
+    ease_ankles(SKELETON, Poses(rotations, root), (foot, foot))
     np.testing.assert_array_equal(rotations[stands], before[stands])
     past = excess(SKELETON, rotations[~stands])
     assert excess(SKELETON, before[~stands])["l_talocrural"].max() > 5.0

@@ -48,8 +48,9 @@ def avoid_mines(row: Row, footing: Footing) -> Proposal:
 
 def _hopped(footing: Footing, time: float) -> Footing:
     """A hop of both feet to the middle of the pad, if there is still time to leave the ground."""
-    half = footing.settings.mines.hop / 2
-    take_off = max(time - half, *(f.earliest(time) for f in footing.feet))
+    half, stand = footing.settings.mines.hop / 2, footing.settings.step.stand
+    pushed = min(time - footing.settings.mines.push, max(f.landed for f in footing.feet) + stand)
+    take_off = max(time - half, pushed, *(f.earliest(time) for f in footing.feet))
     if take_off > time - SHORTEST:
         return footing
     goals, before = [_home(footing, foot) for foot in footing.feet], footing.feet

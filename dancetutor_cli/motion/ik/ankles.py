@@ -11,23 +11,57 @@ from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limits import beyond, within
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import points_in_world, sole_points
 
 Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limit
 GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])  # of a knee, tried
 NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is looked at, and that it has left then
+UNDER, HALVINGS = 2e-4, 6  # metres under the ground that a sole that turns may be; halvings to find how far it turns
 UP_FROM, UP_TO = 0.004, 0.030  # metres over the ground between which a foot gets free to turn: lower it would touch
 
 
-def ease_ankles(skeleton: Skeleton, rotations: Array, feet: tuple[FootPath, FootPath]) -> None:
-    """Turn feet back in place; rotations (f, j, 4) local, `feet` at the same f times. Ankles stay where they are."""
-    for side, foot in zip("lr", feet, strict=True):
-        name = f"{side}_talocrural"
-        joint = skeleton.index(name)
-        free = np.where(foot.down, 0.0, np.clip((foot.ball[:, 1] - UP_FROM) / (UP_TO - UP_FROM), 0.0, 1.0))
+def ease_ankles(skeleton: Skeleton, poses: Poses, feet: tuple[FootPath, FootPath]) -> None:
+    """Turn feet back in place, as far as their soles stay over the ground; `feet` at the times of the poses.
+
+    Ankles stay where they are.
+    """
+    for side, foot in enumerate(feet):
+        name = f"{'lr'[side]}_talocrural"
+        joint, rotations = skeleton.index(name), poses.rotations
+        free = freedom(foot)
         bent = np.flatnonzero((beyond(skeleton, name, rotations[:, joint]) > -MARGIN) & (free > 0.0))
+        if not len(bent):
+            continue
+        some = Poses(rotations[bent], poses.root[bent])
         eased = within(skeleton, name, rotations[bent, joint], MARGIN)
-        rotations[bent, joint] = quat.slerp(rotations[bent, joint], eased, free[bent])
+        floor = np.minimum(_lowest(skeleton, some, side), 0.0) - UNDER
+
+        def turned(share: Array, joint: int = joint, some: Poses = some, eased: Array = eased) -> Poses:
+            out = some.rotations.copy()
+            out[:, joint] = quat.slerp(out[:, joint], eased, share)
+            return Poses(out, some.root)
+
+        share, least = free[bent], np.zeros(len(bent))
+        deep = _lowest(skeleton, turned(share), side) < floor
+        most = share.copy()
+        for _ in range(HALVINGS if deep.any() else 0):
+            middle = (least + most) / 2
+            well = _lowest(skeleton, turned(middle), side) >= floor
+            least, most = np.where(well, middle, least), np.where(well, most, middle)
+        rotations[bent] = turned(np.where(deep, least, share)).rotations
+
+
+def _lowest(skeleton: Skeleton, poses: Poses, side: int) -> Array:
+    """How high (f,) the lowest point of a sole is, metres."""
+    points = points_in_world(skeleton, sole_points(skeleton)[side], *poses)
+    return np.asarray(points[..., 1].min(axis=1))
+
+
+def freedom(foot: FootPath) -> Array:
+    """How free (f,) a foot is to turn as its shank does, 0 to 1: not on the ground, nor where it would touch it."""
+    up = np.clip((foot.ball[:, 1] - UP_FROM) / (UP_TO - UP_FROM), 0.0, 1.0)
+    return np.where(foot.down, 0.0, up)
 
 
 def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:

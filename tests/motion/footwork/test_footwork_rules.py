@@ -114,6 +114,18 @@ def test_a_foot_stays_up_from_its_mines_to_a_jump_where_the_other_one_was_up_bet
     assert (stayed.land, stayed.height) == (2.78, own.settings.mines.height)
 
 
+@pytest.mark.parametrize(("after", "stood"), [(0.05, 0.02), (0.075, 0.045), (0.1, 0.045), (0.15, 0.045), (0.3, 0.18)])
+def test_a_hop_over_mines_waits_until_legs_have_landed(after: float, stood: float) -> None:
+    """Mines under both feet so many seconds after a jump: pushing off at once would take five times the weight."""
+    danced = play([(1.0, {0: L, 3: R}), (1.0 + after, {})], mines={1: [0, 3]})
+    plan = Planner(danced, lambda tick: tick / 48.0, context()).run()
+    for track in plan.feet:
+        landed, hop = track.moves[-2:]
+        assert isinstance(hop, Jump) and landed.land == 1.0
+        assert hop.lift - 1.0 == pytest.approx(stood, abs=1e-6)
+        assert hop.lift <= 1.0 + after - context().settings.mines.push < hop.land
+
+
 def test_each_rule_is_asked() -> None:
     """Steps, a gallop and a jump of one play are each there, from the planner that applied them."""
     danced = play(EVENTS)

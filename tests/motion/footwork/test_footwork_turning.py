@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from bake_plays import context
 
-from dancetutor_cli.bake.settle import _may_rise
+from dancetutor_cli.bake.settle import heels_may_rise
 from dancetutor_cli.motion.baked import Contact
 from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
 from dancetutor_cli.motion.footwork.flights import Flight, flown
 from dancetutor_cli.motion.footwork.footing import FREE_WINDOW, Footing
 from dancetutor_cli.motion.footwork.turning import turn_start
 from dancetutor_cli.motion.ik.ankles import ease_ankles
+from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.motion.ik.knees import knee_poles
 from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.motion.settings import default_settings
@@ -117,7 +118,7 @@ def test_an_ankle_is_eased_only_where_its_foot_is_high() -> None:
     still, up = np.zeros(2), np.array([[0.0, 0.003, 0.0], [0.0, 0.05, 0.0]])
     foot = FootPath(up, still, still, np.zeros(2, dtype=bool), still)
     eased = rotations.copy()
-    ease_ankles(skeleton, eased, (foot, foot))
+    ease_ankles(skeleton, Poses(eased, np.tile([0.0, 3.0, 0.0], (2, 1))), (foot, foot))
     np.testing.assert_array_equal(eased[0], rotations[0])
     assert beyond(skeleton, "l_talocrural", eased[1:, joint])[0] <= 0.0
 
@@ -130,5 +131,5 @@ def test_a_heel_that_presses_does_not_rise_for_its_ankle() -> None:
     track = FootTrack((0.0, 0.0), 0.0, ())
     plan = Plan((track, track), (), (), contacts, 2.0, 3.4)
     times = np.array([1.9, 2.0, 2.2, 2.4, 2.5, 3.1])
-    np.testing.assert_allclose(_may_rise(plan, times, SETTINGS.step.press_time)[:, 0], [1, 0, 0, 0, 1, 1])
-    np.testing.assert_allclose(_may_rise(plan, times, SETTINGS.step.press_time)[:, 1], 1.0)
+    np.testing.assert_allclose(heels_may_rise(plan, times, SETTINGS.step.press_time)[:, 0], [1, 0, 0, 0, 1, 1])
+    np.testing.assert_allclose(heels_may_rise(plan, times, SETTINGS.step.press_time)[:, 1], 1.0)

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.motion.ik.ankles import giving_knees
+from dancetutor_cli.motion.ik.ankles import ease_ankles, giving_knees
 from dancetutor_cli.motion.ik.full_body import Poses
 from dancetutor_cli.motion.ik.knees import Hung, Legs
+from dancetutor_cli.motion.swing.foot_path import FootPath
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limits import beyond
 from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.rig.soles import points_in_world, sole_points
 
 ACROSS, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 SKELETON = dancer_skeleton()
@@ -76,3 +78,21 @@ def test_a_knee_does_not_turn_where_that_bends_the_ankle_too_far_just_before(twi
     poses.rotations[0] = before[0]
     poses.rotations[0, foot] = quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(np.radians(twist)))
     assert (giving_knees(SKELETON, poses, 0)[1, 0] > 0.0) and (giving_knees(SKELETON, poses, 1)[1, 0] > 0.0) == turns
+
+
+@pytest.mark.parametrize(("lifted", "whole"), [(0.012, False), (0.028, False), (0.2, True)])
+def test_a_foot_in_the_air_turns_only_as_far_as_its_sole_stays_over_the_ground(lifted: float, whole: bool) -> None:
+    poses = squat("l", 10.0, lifted=lifted)
+    foot = SKELETON.index("l_talocrural")
+    poses.rotations[:, foot] = quat.from_axis_angle(ACROSS, np.full(2, np.radians(100.0)))  # toes hang down
+    root = poses.root.copy()
+    root[:, 1] += lifted - points_in_world(SKELETON, sole_points(SKELETON)[0], *poses)[..., 1].min(axis=1)
+    poses = Poses(poses.rotations, root)
+    up, still = np.tile([0.0, 0.1, 0.0], (2, 1)), np.zeros(2)
+    path = FootPath(up, still, still, np.zeros(2, dtype=bool), still)
+    ease_ankles(SKELETON, poses, (path, path))
+    low = points_in_world(SKELETON, sole_points(SKELETON)[0], *poses)[..., 1].min(axis=1)
+    assert (low > -2.1e-4).all()
+    past = beyond(SKELETON, "l_talocrural", poses.rotations[:, foot])
+    assert ((past <= 0.0) == whole).all()
+    assert (past < 40.0 - 1e-3).all()

@@ -1,0 +1,152 @@
+"""Soles that roll: a foot whose ankle would bend too far comes down on an edge, or with its heel up, and lies flat as
+the body comes over it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.motion.foot_moves import Pivot, Swing
+from dancetutor_cli.motion.ik.ankles import MARGIN, freedom
+from dancetutor_cli.motion.ik.full_body import Poses, Targets
+from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.motion.swing.foot_path import Feet
+from dancetutor_cli.motion.swing.panels import HALF_PANEL
+from dancetutor_cli.numerics.ease import smooth
+from dancetutor_cli.play.played import Part
+from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.rig.limits import beyond, within
+from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import sole_points
+
+Array = NDArray[np.float64]
+ROUNDS = 4  # of turning a sole and seeing what is left
+MOST = np.radians((18.0, 20.0))  # that a sole rolls, and that its heel rises
+PRESSED, FADE = 0.006, 0.04  # seconds around a note in which a sole does not roll off its panel, and in which it begins
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """Of a sole that lies flat, seen from the joint of its ball: its edges at smaller and at larger x.
+
+    balls : (2, 3) where they are beside the ball; lines : (2, 3) unit vectors along them; ankle : (3,)
+    """
+
+    balls: Array
+    lines: Array
+    ankle: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """A foot in m frames, world rotations (m, 4): of its shank, of itself, and of a flat foot with the same yaw.
+
+    give : (m, 2) how much it may roll and its heel rise, 0 to 1
+    """
+
+    name: str
+    shank: Array
+    turn: Array
+    straight: Array
+    give: Array
+
+
+def edges_of(skeleton: Skeleton, side: int) -> Edges:
+    """The edges of the left (0) or the right sole."""
+    name, points = "lr"[side], sole_points(skeleton)[side]
+    ball = skeleton.rest[skeleton.index(f"{name}_metatarsal")]
+    places = np.array([skeleton.rest[p.joint] + p.offset - ball for p in points[:4]])
+    heels, balls = (pair[np.argsort(pair[:, 0])] for pair in (places[:2], places[2:]))
+    lines = (balls - heels) / np.linalg.norm(balls - heels, axis=1, keepdims=True)
+    return Edges(balls, lines, skeleton.rest[skeleton.index(f"{name}_talocrural")] - ball)
+
+
+def rolled_soles(
+    skeleton: Skeleton, plan: Plan, posed: tuple[Array, Feet, Targets, Poses], rises: Array
+) -> Targets | None:
+    """Other targets, with which ankles of feet on the ground, or little over it, are within their limits.
+
+    Where a foot touches the ground, or would, it stays. None where nothing is to be done.
+
+    posed : times (f,), feet, targets and poses there; rises : (f, 2) how much heels may rise, 0 to 1
+    """
+    times, feet, targets, poses = posed
+    ankles, soles, toes, found = targets.ankles.copy(), targets.soles.copy(), targets.toes.copy(), False
+    for side, foot in enumerate(feet):
+        name = f"{'lr'[side]}_talocrural"
+        joint, edges, low = skeleton.index(name), edges_of(skeleton, side), 1.0 - freedom(foot)
+        past = beyond(skeleton, name, poses.rotations[:, joint]) > -MARGIN
+        at = np.flatnonzero(past & (low > 0.0) & (foot.pitch > -1e-6))
+        if not len(at):
+            continue
+        found = True
+        shank = world_transforms(skeleton, poses.rotations[at], poses.root[at])[1][:, skeleton.parents[joint]]
+        give = low[at, None] * np.column_stack((may_roll(plan, side, times[at]), rises[at, side]))
+        sole = Sole(name, shank, soles[at, side], quat.from_axis_angle(quat.UP, foot.yaw[at]), give)
+        angles = _angles(skeleton, sole, edges)
+        ball = ankles[at, side] - quat.rotate(sole.turn, edges.ankle)
+        edge = quat.rotate(sole.straight, edges.balls[_down(angles)])
+        angles[:, 0] *= _pressing(plan, side, ball + edge, times[at])
+        roll, both = _turns(angles, sole.straight, edges)
+        soles[at, side], toes[at, side] = quat.multiply(both, sole.turn), quat.multiply(roll, toes[at, side])
+        ankles[at, side] = ball + edge - quat.rotate(roll, edge) + quat.rotate(soles[at, side], edges.ankle)
+    return replace(targets, ankles=ankles, soles=soles, toes=toes) if found else None
+
+
+def may_roll(plan: Plan, side: int, at: Array) -> Array:
+    """How much (f,) a foot may roll at times `at` (f,), 0 to 1.
+
+    Not while it stands and turns on its ball, which would slide.
+    """
+    out = np.ones(len(at))
+    swings = [move for move in plan.feet[side].moves if isinstance(move, Swing)]
+    stands = np.array([(-np.inf, *(m.land for m in swings)), (*(m.lift for m in swings), np.inf)]).T
+    turns = [move.lift for move in plan.feet[side].moves if isinstance(move, Pivot)]
+    still = [stands[np.searchsorted(stands[:, 0], turn, side="right") - 1] for turn in turns]
+    for start, end in still:
+        out = np.minimum(out, smooth((np.maximum(start - at, at - end) - PRESSED) / FADE))
+    return out
+
+
+def _pressing(plan: Plan, side: int, edge: Array, at: Array) -> Array:
+    """How much (f,) a sole may roll onto an edge that is at (f, 3), 0 to 1: not as it presses a panel beside that, or
+    two panels."""
+    out = np.ones(len(at))
+    for contact in (c for c in plan.contacts if c.limb == side):
+        away = np.abs(at - contact.start) - PRESSED
+        beside = np.abs(edge[:, [0, 2]] - np.array(contact.panel)).max(axis=1) > HALF_PANEL
+        beside |= contact.part != Part.WHOLE
+        out = np.where(beside, np.minimum(out, smooth(away / FADE)), out)
+    return out
+
+
+def _down(angles: Array) -> NDArray[np.int64]:
+    """Which edge (m,) of a sole that rolls stays on the ground."""
+    return np.asarray(angles[:, 0] < 0.0, dtype=np.int64)
+
+
+def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
+    """World rotations (m, 4) of toes and of the foot, which the heel's rise turns before it rolls.
+
+    angles : (m, 2) radians that the sole rolls, its larger x up, and that its heel rises
+    """
+    roll = quat.from_axis_angle(quat.rotate(straight, edges.lines[_down(angles)]), angles[:, 0])
+    rise = quat.from_axis_angle(quat.rotate(straight, np.array([1.0, 0.0, 0.0])), angles[:, 1])
+    return roll, quat.multiply(roll, rise)
+
+
+def _angles(skeleton: Skeleton, sole: Sole, edges: Edges) -> Array:
+    """How far (m, 2) a sole rolls and its heel rises, as in `_turns`, for its ankle to be within its limits."""
+    axes = [quat.rotate(sole.straight, np.array(axis)) for axis in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))]
+    angles, least, most = np.zeros((len(sole.turn), 2)), [-MOST[0], 0.0], MOST
+    for _ in range(ROUNDS):
+        now = quat.multiply(_turns(angles, sole.straight, edges)[1], sole.turn)
+        eased = within(skeleton, sole.name, quat.multiply(quat.conjugate(sole.shank), now), MARGIN)
+        more = quat.multiply(quat.multiply(sole.shank, eased), quat.conjugate(now))
+        more = 2.0 * np.where(more[:, :1] < 0.0, -more, more)[:, 1:]
+        angles += np.stack([np.sum(more * axis, axis=1) for axis in axes], axis=1)
+        angles = np.clip(angles, sole.give * least, sole.give * most)
+    return angles
