@@ -18,7 +18,7 @@ from build_character_loft import Lofted
 from build_character_mesh import Triangles, even, gradient, surface
 from build_character_parts import Part, heel_parts, mannequin_parts, parts
 from build_character_sdf import Array, blend, both
-from build_character_skin import ORDER, Skin, four
+from build_character_skin import ORDER, Skin, four, with_elbows
 from build_character_socks import Cut, cut_level, on_side
 
 from dancetutor_cli.character.mesh import Character, Material, Mesh
@@ -35,7 +35,7 @@ def reference() -> Skin:
     """Heat weights on the whole body as one closed skin."""
     feet = both(body.shoe_upper())
     shape = blend(0.02, body.torso(), both(body.leg()), both(body.arm()), body.chest_skin(), head.head(), feet)
-    return Skin(*surface(shape, (-0.68, -0.02, -0.18), (0.68, 1.76, 0.22), 0.009, even(0.016)))
+    return Skin(*surface(shape, (-0.68, -0.02, -0.18), (0.68, 1.76, 0.22), 0.009, even(0.013)))
 
 
 def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
@@ -44,7 +44,7 @@ def weights_of(part: Part, made: Lofted, skin: Skin) -> Array:
     out = np.zeros((len(points), len(ORDER)))
     if part.skin == "heat":
         normals = gradient(part.on, points) if part.on else normals
-        out = skin.at(points, normals)
+        out = with_elbows(skin.at(points, normals), points)
         return _with_fingers(_with_ankles(out, points) if part.ankles else out, points)
     if part.skin == "foot":
         toes = _smooth((points[:, 2] - 0.078) / 0.040)

@@ -62,9 +62,9 @@ SHIRT = [
     (1.400, 0.1020, 0.060, 0.069, -0.025), (1.430, 0.0660, 0.050, 0.057, -0.021), (1.465, 0.0500, 0.048, 0.050, -0.014),
 ]  # fmt: skip
 SLEEVE = [
-    (-0.030, 0.045, 0.047, 0.047, 0.0), (0.020, 0.0465, 0.0485, 0.0485, 0.0), (0.070, 0.0465, 0.0475, 0.0480, 0.0),
-    (0.1015, 0.0482, 0.0486, 0.0490, 0.0), (0.1055, 0.0510, 0.0512, 0.0516, 0.0),
-    (0.1175, 0.0514, 0.0516, 0.0520, 0.0), (0.128, 0.0500, 0.0502, 0.0506, 0.0),
+    (-0.030, 0.043, 0.045, 0.045, 0.0), (0.020, 0.0440, 0.0460, 0.0460, 0.0), (0.070, 0.0440, 0.0450, 0.0455, 0.0),
+    (0.1015, 0.0460, 0.0464, 0.0468, 0.0), (0.1055, 0.0488, 0.0490, 0.0494, 0.0),
+    (0.1175, 0.0492, 0.0494, 0.0498, 0.0), (0.128, 0.0480, 0.0482, 0.0486, 0.0),
 ]  # fmt: skip
 SLEEVE_END, CUFF, HEM, ANKLE = 0.122, 0.1035, 0.976, 0.120  # the cuff is the sleeve's own turned-up end
 SOCKS = (0.115, 0.395)  # bottom, inside the shoes, and top of the long socks that wear the feet's colours
@@ -83,8 +83,8 @@ def shoulders(by: float = 0.0) -> Shape:
     return both(
         blend(
             0.03,
-            cone((0.10, 1.368, -0.022), (0.160, 1.374, -0.015), 0.050 + by, 0.0455 + by),
-            cone((0.030, 1.437, -0.024), (0.135, 1.392, -0.018), 0.030 + by, 0.038 + by),
+            cone((0.10, 1.366, -0.022), (0.158, 1.370, -0.015), 0.050 + by, 0.0425 + by),
+            cone((0.030, 1.437, -0.024), (0.135, 1.387, -0.018), 0.030 + by, 0.036 + by),
         )
     )
 
@@ -171,9 +171,9 @@ def shirt_cloth(ends: bool = False) -> Shape:
     sleeve = stack(SHOULDER, ARM, FRONT, [*SLEEVE, (0.20, *SLEEVE[-1][1:])])
     if ends:
         sleeve = common(sleeve, half_space(on_arm(SLEEVE_END), ARM), 0.004)
-    sleeves = both(blend(0.03, sleeve, cone((0.10, 1.368, -0.022), SHOULDER, 0.053, 0.048)))
+    sleeves = both(blend(0.03, sleeve, cone((0.10, 1.366, -0.022), SHOULDER - 0.003 * UP, 0.053, 0.0450)))
     body = blend(0.045, stack((0, 0, 0), UP, FRONT, longer), grow(bust(), 0.006))
-    return blend(0.035, body, sleeves, shoulders(0.007))
+    return blend(0.035, body, sleeves, shoulders(0.006))
 
 
 def shirt() -> Shape:

@@ -89,16 +89,17 @@ def fine_between_legs(size: Size) -> Size:
 def shirt_mesh() -> Lofted:
     """The shirt, with normals that do not turn under at its edges; finer at the neckline."""
     neck = body.neckline()
-    edge = ramp([0.008, 0.03], [0.0125, 0.0230], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM)))
+    edge = ramp([0.008, 0.03], [0.0125, 0.0245], lambda p: np.minimum(np.abs(neck(p)), np.abs(p[:, 1] - body.HEM)))
+    shoulder = ramp([0.060, 0.085], [0.0175, 0.0245], lambda p: np.linalg.norm(p * _on_left(p) - body.SHOULDER, axis=1))
     cuff = ramp(
-        [0.058, 0.070], [0.0115, 0.0230], lambda p: np.linalg.norm(p * _on_left(p) - body.on_arm(0.114), axis=1)
+        [0.058, 0.070], [0.0115, 0.0245], lambda p: np.linalg.norm(p * _on_left(p) - body.on_arm(0.114), axis=1)
     )
     points, _, triangles = surface(
         body.shirt(),
         (-0.32, 0.96, -0.14),
         (0.32, 1.46, 0.14),
         0.005,
-        lambda p: np.minimum(edge(p), cuff(p)),
+        lambda p: np.minimum(np.minimum(edge(p), cuff(p)), shoulder(p)),
     )
     normals = softer(gradient(body.shirt_cloth(), points), gradient(body.shirt_cloth(), points, 0.040), 0.85)
     normals = lit_from_the_side(points, normals)

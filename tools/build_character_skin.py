@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sparse
-from build_character_body import REST, SKELETON
+from build_character_body import ARM, FRONT, REST, SHOULDER, SKELETON
 from build_character_mesh import Triangles
 from build_character_sdf import Array
 from numpy.typing import NDArray
@@ -17,6 +17,10 @@ from scipy.spatial import cKDTree
 
 ORDER = {name: j for j, name in enumerate(SKELETON.names)}
 HEAT = 1.0  # c of the source: larger keeps the bend nearer to the joint
+ROUND_SHOULDER = 0.022  # metres over which weights around the arm's joint are spread: heat alone makes a corner there
+POINT = 0.021  # metres over the joint that the point begins, which goes with the forearm
+ELBOW = float((REST["l_elbow"] - SHOULDER) @ ARM)  # from the shoulder along the arm
+FOLD = (0.040, 0.012)  # half the width of the elbow's bend, metres, at its inner side and at its point
 
 
 def bones() -> list[tuple[str, Array, Array]]:
@@ -51,7 +55,36 @@ def heat_weights(points: Array, triangles: Triangles) -> Array:
         here = np.array([segments[k][0] == joint for k in owner], dtype=float)
         out[:, ORDER[joint]] = system.solve(mass * heat * here)
     out = np.clip(out, 0, None)
-    return np.asarray(out / out.sum(1, keepdims=True))
+    return _rounded(out / out.sum(1, keepdims=True), points, laplacian, mass)
+
+
+def _rounded(weights: Array, points: Array, laplacian: sparse.csr_matrix, mass: Array) -> Array:
+    """Weights spread over the skin around the arms' joints, by one step of diffusion."""
+    spread = splu((sparse.diags(mass) + ROUND_SHOULDER**2 * laplacian).tocsc()).solve(mass[:, None] * weights)
+    away = np.linalg.norm(np.column_stack([np.abs(points[:, 0]), points[:, 1:]]) - SHOULDER, axis=1)
+    share = np.interp(away, [0.07, 0.13], [1.0, 0.0])[:, None]
+    return np.asarray(weights + share * (spread / spread.sum(1, keepdims=True) - weights))
+
+
+def with_elbows(weights: Array, points: Array) -> Array:
+    """Elbows that fold: the bend is wide at the inner side and narrow at the point, which goes with the forearm.
+
+    As wide all around it is a bent tube.
+    """
+    out = weights.copy()
+    for side, sign in (("l", 1.0), ("r", -1.0)):
+        upper, fore = ORDER[f"{side}_shoulder"], ORDER[f"{side}_elbow"]
+        away = points * [sign, 1.0, 1.0] - SHOULDER
+        along, ahead = away @ ARM - ELBOW, away @ FRONT
+        inner = np.interp(ahead, [-0.022, 0.022], [0.0, 1.0])
+        half = FOLD[1] + (FOLD[0] - FOLD[1]) * inner
+        t = np.clip(0.5 + (along + POINT * (1.0 - inner)) / (2.0 * half), 0, 1)
+        whole = weights[:, upper] + weights[:, fore]
+        here = np.interp(np.abs(along), [0.06, 0.10], [1.0, 0.0]) * (points[:, 0] * sign > 0.2)
+        bent = whole * t * t * (3.0 - 2.0 * t)
+        out[:, fore] += here * (bent - weights[:, fore])
+        out[:, upper] = whole - out[:, fore]
+    return out
 
 
 def _to_segment(p: Array, a: Array, b: Array) -> Array:

@@ -16,7 +16,8 @@ from dancetutor_cli.video.scene.textures import Skins, density, skins_of
 
 F32 = NDArray[np.float32]
 FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
-BELOW = ("HumanoidRoot", "vl5", "vt10", *(f"{side}_{part}" for side in "lr" for part in ("hip", "knee")), *FEET)
+TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4")
+BELOW = (*TRUNK, *(f"{side}_{part}" for side in "lr" for part in ("sternoclavicular", "hip", "knee")), *FEET)
 ABOVE = 4.0  # metres: more than she ever has between herself and the light
 OWN, SHARED = (
     0.5,
@@ -34,8 +35,8 @@ class Packed:
     triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
     material : int32 (v,), number of the mesh, whose texture is in `skins`
     density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
-    above : float32 (v,), metres nearer to the light at which a vertex asks for her own shadow: below the chest it is so
-    far that there is none, for a hand's shadow on a thigh or on the shirt is seen as a stain
+    above : float32 (v,), metres nearer to the light at which a vertex asks for her own shadow: on trunk, neck and legs
+    it is so far that there is none, for a hand's shadow on a thigh, or a braid's on the shirt, is seen as a stain
     patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
     """
 

@@ -44,12 +44,16 @@ class FollowLook:
 
 @dataclass(frozen=True, slots=True)
 class LightLook:
-    """The one light and its shadows."""
+    """The one light and its shadows.
+
+    shadow_far : 0..1, how much of it is left where head and hands cast it
+    """
 
     azimuth: float
     elevation: float
     shadow: float
     shadow_soft: float
+    shadow_far: float
     contact: float
     contact_soft: float
     contact_height: float

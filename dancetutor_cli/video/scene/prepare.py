@@ -28,6 +28,7 @@ SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texe
 SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
 _MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
 _MARK_HEIGHT = 1.0  # a foot higher than this has no mark
+SHADOW_FADE = (0.25, 0.95)  # metres from her, on the floor, over which her shadow grows light
 NO_FOOT = -1.0
 _UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
 BESIDE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
@@ -83,6 +84,13 @@ def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast
     root = joints[0, :3, 3]
     corner = [np.floor((axes[k] * root).sum() * scale) / scale - SHADOW_REACH / 2 for k in (0, 1)]
     return Cast(axes, np.array(corner), scale)
+
+
+def shadow_middles(scene: Scene, joints: Array) -> Array:
+    """Where on the floor, x and z, those stand who dance, (2, 2): of one who is alone twice the same."""
+    names = scene.character.skeleton.names
+    roots = [j for j, name in enumerate(names) if name.removeprefix(PREFIX) == "HumanoidRoot"] or [0]
+    return np.ascontiguousarray(joints[[roots[0], roots[-1]]][:, (0, 2), 3])
 
 
 def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> float:

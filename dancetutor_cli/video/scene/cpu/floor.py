@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.video.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
-from dancetutor_cli.video.scene.prepare import BESIDE, PLANTED, Cast
+from dancetutor_cli.video.scene.prepare import BESIDE, PLANTED, SHADOW_FADE, Cast
 
 Array = NDArray[np.float64]
 # Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
@@ -104,12 +104,23 @@ class Shadow(NamedTuple):
 
     mask : float32 (s, s), how much; part : texels of it outside of which there is nothing, (left, top, right, bottom)
     cast : where that is; dark : 0..1, of all
+    middles : (2, 2), `prepare.shadow_middles`; far : 0..1, how much is left a step away from them
     """
 
     mask: NDArray[np.float32]
     part: tuple[int, int, int, int]
     cast: Cast
     dark: float
+    middles: Array
+    far: float
+
+
+@njit(cache=True, inline="always")
+def _left_of_shadow(x: float, z: float, middles: Any, far: float) -> float:  # pragma: no cover
+    """How much of the shadow, 0..1, is left at a place of the floor."""
+    first = (x - middles[0, 0]) ** 2 + (z - middles[0, 1]) ** 2
+    second = (x - middles[1, 0]) ** 2 + (z - middles[1, 1]) ** 2
+    return 1.0 - (1.0 - far) * smooth(SHADOW_FADE[0], SHADOW_FADE[1], np.sqrt(min(first, second)))
 
 
 class Live(NamedTuple):
@@ -210,7 +221,8 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                     if dark > 0.0:
                         u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
                         v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
-                        keep = 1.0 - dark * _bilinear(shadow, u, v)
+                        keep = dark * _bilinear(shadow, u, v)
+                        keep = 1.0 - keep * _left_of_shadow(x, z, shade.middles, shade.far) if keep > 0.0 else 1.0
                     ring, owner, pressed = 0.0, 0, 0.0
                     for f in range(near_feet):
                         if (

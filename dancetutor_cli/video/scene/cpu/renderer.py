@@ -40,6 +40,7 @@ from dancetutor_cli.video.scene.prepare import (
     panel_lights,
     pixels_per_metre,
     place_cast,
+    shadow_middles,
     shown,
     skin_matrices,
 )
@@ -89,7 +90,7 @@ class CpuRenderer:
         cast = place_cast(self._scene, camera, joints, self._map)
         count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
         triangles = mesh.triangles[:count]
-        shadow = self._draw_shadow(triangles, cast)
+        shadow = self._draw_shadow(triangles, cast, shadow_middles(self._scene, joints))
         self._draw_ground(state, background, shift, shadow)
         self._draw_dancer(triangles, joints, camera, cast)
         return self._out
@@ -105,19 +106,20 @@ class CpuRenderer:
             self._background = (key, drawn)
         return self._background[1]
 
-    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast) -> Shadow:
+    def _draw_shadow(self, triangles: NDArray[np.int32], cast: Cast, middles: Array) -> Shadow:
+        light = self._scene.look.light
         if not self._map:
-            return Shadow(self._mask, (0, 0, 0, 0), cast, 0.0)
+            return Shadow(self._mask, (0, 0, 0, 0), cast, 0.0, middles, 1.0)
         self._shadow[:] = 0.0
         project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
         fill_depth(self._light_points, triangles, self._shadow)
         left, top, right, bottom = occupied(self._shadow, self._mask)
-        radius = max(1, round(self._scene.look.light.shadow_soft * cast.scale / 2))
+        radius = max(1, round(light.shadow_soft * cast.scale / 2))
         reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
         box = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
         for _ in range(2):
             blur(self._mask, box, radius, self._spare)
-        return Shadow(self._mask, box, cast, self._scene.look.light.shadow)
+        return Shadow(self._mask, box, cast, light.shadow, middles, light.shadow_far)
 
     def _draw_ground(self, state: FrameState, background: Background, shift: int, shade: Shadow) -> None:
         look, cast = self._scene.look, shade.cast

@@ -31,6 +31,7 @@ from dancetutor_cli.video.scene.look import LightLook
 from dancetutor_cli.video.scene.prepare import (
     BESIDE,
     SAMPLES,
+    SHADOW_FADE,
     SHADOW_MAP,
     Cast,
     Shown,
@@ -40,6 +41,7 @@ from dancetutor_cli.video.scene.prepare import (
     pixel_box,
     pixels_per_metre,
     place_cast,
+    shadow_middles,
     shown,
     skin_matrices,
 )
@@ -191,6 +193,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             dark=float(look.light.shadow if cast.scale else 0.0),
             within=part,
             spread=spread,
+            middles=shadow_middles(self._scene, her.joints),
+            fade=np.array([*SHADOW_FADE, look.light.shadow_far]),
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
             foot=feet[:, :4],

@@ -10,6 +10,8 @@ uniform mat4 light;
 uniform float dark;
 uniform float spread;         // distance of the shadow's taps, part of the map
 uniform vec4 within;          // the part of the map beyond which there is no shadow
+uniform vec2 middles[2];      // where those stand who cast the shadow
+uniform vec3 fade;            // metres from there over which the shadow grows light, and what is left of it
 uniform vec3 contact;         // darkness, softness, strength of lit panels
 uniform float radius;
 uniform int feet;             // how many can reach what is drawn
@@ -53,7 +55,9 @@ void main() {
     }
     vec4 at = texelFetch(ground, pixel, 0);
     vec4 info = texelFetch(panels, pixel, 0);
-    float keep = dark > 0.0 ? 1.0 - dark * shadowed(at.xyz) : 1.0;
+    float away = min(distance(at.xz, middles[0]), distance(at.xz, middles[1]));
+    float left = 1.0 - (1.0 - fade.z) * smoothstep(fade.x, fade.y, away);
+    float keep = dark > 0.0 ? 1.0 - dark * left * shadowed(at.xyz) : 1.0;
     vec4 lit = info.x >= 0.0 ? texelFetch(lights, ivec2(int(info.x + 0.5), 0), 0) : vec4(0.0);
     float ring = 0.0;
     vec3 ring_colour = vec3(0.0);
