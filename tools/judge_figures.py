@@ -159,7 +159,21 @@ def _speeds(dance: Dance) -> list[Row]:
     return [
         Row("wrist speed", float(wrists.max()), "m/s", (0.0, 4.0), "wrist speed", whip),
         Row("pelvis turns at", float(turn.max()), "degrees/s", (0.0, 650.0), "pelvis turns at", spin),
+        *_head(dance),
         Row("jerk of the root, mean", float(jerk.mean()), "m/s^3", (0.0, 200.0), "jerk of the root"),
+    ]
+
+
+def _head(dance: Dance) -> list[Row]:
+    """How far the face is turned from where the chest faces, and how fast it turns on it; at rest both face +Z."""
+    face = np.einsum("fji,fj->fi", dance.turns["vt4"], dance.turns["skullbase"][..., 2])
+    neck = np.unwrap(np.arctan2(face[:, 0], face[:, 2]))
+    far, quick = np.degrees(np.abs((neck + np.pi) % (2.0 * np.pi) - np.pi)), np.degrees(np.abs(np.diff(neck)))
+    wrung, whipped = (float(dance.times[path.argmax()]) for path in (far, quick))
+    speed = float(quick.max()) * dance.rate
+    return [
+        Row("head from the chest", float(far.max()), "degrees", (0.0, 80.0), "head from the chest", wrung),
+        Row("head turns on the chest at", speed, "degrees/s", None, "head turns on the chest at", whipped),
     ]
 
 

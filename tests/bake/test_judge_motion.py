@@ -36,6 +36,8 @@ SAME = (
     ("trunk lean, median", "trunk lean, median", 1.0, 0.1),
     ("wrist speed", "wrist speed", 1.0, 0.02),
     ("pelvis turns at", "pelvis turns at", 1.0, 2.0),
+    ("head from the chest", "head from the chest", 1.0, 0.2),
+    ("head turns on the chest at", "head turns on the chest at", 1.0, 3.0),
     ("leg in leg over 1 cm", "leg in leg", 1000.0 / FPS, 0.0),
     ("arm in leg over 1 cm", "arm in leg", 1000.0 / FPS, 0.0),
     ("plant slide, longest", "plant slide", 1.0, 0.4),
@@ -134,9 +136,16 @@ def slowed(motion: Motion) -> Motion:
     return replace(motion, times=motion.times * 1.1, contacts=())
 
 
+def a_wrung_neck(motion: Motion) -> Motion:
+    far = 95.0 * np.clip((motion.times - 14.0) / 0.1, 0.0, 1.0)
+    return turned(motion, "vc4", quat.from_axis_angle((0, 1, 0), np.radians(far)))
+
+
 @pytest.mark.parametrize(
     ("spoilt", "name", "least", "row"),
     [
+        (a_wrung_neck, "head from the chest", 80.0, "head from the chest"),
+        (a_wrung_neck, "head turns on the chest at", 700.0, "head turns on the chest at"),
         (a_leg_in_the_other, "leg in leg over 1 cm", 200.0, "leg in leg"),
         (a_knee_kept_bent, "knees at toe-off", 40.0, "knee flexion at take-off"),
         (slid, "plant slide, longest", 15.0, "plant slide"),

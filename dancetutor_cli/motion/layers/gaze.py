@@ -34,7 +34,9 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
     chin = quat.from_axis_angle(ACROSS, -np.radians(settings.look.chin) * (1.0 - bent))
-    whole = quat.multiply(quat.conjugate(chest), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
+    # in a deep bend hands pull the chest askew, and a head that kept its way in the world would be wrung on it
+    meant = quat.slerp(chest, leaning(tilt, chest_yaw), bent)
+    whole = quat.multiply(quat.conjugate(meant), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
     neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), settings.look.neck_share))
     rotations[:, skeleton.index("vc4")] = neck
     rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)

@@ -12,9 +12,10 @@ from dancetutor_cli.motion.trajectory.crossing import crossing_share, turned_acr
 from dancetutor_cli.motion.trajectory.reach import press_share, turned_for_hands, wrapped
 from dancetutor_cli.numerics.controller import Controller, follow
 from dancetutor_cli.numerics.ease import smooth
-from dancetutor_cli.numerics.smoothing import no_faster, smooth_path
+from dancetutor_cli.numerics.smoothing import no_faster, smooth_path, upper_envelope
 
 Array = NDArray[np.float64]
+HELD, AROUND_QUICK = 1e-3, 0.5  # radians that a neck is held back; seconds around it that are softer
 
 
 def pelvis_yaw(plan: Plan, times: Array, settings: MotionSettings) -> Array:
@@ -65,6 +66,20 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     head = _head(wrapped(to_screen - chest), course, settings) * (1.0 - settings.walk.ahead * ahead)
     head = no_faster(head, course.rate, np.radians(look.head_rate))
     return chest, chest + smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0]
+
+
+def head_held(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:
+    """Yaw (n,) of a head whose neck can follow: it turns from the chest, which has turned against the legs and with the
+    beat meanwhile, no faster and no farther than necks do; rate : samples per second."""
+    look, neck = settings.look, head - chest
+    most = np.radians(look.head_limit)
+    held = no_faster(np.clip(neck, -most, most), rate, np.radians(look.head_rate))
+    quick = (np.abs(held - neck) > HELD).astype(np.float64)
+    if not quick.any():
+        return head
+    soft = smooth_path(held[:, None], np.ones(len(head)), rate, settings.inertia.head_turn)[:, 0]
+    share = upper_envelope(np.arange(len(head)) / rate, quick, AROUND_QUICK)
+    return np.asarray(head + share * (soft - neck))
 
 
 def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:

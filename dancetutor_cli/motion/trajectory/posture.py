@@ -17,7 +17,7 @@ from dancetutor_cli.motion.trajectory.counter_rotation import counter_rotation
 from dancetutor_cli.motion.trajectory.course import Course
 from dancetutor_cli.motion.trajectory.crossing import crossing_share, leaned_across
 from dancetutor_cli.motion.trajectory.crouch import jump_crouch, jump_drive, jump_lean, tempo_factor
-from dancetutor_cli.motion.trajectory.facing import chest_and_head, pelvis_yaw
+from dancetutor_cli.motion.trajectory.facing import chest_and_head, head_held, pelvis_yaw
 from dancetutor_cli.motion.trajectory.groove import Engaged, groove_of
 from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, height_path
 from dancetutor_cli.motion.trajectory.leaning_back import kept_back, leaning_share
@@ -125,6 +125,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
     chest += np.radians(settings.groove.twist) * groove.sway
+    head = head_held(head, chest, course.rate, settings)
     drop += np.radians(settings.groove.lean) * groove.sway
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat

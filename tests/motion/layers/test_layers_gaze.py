@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from bake_plays import chart, pad, play
 
-from dancetutor_cli.bake import bake
+from dancetutor_cli.bake import bake, report
+from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.layers.additive import eyelids
 from dancetutor_cli.motion.sampling import sample
@@ -55,6 +59,15 @@ def test_where_head_and_eyes_can_they_look_at_the_screen(motion: Motion) -> None
     face = quat.rotate(world[:, head], np.array([0.0, 0.0, 1.0]))
     away = np.degrees(np.arctan2(face[:, 0], face[:, 2]) - np.arctan2(to[:, 0], to[:, 2]))
     assert np.median(off) < np.median(np.abs((away + 180) % 360 - 180))  # the eyes go farther than the head
+
+
+def test_a_chest_that_both_hands_pull_askew_wrings_no_neck(corpus: Path) -> None:
+    """Both palms on the rear corners at once, from the chart of meter 99 in which the head was 176 degrees from it."""
+    path = sorted(corpus.glob("*/g0148_*.ssc"))[0]
+    asked = ask(BakeTask(path, Selection(index=6)))
+    measured = report(bake(asked.chart, asked.play, asked.pad, section=(70.8, 72.4)))
+    assert measured["head from the chest"].met
+    assert measured["head turns on the chest at"].value < 500.0
 
 
 def test_she_blinks_every_few_seconds_and_shuts_her_eyes_wholly() -> None:

@@ -8,7 +8,7 @@ import pytest
 from dancetutor_cli.motion.plan import FootTrack, Plan
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.trajectory.course import Course
-from dancetutor_cli.motion.trajectory.facing import chest_and_head
+from dancetutor_cli.motion.trajectory.facing import chest_and_head, head_held
 from dancetutor_cli.numerics.ease import smooth
 
 SETTINGS = default_settings()
@@ -42,3 +42,17 @@ def test_with_her_back_to_the_screen_she_looks_ahead() -> None:
 def test_turned_aside_she_looks_at_the_screen() -> None:
     chest, neck = turned(90.0 * smooth((TIMES - 1.0) / 0.5))
     assert np.abs(chest + neck)[TIMES > 2.5].max() < SETTINGS.look.eyes_limit
+
+
+def test_a_chest_that_turns_against_quick_legs_whips_no_neck() -> None:
+    """The head's own turns and the chest's add up; the neck's limit is kept on the chest as it finally is."""
+    chest = np.radians(30.0) * np.sin(2 * np.pi * 3.0 * TIMES) * (TIMES > 2.0) * (TIMES < 4.0)
+    neck = head_held(np.zeros(len(TIMES)), chest, 240.0, SETTINGS) - chest
+    assert np.degrees(np.abs(np.diff(chest)).max()) * 240 > 560.0 > SETTINGS.look.head_rate * 1.15
+    assert np.degrees(np.abs(np.diff(neck)).max()) * 240 <= SETTINGS.look.head_rate * 1.15
+    assert np.degrees(np.abs(neck).max()) <= SETTINGS.look.head_limit
+
+
+def test_a_neck_that_is_slow_enough_keeps_the_head_still() -> None:
+    chest = np.radians(15.0) * np.sin(2 * np.pi * TIMES)
+    assert np.abs(head_held(np.zeros(len(TIMES)), chest, 240.0, SETTINGS)).max() == 0.0
