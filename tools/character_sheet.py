@@ -1,7 +1,8 @@
 """Draw the dancer as films draw her, large: eight sides and twelve poses, one file each and a contact sheet.
 
 Usage: python tools/character_sheet.py [OUT_FOLDER] [CHARACTER.glb] [GROUP,...]
-Groups are those of poses.yaml; without, eight sides at rest and the twelve poses of "sheet" that move.
+Groups are those of poses.yaml, as "bar,from above"; without, eight sides at rest and the twelve poses of "sheet" that
+move.
 tools/pose_sheet.py judges the skin by itself; this one shows it with the light, shadows and outline of the videos.
 """
 

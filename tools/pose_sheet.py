@@ -1,6 +1,6 @@
 """Draw a character in poses that are hard on a skin: build/pose_sheet.png.
 
-Usage: python tools/pose_sheet.py [CHARACTER.glb] [OUT.png] [sheet|faces|close]
+Usage: python tools/pose_sheet.py [CHARACTER.glb] [OUT.png] [sheet|faces|close|bar|from above]
 It has its own small rasteriser, so that the skin can be judged before and without the renderers of the program.
 """
 
@@ -38,7 +38,7 @@ class Cell:
 
 
 def cells(group: str) -> list[Cell]:
-    """The pictures of a group of poses.yaml: "sheet", "faces" or "close"."""
+    """The pictures of a group of poses.yaml, such as "sheet"."""
     rows = yaml.safe_load((ROOT / "tools" / "poses.yaml").read_text("utf-8"))[group]
     return [
         Cell(
