@@ -82,9 +82,10 @@ def test_the_tags_beside_the_notes_can_be_read(
 
 @pytest.mark.parametrize(
     ("name", "wide", "steps", "least"),
-    [("side-by-side", 1280, "dance-single", 15), ("side-by-side", 1280, "dance-double", 12),
-     ("side-by-side", 640, "dance-single", 10), ("television", 1280, "dance-single", 20),
-     ("practice", 1280, "dance-single", 12)],
+    [("side-by-side", 1280, "dance-single", 17), ("side-by-side", 1280, "dance-double", 14),
+     ("side-by-side", 1280, "pump-double", 14), ("side-by-side", 640, "dance-single", 10),
+     ("television", 1280, "dance-single", 20), ("practice", 1280, "dance-single", 14),
+     ("practice", 1280, "dance-double", 14), ("practice", 1280, "pump-double", 14)],
 )  # fmt: skip
 def test_short_tags_of_usual_pads_are_larger(
     name: str, wide: int, steps: str, least: int, monkeypatch: pytest.MonkeyPatch
