@@ -132,18 +132,19 @@ class Arm:
         return begin, end
 
     def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
-        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk, an upright cylinder."""
+        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk, an upright cylinder that is wrung
+        from the hips to the chest."""
         trunk = self.trunk
         top = trunk.shoulders[when].mean(axis=1)
         along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
         end = wrist + HAND * along
         out = np.zeros(len(elbow), dtype=bool)
-        upright = quat.from_axis_angle(UP, -trunk.yaw[when])
+        hips, wrung = trunk.turned[when], trunk.yaw[when] - trunk.turned[when]
         for share in ALONG:
             point = elbow + share * (end - elbow)
             low = trunk.pelvis[when]
             up = np.clip((point[:, 1] - low[:, 1]) / np.maximum(top[:, 1] - low[:, 1], 0.1), 0.0, 1.0)
-            off = quat.rotate(upright, point - low - up[:, None] * (top - low))
+            off = quat.rotate(quat.from_axis_angle(UP, -hips - up * wrung), point - low - up[:, None] * (top - low))
             out |= (off[:, 0] / TRUNK_ASIDE) ** 2 + (off[:, 2] / TRUNK_DEEP) ** 2 < 1.0
         return out
 

@@ -17,6 +17,8 @@ from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.formats.npz import read_npz, write_npz
+from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Grip, Motion
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
 
@@ -108,3 +110,11 @@ def test_the_mirror_image_crosses_the_other_hand(crossed: Motion) -> None:
 def test_files_tell_which_hands_crossed_over(crossed: Motion, tmp_path: Path) -> None:
     write_npz(tmp_path / "a.npz", crossed)
     assert read_npz(tmp_path / "a.npz").grips == crossed.grips
+
+
+def test_a_hand_lets_go_where_hips_that_turned_from_the_chest_come_to_it(corpus: Path) -> None:
+    """A wait on the bar, feet turned aside and chest to the screen: hips swayed into a hand, 2 cm deep."""
+    path = sorted(corpus.glob("*/g0101_*.ssc"))[0]
+    asked = ask(BakeTask(path, Selection(index=0), bar=True))
+    measured = report(bake(asked.chart, asked.play, asked.pad, bar=True, section=(88.5, 102.0)))
+    assert measured["limb in torso"].value == 0.0 and measured["hands on the bar"].value >= 2
