@@ -12,6 +12,7 @@ from build_character_sdf import Array, Shape, blend, carve, common, cone, ellips
 from build_character_trims import around, outline
 
 THICK = 0.007  # metres of the sole
+WELT = 0.0030  # metres that it stands out from the boot: flush with it both show through each other
 
 
 def _under(at: Array) -> Array:
@@ -57,7 +58,7 @@ def sole() -> Lofted:
         line = around(boot, ring, _under(z))
         z = line[:, 2]
     top = _under(z)
-    rings = [_scaled(line, scale, top - down) for scale, down in ((0.93, THICK), (1.0, THICK - 0.001), (1.0, 0.0015))]
+    rings = [_wider(line, by, top - down) for by, down in ((-0.003, THICK), (WELT, THICK - 0.001), (WELT, 0.0005))]
     turn = np.linspace(0, 2 * np.pi, 16, endpoint=False)
     round_ = np.stack([np.sin(turn), np.zeros(16), np.cos(turn)], axis=1)
     heel = [
@@ -67,10 +68,13 @@ def sole() -> Lofted:
             (0.039, -0.041, 0.0265, 0.0280),
         )
     ]  # fmt: skip
-    return joined(loft([*rings, _scaled(line, 0.95, top + 0.001)]), loft(heel))
+    return joined(loft([*rings, _wider(line, -0.002, top + 0.002)]), loft(heel))
 
 
-def _scaled(line: Array, scale: float, y: Array) -> Array:
-    middle = np.array([HIP[0], 0.0, 0.05])
-    out = middle + (line - middle) * scale
-    return np.stack([out[:, 0], y, out[:, 2]], axis=1)
+def _wider(line: Array, by: float, y: Array) -> Array:
+    """The line around the boot moved out by so many metres on the floor, at heights y."""
+    way = np.roll(line, -1, 0) - np.roll(line, 1, 0)
+    out = np.stack([way[:, 2], np.zeros(len(way)), -way[:, 0]], axis=1)
+    out *= np.sign((out * (line - line.mean(0))).sum()) / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-9)
+    moved = line + by * out
+    return np.stack([moved[:, 0], y, moved[:, 2]], axis=1)

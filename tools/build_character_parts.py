@@ -237,7 +237,7 @@ def _limb_parts(shoe: Callable[[], Lofted]) -> list[Part]:
 def heel_parts() -> list[Part]:
     """What she wears on her feet with `--gait heels`, in place of what is called shoe or `SHOES`."""
     box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
-    upper = of_shape(heels.upper(), box, 0.0025, even(0.0140))
+    upper = of_shape(heels.upper(), box, 0.0025, even(0.0125))
     return [
         Part("shoe", upper, "foot", 0, paint.plain, mirror=True, tint="foot"),
         Part("shoe collar", trims.shoe_collar, "foot", 300, paint.rubber, mirror=True, mesh=SHOES),
