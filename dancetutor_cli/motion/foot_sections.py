@@ -112,6 +112,7 @@ class JumpSettings:
     apex_hands: float
     far: float
     flight_share: float
+    flight_near: float
     tuck: float
     tuck_from: float
     tuck_full: float
@@ -151,6 +152,8 @@ class JumpSettings:
     farther: float
     gallop_flight: float
     leap_flight: float
+    inward_slow: float
+    inward_quick: float
     lift_flat: float
     swing_flat: float
 

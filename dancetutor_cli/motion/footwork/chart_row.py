@@ -47,6 +47,13 @@ class Row:
         return float(reduction(self.duration, step.fast, step.longest))
 
     @property
+    def jump_cut(self) -> float:
+        """The same of a jump, which is quick sooner: both legs throw the body at once."""
+        jump = self.context.settings.jump
+        missing = (jump.inward_slow - self.duration) / max(jump.inward_slow - jump.inward_quick, 1e-9)
+        return max(self.cut, float(np.clip(missing, 0.0, 1.0)))
+
+    @property
     def hurry(self) -> float:
         """How short its time is, from the longest move to a fast one, 0 to 1; `cut` grows as its cube."""
         step = self.context.settings.step

@@ -30,10 +30,12 @@ def jump(row: Row, footing: Footing) -> Proposal:
     columns = [under_the_foot(row, f) for f in footing.feet]
     goals = _goals(row, footing, columns)
     far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
-    apex = numbers.apex_near + min(far / numbers.far, 1.0) * (numbers.apex_far - numbers.apex_near)
+    way = min(far / numbers.far, 1.0)
+    apex = numbers.apex_near + way * (numbers.apex_far - numbers.apex_near)
     if row.hands:  # bending down to a panel: feet only just leave the ground
         apex = numbers.apex_hands
-    take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), numbers.flight_share * row.duration))
+    share = numbers.flight_share - row.jump_cut * (1.0 - way) * (numbers.flight_share - numbers.flight_near)
+    take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), share * row.duration))
     if latest < take_off:  # over a mine
         take_off = max(latest, *(f.rested(time) for f in footing.feet))
     found = hop(row, footing, take_off, goals, columns, row.turned)
@@ -51,6 +53,6 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
         side = 1 - foot.side
         ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
         other = Pose(ball, footing.toes(footing.feet[side], yaw))
-        wish = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.cut, row.following(foot.side)
+        wish = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
         goals[foot.side] = landing(footing, foot, Goal(*wish), other)
     return [goals[0], goals[1]]
