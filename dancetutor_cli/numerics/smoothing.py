@@ -54,6 +54,22 @@ def cubic(times: Array, values: Array, at: Array) -> Array:
     return np.asarray(a + s * (u + s * (3 * (b - a) - 2 * u - v + s * (2 * (a - b) + u + v))))
 
 
+def steady_spline(times: Array, values: Array, at: Array) -> Array:
+    """The uniform cubic B-spline of even samples (n, d) at other times (f,), ends held.
+
+    Its second derivative goes straight from one sample's second difference to the next, so that a limit on these holds
+    in between as well; it passes each sample at a sixth of its second difference.
+    """
+    ends = np.concatenate((2.0 * values[:1] - values[1:2], values, 2.0 * values[-1:] - values[-2:-1]))
+    x = np.clip((at - times[0]) / (times[1] - times[0]), 0.0, len(times) - 1.0)
+    i = np.minimum(x.astype(np.int64), len(times) - 2)
+    u = (x - i)[:, None]
+    a, b, c, d = (ends[i + k] for k in range(4))
+    back = 1.0 - u
+    inner = (3.0 * u**3 - 6.0 * u**2 + 4.0) * b + (3.0 * back**3 - 6.0 * back**2 + 4.0) * c
+    return np.asarray((back**3 * a + inner + u**3 * d) / 6.0)
+
+
 def upper_envelope(times: Array, values: Array, span: float) -> Array:
     """A smooth curve (f,) nowhere below `values` (f,) nor 0: their maximum over `span` seconds, then averaged."""
     rate = 120.0

@@ -21,7 +21,7 @@ from dancetutor_cli.motion.trajectory.momentum import against_turning
 from dancetutor_cli.motion.trajectory.support import Support, along_sides, support_of
 from dancetutor_cli.numerics.banded import BandedLeastSquares, differences
 from dancetutor_cli.numerics.qp import Limits, Solution, solve_surely
-from dancetutor_cli.numerics.smoothing import cubic, low_pass, sample_path
+from dancetutor_cli.numerics.smoothing import low_pass, sample_path, steady_spline
 from dancetutor_cli.rig.dimensions import ball_to_ankle
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
@@ -94,7 +94,7 @@ def balanced_path(
         want = _tightened(want, support, _zero_moment(low_pass(path, rate), seen, rate), flight)
         found = _solved(want, flight, slowness, rate, body, what)
         softened |= found.softened
-    return cubic(nodes, found.x.reshape(-1, 2), times), softened
+    return steady_spline(nodes, found.x.reshape(-1, 2), times), softened
 
 
 @dataclass(frozen=True, slots=True)
