@@ -39,7 +39,7 @@ HAND = 0.10  # metres that a hand reaches beyond its wrist
 
 
 @dataclass(frozen=True, slots=True)
-class Trunk:
+class BarTrunk:
     """The upper body at n times. pelvis (n, 3), chest (n, 4), shoulders (n, 2, 3), yaw (n,) of the chest, radians.
 
     turned : (n,) radians, of the pelvis
@@ -52,15 +52,15 @@ class Trunk:
     turned: Array
 
 
-def trunk_of(plan: Plan, times: Array, context: Context) -> Trunk:
+def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
     """Where the upper body will be, found in parts so that an hour needs little memory."""
     parts = []
     for first in np.arange(times[0], times[-1] + 1e-9, PART):
         parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
-    return Trunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Trunk)))
+    return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))
 
 
-def _part(plan: Plan, at: Array, context: Context) -> Trunk:
+def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
     """The upper body at the times `at`, by a rough bake without the hands on the bar."""
     skeleton = context.skeleton
     grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
@@ -75,7 +75,7 @@ def _part(plan: Plan, at: Array, context: Context) -> Trunk:
     now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
     pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
     shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
-    return Trunk(
+    return BarTrunk(
         pelvis, world[now, skeleton.index("vt4")], np.stack(shoulders, axis=1), body.chest_yaw[now], body.yaw[now]
     )
 
@@ -87,7 +87,7 @@ class Arm:
     """
 
     def __init__(
-        self, side: int, trunk: Trunk, busy: Flags, apart: Array, context: Context, across: bool = False
+        self, side: int, trunk: BarTrunk, busy: Flags, apart: Array, context: Context, across: bool = False
     ) -> None:
         assert context.bar is not None
         self.across = across

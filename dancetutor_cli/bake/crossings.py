@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bake.bar_arm import RATE, Arm, Trunk, firm, runs
+from dancetutor_cli.bake.bar_arm import RATE, Arm, BarTrunk, firm, runs
 from dancetutor_cli.motion.baked import Grip
 from dancetutor_cli.motion.bar import ACROSS_SLOWER, on_rail, way_time
 from dancetutor_cli.motion.context import Context
@@ -22,7 +22,7 @@ APART = 0.8  # of the way of a hand that crosses over, in which the other one is
 BESIDE = (0.0, -0.03, 0.03, -0.06)  # metres farther ahead where it may be better, as a hand stays there longer
 
 
-def turns(plan: Plan, times: Array, trunk: Trunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
+def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
     """Grips as long as the turns in which a hand may cross over, for a body that turns and leans for them.
 
     She does not in all of them; chance decides, always the same way for a song.
@@ -41,7 +41,7 @@ def turns(plan: Plan, times: Array, trunk: Trunk, busy: Flags, context: Context)
     return tuple(sorted(out, key=lambda grip: grip.start))
 
 
-def crossings(wanted: tuple[Grip, ...], times: Array, trunk: Trunk, busy: Flags, context: Context) -> Iterator[Grip]:
+def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Iterator[Grip]:
     """Of the grips that are `wanted`, in order of time, those, or as much of each, that an arm reaches from a body that
     turned for all of them; with their places on the rail. A hand has gone before the next one comes."""
     numbers, reach = context.settings.across, context.settings.bar.reach_time

@@ -41,7 +41,7 @@ class Edges:
 
 
 @dataclass(frozen=True, slots=True)
-class Sole:
+class RollingSole:
     """A foot in m frames, world rotations (m, 4): of its shank, of itself, and of a flat foot with the same yaw.
 
     give : (m, 2) how much it may roll and its heel rise, 0 to 1
@@ -85,7 +85,7 @@ def rolled_soles(
         found = True
         shank = world_transforms(skeleton, poses.rotations[at], poses.root[at])[1][:, skeleton.parents[joint]]
         give = low[at, None] * np.column_stack((may_roll(plan, side, times[at]), rises[at, side]))
-        sole = Sole(name, shank, soles[at, side], quat.from_axis_angle(quat.UP, foot.yaw[at]), give)
+        sole = RollingSole(name, shank, soles[at, side], quat.from_axis_angle(quat.UP, foot.yaw[at]), give)
         angles = _angles(skeleton, sole, edges)
         ball = ankles[at, side] - quat.rotate(sole.turn, edges.ankle)
         edge = quat.rotate(sole.straight, edges.balls[_down(angles)])
@@ -138,7 +138,7 @@ def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
     return roll, quat.multiply(roll, rise)
 
 
-def _angles(skeleton: Skeleton, sole: Sole, edges: Edges) -> Array:
+def _angles(skeleton: Skeleton, sole: RollingSole, edges: Edges) -> Array:
     """How far (m, 2) a sole rolls and its heel rises, as in `_turns`, for its ankle to be within its limits."""
     axes = [quat.rotate(sole.straight, np.array(axis)) for axis in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))]
     angles, least, most = np.zeros((len(sole.turn), 2)), [-MOST[0], 0.0], MOST
