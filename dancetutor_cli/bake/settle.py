@@ -21,13 +21,16 @@ from dancetutor_cli.motion.plan import Plan
 from dancetutor_cli.motion.swing.foot_path import Feet, both_feet
 from dancetutor_cli.motion.trajectory.momentum import moved_by_turning
 from dancetutor_cli.motion.trajectory.posture import Known, Trajectory, body_trajectory
+from dancetutor_cli.motion.trajectory.push_off import push_off, raised
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, sample_path, smooth_path, upper_envelope
 from dancetutor_cli.play.played import Limb, Part
+from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.rig.soles import SIDES
 
 Array = NDArray[np.float64]
 ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
@@ -76,13 +79,16 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / COARSE))
         gives[body.reaching[::COARSE].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
         knees += _around(coarse, gives, times)
+        hips = cubic(coarse, hips_of(context.skeleton, poses).reshape(-1, 6), times).reshape(-1, 2, 3)
+        root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
+        push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
         last = number == rounds - 1
         turning = moved_by_turning(context.skeleton, poses.rotations, poses.root, rate / COARSE)
         known = Known(
-            body, above, cubic(coarse, turning, times), deeper, keep=number > 0 and not last,
+            body, above, cubic(coarse, turning, times), hips, push, deeper, keep=number > 0 and not last,
             tightened=TIGHTENED if last else 0,
         )  # fmt: skip
-        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels, knees=knees)
+        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels + push, knees=knees)
     return Settled(body, tuple(residuals))
 
 
@@ -99,13 +105,18 @@ def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Tar
     """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
     feet = both_feet(plan.feet, at, context.settings)
-    left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
-    return ik_targets(plan, body, (left, right), at, context)
+    return ik_targets(plan, body, raised(feet, up), at, context)
 
 
 def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
     """Centre of mass (f, 3) of solved frames."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, poses.rotations, poses.root))
+
+
+def hips_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """From the root to each hip (f, 2, 3) of solved frames."""
+    pelvis = poses.rotations[:, 0]
+    return np.stack([quat.rotate(pelvis, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in SIDES], axis=1)
 
 
 def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:

@@ -149,6 +149,8 @@ class JumpSettings:
     round: float
     tuck_far: float
     heel_time: float
+    heel_most: float
+    heel_up: float
     farther: float
     gallop_flight: float
     leap_flight: float

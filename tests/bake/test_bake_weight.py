@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.bake.bake import plan_of
 from dancetutor_cli.bake.quality.posture import jump_knees, trunk_lean
-from dancetutor_cli.bake.quality.resampled import GROUND, Body, body_of
+from dancetutor_cli.bake.quality.resampled import GROUND, Body, body_of, intervals
 from dancetutor_cli.bake.quality.smoothness import knee_angles
 from dancetutor_cli.motion.foot_moves import Jump, Pivot, Step
 from dancetutor_cli.motion.settings import default_settings
@@ -126,12 +126,23 @@ def test_legs_drive_a_jump_and_give_after_it() -> None:
     jumps = jump_knees(body, 180.0 - knee_angles(body, motion.skeleton))
     assert len(jumps) == 2
     for off, fold, give in jumps:
-        assert 12.0 < off < 32.0 and fold > off + 10.0 and give > off + 10.0
+        assert 15.0 < off < 25.0 and fold > off + 10.0 and give > off + 10.0
     arms = body.joints[:, [motion.skeleton.index(f"{s}_radiocarpal") for s in "lr"], 1].mean(axis=1)
     arms -= body.joints[:, motion.skeleton.index("vt4"), 1]
     flies = np.asarray(~body.standing.any(axis=1))
     crouched = (body.times > body.times[flies].min() - 0.25) & (body.times < body.times[flies].min() - 0.12)
     assert arms[flies].max() > arms[crouched].max() + 0.03
+
+
+def test_both_legs_push_where_she_stands_nearer_to_one_foot() -> None:
+    """Aside of the middle as she takes off for a jump to the side: no knee stays bent, and she falls as things fall."""
+    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {2: R}), (3.0, {2: L, 3: R}), (4.5, {0: L, 2: R})]), pad())
+    body = body_of(motion)
+    knees = 180.0 - knee_angles(body, motion.skeleton)
+    off = [knees[first - 1] for first, end in intervals(~body.standing.any(axis=1)) if end - first > 6]
+    assert len(off) == 2
+    assert all(np.ptp(both) < 8.0 and both.max() < 28.0 for both in off), off
+    assert report(motion)["flight gravity off by"].met
 
 
 def test_she_crouches_before_a_jump_and_after_it() -> None:
@@ -143,7 +154,7 @@ def test_she_crouches_before_a_jump_and_after_it() -> None:
     take_off, landing = flies.min(), flies.max()
     assert height[(times > take_off - 0.3) & (times < take_off)].min() < stands - 0.03
     assert height[(times > landing) & (times < landing + 0.25)].min() < stands - 0.02
-    assert height[(times > 3.8) & (times < 4.1)].mean() > stands - 0.015  # and then she is up again
+    assert height[(times > 3.8) & (times < 4.1)].mean() > stands - 0.016  # and then she is up again
 
 
 def test_close_jumps_leave_no_time_to_crouch() -> None:

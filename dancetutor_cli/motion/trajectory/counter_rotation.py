@@ -45,7 +45,7 @@ def leg_momentum(feet: Feet, course: Course, skeleton: Skeleton) -> Array:
     """Momentum about the vertical (n,) of both legs as seen from the centre of mass, m^2/s per mass of the body."""
     out = np.zeros(len(course.times))
     for side, foot in enumerate(feet):
-        hip = hip_over(course, skeleton, side)
+        hip = hip_over(course, side)
         back = ball_to_ankle(skeleton)
         ankle = foot.ball[:, [0, 2]] - back * np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
         for along, share in leg_masses(skeleton):

@@ -15,12 +15,13 @@ class Course:
     """The body over the ground at n even times.
 
     times : (n,) seconds; mass : (n, 2), x and z of the centre of mass; above : (n, 3), from the root to it, as far as
-    known; yaw : (n,) of the pelvis, radians, unwrapped
+    known; hips : (n, 2, 3), from the root to each hip; yaw : (n,) of the pelvis, radians, unwrapped
     """
 
     times: Array
     mass: Array
     above: Array
+    hips: Array
     yaw: Array
 
     @property

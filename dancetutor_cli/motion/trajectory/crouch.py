@@ -26,6 +26,15 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     return smooth_path(fast[:, None], np.ones(len(times)), rate, around_them)[:, 0]
 
 
+def time_for_jumps(flights: Array, jump: JumpSettings) -> tuple[Array, Array]:
+    """How much time there is before and after each of (k, 2) flights, (k,) each: 0 for none, 1 for enough to crouch."""
+    between = flights[1:, 0] - flights[:-1, 1]
+    share = np.clip((between - jump.no_time) / jump.full_time, 0.0, 1.0)
+    before, after = np.ones(len(flights)), np.ones(len(flights))
+    before[1:], after[:-1] = share, share
+    return before, after
+
+
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     """How much lower (n,) she is before and after jumps, metres: deeper for higher jumps, less if time is short.
 
@@ -36,17 +45,16 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
         return np.zeros(len(times))
     start, end = flights.T
     size = np.clip(GRAVITY * (end - start) ** 2 / 8 / jump.apex_near, jump.crouch_least, jump.crouch_most)
-    rest = np.concatenate(([np.inf], start[1:] - end[:-1], [np.inf]))
-    share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0)
+    before, after = time_for_jumps(flights, jump)
     out = np.zeros(len(times))
     for k in range(len(flights)):
         run = slice(*np.searchsorted(times, (start[k] - 4 * jump.crouch_time, end[k] + 4 * jump.crouch_time)))
         away = np.maximum(np.maximum(start[k] - times[run], times[run] - end[k]), 0.0) / jump.crouch_time
-        low = jump.low * (1.0 - max(share[k], share[k + 1]))
+        low = jump.low * (1.0 - max(before[k], after[k]))
         out[run] = np.maximum(out[run], low * np.exp(-(away**2)))
         for depth, time, width in (
-            (jump.crouch * share[k], start[k] - jump.crouch_before, jump.crouch_time),
-            (jump.follow * share[k + 1], end[k] + jump.follow_after, jump.follow_time),
+            (jump.crouch * before[k], start[k] - jump.crouch_before, jump.crouch_time),
+            (jump.follow * after[k], end[k] + jump.follow_after, jump.follow_time),
         ):
             near = slice(*np.searchsorted(times, (time - 4 * width, time + 4 * width)))
             out[near] = np.maximum(out[near], size[k] * depth * np.exp(-(((times[near] - time) / width) ** 2)))
@@ -63,10 +71,9 @@ def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Arr
     if not len(flights):
         return out[:, 0], out[:, 1]
     start, end = flights.T
-    rest = np.concatenate(([np.inf], start[1:] - end[:-1], [np.inf]))
-    share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0)
+    before, after = time_for_jumps(flights, jump)
     for k in range(len(flights)):
-        for side, time, much in ((0, start[k], share[k]), (1, end[k], share[k + 1])):
+        for side, time, much in ((0, start[k], before[k]), (1, end[k], after[k])):
             near = slice(*np.searchsorted(times, (time - jump.push_time, time + jump.push_time)))
             bump = np.clip(2.0 * (1.0 - np.abs(times[near] - time) / jump.push_time), 0.0, 1.0)
             out[near, side] = np.maximum(out[near, side], much * bump)
@@ -80,10 +87,7 @@ def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     if not len(flights):
         return out
     start, end = flights.T
-    rest = np.concatenate(([np.inf], start[1:] - end[:-1]))
-    share = np.clip((rest - jump.no_time) / jump.full_time, 0.0, 1.0) * np.clip(
-        (end - start) / jump.arms_full, 0.0, 1.0
-    )
+    share = time_for_jumps(flights, jump)[0] * np.clip((end - start) / jump.arms_full, 0.0, 1.0)
     for k in range(len(flights)):
         for sign, time in ((-1.0, start[k] - jump.crouch_before), (1.0, start[k] + jump.arms_after)):
             near = slice(*np.searchsorted(times, (time - 4 * wide, time + 4 * wide)))

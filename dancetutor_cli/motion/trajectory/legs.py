@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.motion.swing.foot_path import Feet, FootPath
 from dancetutor_cli.motion.trajectory.course import Course
+from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 
 Array = NDArray[np.float64]
@@ -14,17 +15,21 @@ Array = NDArray[np.float64]
 
 def leg_room(feet: Feet, course: Course, skeleton: Skeleton, reach: Array | float, side: int) -> Array:
     """Highest root (n,) from which one leg still reaches its foot when hip and ankle are `reach` apart."""
-    hip, ankle = hip_over(course, skeleton, side), ankle_of(feet[side], skeleton, side)
+    hip, ankle = hip_over(course, side), ankle_of(feet[side], skeleton, side)
     aside = np.hypot(hip[:, 0] - ankle[:, 0], hip[:, 1] - ankle[:, 2])
-    down = skeleton.offsets[skeleton.index(f"{'lr'[side]}_hip")][1]
+    down = course.hips[:, side, 1]
     return np.asarray(ankle[:, 1] + np.sqrt(np.maximum(np.square(reach) - aside**2, 0.05)) - down)
 
 
-def hip_over(course: Course, skeleton: Skeleton, side: int) -> Array:
-    """Where (n, 2) a hip is over the ground while the pelvis is upright, x and z."""
-    x, _, z = skeleton.offsets[skeleton.index(f"{'lr'[side]}_hip")]
-    sine, cosine = np.sin(course.yaw), np.cos(course.yaw)
-    return np.asarray(course.ground + np.column_stack((x * cosine + z * sine, z * cosine - x * sine)))
+def hip_over(course: Course, side: int) -> Array:
+    """Where (n, 2) a hip is over the ground, x and z."""
+    return np.asarray(course.ground + course.hips[:, side, ::2])
+
+
+def upright_hips(yaw: Array, skeleton: Skeleton) -> Array:
+    """From the root to each hip (n, 2, 3) of an upright pelvis with yaw (n,)."""
+    turned = quat.from_axis_angle(quat.UP, yaw)
+    return np.stack([quat.rotate(turned, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in "lr"], axis=1)
 
 
 def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:

@@ -21,7 +21,8 @@ from dancetutor_cli.motion.trajectory.facing import chest_and_head, head_held, p
 from dancetutor_cli.motion.trajectory.groove import Engaged, groove_of
 from dancetutor_cli.motion.trajectory.height import HeightPath, HeightWish, height_path
 from dancetutor_cli.motion.trajectory.leaning_back import kept_back, leaning_share
-from dancetutor_cli.motion.trajectory.legs import leg_room
+from dancetutor_cli.motion.trajectory.legs import leg_room, upright_hips
+from dancetutor_cli.motion.trajectory.push_off import raised
 from dancetutor_cli.motion.trajectory.reach import bent_down, leaning_tilt, reaching
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.controller import Controller, follow
@@ -77,12 +78,16 @@ class Known:
     turning : (n, 2) as of `momentum.moved_by_turning`, or None if it is not known
     deeper : (p,) how far each press of a palm drew the root below where it
     was wanted, metres, or None for none
+    hips : (n, 2, 3), from the root to each hip, None: as of an upright pelvis
+    push_off : (n, 2) as of `push_off.push_off`, None for none
     keep : leave the path over the ground as it was; tightened : as in `balanced_path`
     """
 
     trajectory: Trajectory
     above: Array
     turning: Array | None = None
+    hips: Array | None = None
+    push_off: Array | None = None
     deeper: Array | None = None
     keep: bool = False
     tightened: int = 0
@@ -110,7 +115,8 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
     legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch))
-    mass_height = height_path(_wish(feet, course, context, legs), plan.flights, settings.body)
+    stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
+    mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
@@ -147,9 +153,11 @@ def _course(
     settings = context.settings
     above = _above_at_rest(context.skeleton, len(times)) if known is None else known.above
     yaw = pelvis_yaw(plan, times, settings)
+    seen = None if known is None else known.hips
+    hips = upright_hips(yaw, context.skeleton) if seen is None else seen
     if known is not None and known.keep:
         softened = tuple(what for what in known.trajectory.softened if what == BALANCE)
-        return Course(times, known.trajectory.mass, above, yaw), softened
+        return Course(times, known.trajectory.mass, above, hips, yaw), softened
     pendulum = _pendulum(times, known, above)
     gait = walking(plan.walks, times, settings.walk)
     if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
@@ -157,13 +165,12 @@ def _course(
     shift = waiting_at(plan, times, context).shift
     if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
         up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
-        left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
-        feet = left, right
+        feet = raised(feet, up)
     mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
         nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
         mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
-    return Course(times, mass, above, yaw), (BALANCE,) if swept else ()
+    return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
 
 
 def _above_at_rest(skeleton: Skeleton, count: int) -> Array:

@@ -19,7 +19,7 @@ NONE = Plan((FootTrack((0.0, 0.0), 0.0, ()),) * 2, (), (), (), 0.0, 6.0)
 def turned(degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Degrees (n,) that the chest faces, and the head farther, where the pelvis turns so."""
     still = np.zeros((len(TIMES), 2))
-    course = Course(TIMES, still, np.zeros((len(TIMES), 3)), np.radians(degrees))
+    course = Course(TIMES, still, np.zeros((len(TIMES), 3)), np.zeros((len(TIMES), 2, 3)), np.radians(degrees))
     chest, head = chest_and_head(NONE, course, np.zeros(len(TIMES)), SETTINGS)
     return np.degrees(chest), np.degrees(head - chest)
 
