@@ -90,7 +90,7 @@ class Marks:
 
     def _draw_sprite(self, size: int, limb: int) -> Sprite:
         """A mark on the soft shade that lifts it off its arrow."""
-        out, mark = sprites.shade(round(1.35 * size)).copy(), sprites.marker(size, limb, self._face)
+        out, mark = sprites.shade(round(1.35 * size)).copy(), sprites.marker(size, limb, self._face, rim=True)
         sprites.centre(out, mark)
         return out
 

@@ -29,6 +29,10 @@ _WIDTH = 0.94  # of an arrow, in its size, whichever way it points
 FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
 FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
 NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
+TAIL_DIM, TAIL_LONG = (
+    0.6,
+    0.75,
+)  # how much darker an arrow's tail ends, and over how much of its half: its head stands out
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,20 +92,31 @@ def distance(canvas: int, size: float, direction: float | None) -> shapes.Field:
 
 
 def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
-    """A note: white rim, body in `colour` lit from above, dark edge. `hollow`: a lift, only its rim in colour."""
+    """A note: white rim, body in `colour` lit from above, dark edge, its tail darker than its head.
+
+    hollow : a lift, only its rim in colour
+    """
     p = shapes.Painter(size, size)
     d = distance(size, size * 0.95, direction)
     unit = size / 64
     base = np.array(colour, dtype=np.float64)
     p.paint(shapes.cover(d - 1.6 * unit), (8, 9, 16), 0.9)
-    p.paint(shapes.cover(d), (255, 255, 255) if not hollow else base)
+    bright = _bright(p, size, direction)
+    p.paint(shapes.cover(d), (np.full(3, 255.0) if not hollow else base) * bright)
     height = (p.y / size + 0.5)[..., None]
-    body = base * (1.12 - 0.42 * height) + 26 * (1 - height)
+    body = (base * (1.12 - 0.42 * height) + 26 * (1 - height)) * bright
     inner = shapes.cover(d + (3.2 if not hollow else 4.5) * unit)
     p.paint(inner, np.clip(body, 0, 255) if not hollow else base * 0.22)
     facet = np.clip((d + 9 * unit) / (6 * unit), 0, 1)  # a darker bevel towards the rim
     p.paint(inner * facet, (0, 0, 0), 0.2)
     return p.sprite()
+
+
+def _bright(p: shapes.Painter, size: int, direction: float | None) -> NDArray[np.float64]:
+    """How bright an arrow is at each place: 1 from its head to its middle, less towards the tail's end."""
+    a = 0.0 if direction is None else np.radians(direction)
+    behind = np.zeros_like(p.x + p.y) if direction is None else (p.y * np.cos(a) - p.x * np.sin(a)) / (0.5 * size)
+    return np.asarray(1.0 - TAIL_DIM * np.clip(behind / TAIL_LONG, 0.0, 1.0)[..., None])
 
 
 def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
@@ -168,10 +183,11 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
     return p.sprite()[height:]
 
 
-def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> Sprite:
+def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim: bool = False) -> Sprite:
     """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
 
     limb : value of `play.played.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
+    rim : a light one around the dark one, for it stands on a note, and these have all colours
     """
     p = shapes.Painter(size, size)
     paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour
@@ -183,18 +199,19 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None) -> S
         if right
         else shapes.disc(p.x, p.y, radius)
     )
+    edge = 2.2 * unit
+    if rim:
+        p.paint(shapes.cover(d), (255, 255, 255))
+        d, edge = d + 1.5 * unit, 1.4 * unit
     p.paint(shapes.cover(d), (10, 11, 20))
-    p.paint(shapes.cover(d + 2.2 * unit), paint)
-    if limb >= 2:
-        p.paint(shapes.cover(np.abs(d + 5.2 * unit) - 0.9 * unit), (10, 11, 20))
-    out = p.sprite()
+    p.paint(shapes.cover(d + edge), paint)
     if limb < 0:
         cross = np.minimum(np.abs(p.x - p.y), np.abs(p.x + p.y)) * 0.7071 - 2.2 * unit
-        p = shapes.Painter(size, size)
-        p.paint(shapes.cover(d), (10, 11, 20))
-        p.paint(shapes.cover(d + 2.2 * unit), paint)
         p.paint(shapes.cover(np.maximum(cross, d + 6.0 * unit)), (10, 11, 20))
         return p.sprite()
+    if limb >= 2:
+        p.paint(shapes.cover(np.abs(d + edge + 3.0 * unit) - 0.9 * unit), (10, 11, 20))
+    out = p.sprite()
     letter = face.sprite("R" if right else "L", (0.66 if limb < 2 else 0.52) * size, (10, 11, 20), weight=0.035 * size)
     centre(out, letter)
     return out

@@ -18,6 +18,7 @@ from dancetutor_cli.video.picture import FootFromAbove, Frame
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.camera import WHOLE, Region, with_pan_range
 from dancetutor_cli.video.scene.follow import Follow, farther, is_wide
+from dancetutor_cli.video.scene.glass_bar import GlassBar, stands_before
 from dancetutor_cli.video.scene.look import default_look
 from dancetutor_cli.video.scene.props import bar_matrix, with_bar
 from dancetutor_cli.video.scene.scene import FootMark, FrameState, Scene, foot_marks
@@ -71,13 +72,17 @@ class Dancer:
     ) -> None:
         self.motions, self.partners, self.lights = motions, partners or {}, lights
         self._size = shot.size
-        self._bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
+        bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
         floor = -default_look().stage.pad_height
         self.alone = character or load_dancer()
         seen = with_partner(self.alone) if self.partners else self.alone
-        self.scene = Scene(with_bar(seen, self._bar, floor), pad)
+        self.scene = Scene(seen, pad)
         self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
+        glass = bar is not None and stands_before(bar, self.camera)
+        self._glass = GlassBar(bar, floor, shot.size) if bar is not None and glass else None
+        self._bar = None if glass else bar
         self._follow = {} if shot.stands else self._followers(shot.camera, shot.size, shot.region)
+        self.scene = Scene(with_bar(seen, self._bar, floor), pad)
         self.renderer = renderer.create(self.scene, shot.size, shot.quality, shot.kind)
         skeleton = self.alone.skeleton
         self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
@@ -88,6 +93,8 @@ class Dancer:
         (lit, by), view = self._lit(moment.second), self.view(moment)
         frame = self.renderer.frame(FrameState(joints, view, lit, by))
         draw_hidden_feet(frame, self.scene, joints, view)
+        if self._glass is not None and not view.feet_only:
+            self._glass.draw(frame, view)
         return frame
 
     def view(self, moment: Moment) -> Camera:

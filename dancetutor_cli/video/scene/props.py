@@ -35,7 +35,7 @@ def with_bar(character: Character, bar: Bar | None, floor: float) -> Character:
         offsets=np.vstack((skeleton.offsets, [_middle(bar) - skeleton.rest[0]])),
     )
     inverse = np.linalg.inv(bar_matrix(bar))[None]
-    meshes = tuple(_tube(_frame(bar, span, floor), bar.radius, joint, k) for k, span in enumerate(bar.spans))
+    meshes = tuple(_tube(middle_line(bar, span, floor), bar.radius, joint, k) for k, span in enumerate(bar.spans))
     return replace(
         character,
         skeleton=grown,
@@ -55,7 +55,7 @@ def _middle(bar: Bar) -> Array:
     return np.array([np.mean(bar.spans), bar.height, bar.behind])
 
 
-def _frame(bar: Bar, span: tuple[float, float], floor: float) -> Array:
+def middle_line(bar: Bar, span: tuple[float, float], floor: float) -> Array:
     """The middle line (n, 3) of one piece: up a post, along the rail, down the other post."""
     turn = np.linspace(0.0, np.pi / 2, CORNER + 1)
     x0, x1 = span

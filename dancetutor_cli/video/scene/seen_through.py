@@ -1,4 +1,4 @@
-"""A foot that a leg hides: its shoe is drawn over that leg, faint, for which foot stands where is what is to be seen.
+"""A foot that a leg hides: its shoe is outlined over that leg, for which foot stands where is what is to be seen.
 
 What is hidden is found from the joints alone, legs as tapered tubes, so that both renderers show the same.
 """
@@ -22,7 +22,7 @@ _RADII = (0.062, 0.05, 0.045)  # metres, of a leg at these joints
 _SHOE = 0.035  # metres above its sole at which a foot is looked for
 HIDDEN = (0.3, 0.6)  # share of a foot that is hidden where it begins to be drawn, and where it is as strong as ever
 SHOE = (0.046, 0.040)  # metres, how far a shoe reaches around the line between heel and toe, at either end
-LINE, TINT = 0.004, 0.4  # metres, half its outline's width; how much of the foot's colour is within it
+LINE = 0.004  # metres, half its outline's width
 LOW = 0.12  # metres over the ground over which a foot in the air is not drawn
 
 
@@ -104,9 +104,10 @@ def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int])
 
 
 def _shoe(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Array) -> None:
-    """Draw what of a shoe is behind a leg. ink : (4,), red, green, blue 0..255, and how strong 0..1
+    """Draw the outline of what of a shoe is behind a leg. ink : (4,), red, green, blue 0..255, and how strong 0..1
 
-    The shoe, and not its ring again: that lies on the floor, and over a leg it would be seen as a noose around it.
+    Not its ring again: that lies on the floor, and over a leg it would be seen as a noose around it. And not filled: a
+    patch on a leg looked like a bandage.
     """
     size = frame.shape[1], frame.shape[0]
     height = mark.ground + mark.height + float(np.mean(SHOE))
@@ -127,7 +128,7 @@ def _shoe(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Arra
     wide = metre[0] + t * (metre[1] - metre[0])
     depth = heel[2] + t * (toe[2] - heel[2])
     hidden = before.cover(np.stack([x, y, depth], axis=-1)) * ink[3]
-    part, inside = frame[top:bottom, left:right], np.clip(0.5 - off, 0.0, 1.0)
+    part = frame[top:bottom, left:right]
     line = np.clip(LINE * wide - np.abs(off) + 0.5, 0.0, 1.0)
-    alpha = (hidden * np.maximum(line, TINT * inside))[..., None]
+    alpha = (hidden * line)[..., None]
     part[...] = np.rint(part + (ink[:3] - part) * alpha)

@@ -145,3 +145,24 @@ def test_letters_of_a_small_picture_are_eight_pixels_high_on_diagonals_too(limb:
     y, x = np.mgrid[:size, :size] + 0.5 - size / 2
     dark &= np.hypot(x, y) < 0.38 * size
     assert np.ptp(np.flatnonzero(dark.any(axis=1))) + 1 >= 8
+
+
+@pytest.mark.parametrize("hollow", [False, True])
+@pytest.mark.parametrize("direction", [0.0, 45.0, 135.0, 225.0, 270.0, 315.0])
+def test_the_tail_of_an_arrow_is_darker_than_its_head(direction: float, hollow: bool) -> None:
+    """A mark on a tail as bright as the head was taken for the head: diagonal arrows seemed to point backwards."""
+    size = 72
+    arrow = sprites.arrow(size, direction, (120, 120, 120), hollow)
+    y, x = np.mgrid[:size, :size] + 0.5 - size / 2
+    a = np.radians(direction)
+    ahead, shown = (x * np.sin(a) - y * np.cos(a)) / (size / 2), arrow[..., 3] > 250
+    head, tail = (arrow[shown & part][:, :3].max() for part in (ahead > 0.2, ahead < -0.65))
+    assert tail < 0.55 * head
+
+
+@pytest.mark.parametrize("limb", [-1, 0, 1, 2, 3])
+def test_a_mark_on_a_note_has_a_light_and_a_dark_rim(limb: int) -> None:
+    """Cyan on blue and orange on red were hardly seen."""
+    mark = sprites.marker(32, limb, FACE, rim=True).astype(int)[16]
+    light, dark = mark[:, :3].min(axis=1) > 180, (mark[:, :3].max(axis=1) < 90) & (mark[:, 3] > 250)
+    assert light.any() and dark.any() and np.flatnonzero(light)[0] < np.flatnonzero(dark)[0] < 6
