@@ -18,9 +18,9 @@ from dancetutor_cli.video.overlay import captions
 from dancetutor_cli.video.overlay import tags as beside
 from dancetutor_cli.video.overlay.announce import Calls, Runs
 from dancetutor_cli.video.overlay.blit import Box
-from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView
+from dancetutor_cli.video.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView, below, name_sprite
 from dancetutor_cli.video.overlay.header import Header, Lines, WordsRoom
-from dancetutor_cli.video.overlay.highway import TURNED, Highway, Score
+from dancetutor_cli.video.overlay.highway import Highway, Score
 from dancetutor_cli.video.overlay.lanes import HighwayGeometry, lane_beside
 from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.overlay.text import Typeface
@@ -125,7 +125,7 @@ class Film:
             box,
             self.scale * part.text,
             self.face,
-            TURNED if self.turned and not self.layout.highway else "",
+            captions.TURNED if self.turned and not self.layout.highway else "",
             self.style.players if self.plan.notes.player.any() else (),
         )
 
@@ -228,7 +228,8 @@ class Film:
         view = PadView(plan.pad, self._directions, self.turned)
         if feet:
             rims = self.style.players if plan.partners else (captions.WHITE,)
-            large = FeetDiagram(PadMap(view, feet), self.lights, self.face, rims)
+            now = name_sprite("now", self.face, self.scale) if after else None
+            large = FeetDiagram(PadMap(view, below(feet, now)), self.lights, self.face, rims, now)
         if after and plan.rows is not None:
             box = self._box("next")
             small = NextRows(plan.rows, view, box, after.count, self.face, self.scale)

@@ -43,9 +43,14 @@ class PanelLights:
             return 0.0, -1
         press = self._columns[column][last]
         start, end = float(self.presses.start[press]), float(self.presses.end[press])
-        fresh = 1.0 - (second - start) / self.fade
+        fresh = _left((second - start) / self.fade)
         if second < end:
             level = max(HELD, fresh)
         else:
-            level = max(0.0, 1.0 - (second - end) / self.fade) ** 1.5 * (1.0 if end == start else HELD)
+            level = _left((second - end) / self.fade) * (1.0 if end == start else HELD)
         return min(1.0, level), int(self.presses.limb[press])
+
+
+def _left(share: float) -> float:
+    """What is left of a light when so much of its time is over: it is bright and goes out, and does not linger."""
+    return max(0.0, 1.0 - share * share)

@@ -71,6 +71,9 @@ export function lightsAt(chart, second, fade, colours, out) {
   }
 }
 
+/** What is left of a light when so much of its time is over; video/lights.py has the same. @param {number} share */
+const lightLeft = (share) => Math.max(0, 1 - share * share);
+
 /**
  * Brightness 0..1 of one column and the limb of its last press.
  * @param {import("./chart.js").Chart} chart @param {number} column @param {number} second @param {number} fade
@@ -80,9 +83,9 @@ export function lightOf(chart, column, second, fade) {
   if (n < 0 || (chart.limb[n] === UNPLAYED && !chart.given.has(n))) return { level: 0, limb: -1 };
   const start = chart.second[n];
   const end = chart.end[n];
-  const fresh = 1 - (second - start) / fade;
+  const fresh = lightLeft((second - start) / fade);
   const level = second < end
     ? Math.max(HELD, fresh)
-    : Math.max(0, 1 - (second - end) / fade) ** 1.5 * (end === start ? 1 : HELD);
+    : lightLeft((second - end) / fade) * (end === start ? 1 : HELD);
   return { level: Math.min(BRIGHTEST, level), limb: chart.given.get(n) ?? chart.limb[n] };
 }

@@ -69,10 +69,9 @@ class Runs:
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
             number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
-            fade = min(1.0, 0.35 + 0.65 * (left % 1.0 or 1.0))
             x, y = _middle(number, self.count)
             above = self.counted.shape[0]
-            blit(frame, number, x, round(y + above / 2), fade)
+            blit(frame, number, x, round(y + above / 2))
             blit(frame, self.counted, _middle(self.counted, self.count)[0], round(y - above / 2))
 
 

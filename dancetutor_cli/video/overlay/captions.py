@@ -20,6 +20,7 @@ from dancetutor_cli.video.picture import Frame
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)
 INK = (12, 13, 22)
+TURNED = "facing you: her left is on the right"  # where there are no notes
 
 
 def box_of(sprite: Sprite, x: float, y: float) -> Box:

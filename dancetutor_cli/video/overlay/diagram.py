@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.colours import RGB, limb_colours
 from dancetutor_cli.play.played import Limb, StepKind
 from dancetutor_cli.video.layout import PixelBox
 from dancetutor_cli.video.lights import EPSILON, PanelLights
@@ -27,6 +27,7 @@ NAMES = (170, 177, 203)  # colour of a small pad's name
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
 NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
 NEXT_TEXT = 16.0  # of their names' letters
+IN_TURN, AGAIN = ("next", "then", "and then"), "again"  # names of the rows; of one that is as the one before it
 STEPPED, RESTING = 0.94, 0.6  # size of the marks on those, in panels: who steps one, and who stands on one
 
 
@@ -163,12 +164,20 @@ def _marker(size: int, limb: int, face: Typeface) -> Sprite:
 
 
 class FeetDiagram:
-    """The large pad with all feet on it, at any second. rims : of each dancer's feet the colour around them"""
+    """The large pad with all feet on it, at any second.
+
+    rims : of each dancer's feet the colour around them; name : what stands above the pad
+    """
 
     def __init__(
-        self, pads: PadMap, lights: PanelLights, face: Typeface, rims: tuple[tuple[int, int, int], ...] = ((255,) * 3,)
+        self,
+        pads: PadMap,
+        lights: PanelLights,
+        face: Typeface,
+        rims: tuple[RGB, ...] = ((255,) * 3,),
+        name: Sprite | None = None,
     ) -> None:
-        self.pads, self.lights, self.face, self.rims = pads, lights, face, rims
+        self.pads, self.lights, self.face, self.rims, self.name = pads, lights, face, rims, name
 
     @property
     def boxes(self) -> list[Box]:
@@ -178,6 +187,8 @@ class FeetDiagram:
     def draw(self, frame: Frame, second: float, feet: Sequence[FootFromAbove | None], opacity: float = 1.0) -> None:
         """Draw pad and feet, left and right in turn; a lifted foot is larger and lighter."""
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
+        if self.name is not None:
+            blit(frame, self.name, *above(self.pads, self.name), opacity)
         for number, foot in enumerate(feet):
             if foot is None:
                 continue
@@ -190,6 +201,23 @@ class FeetDiagram:
             x, y = self.pads.place(*middle)
             if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
                 blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
+
+
+def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
+    """A pad's name. scale : pixels of one at the layout's default size"""
+    text = NEXT_TEXT * scale
+    return face.sprite(name, text, NAMES, weight=text / 90)
+
+
+def below(box: PixelBox, name: Sprite | None) -> PixelBox:
+    """What is left of a pad's box below its name."""
+    return box if name is None else (box[0], box[1] + name.shape[0], box[2], box[3])
+
+
+def above(pads: PadMap, name: Sprite) -> tuple[float, float]:
+    """Where a name stands in the middle above its pad: left and top, pixels."""
+    left, top, right, _ = pads.edges
+    return (left + right - name.shape[1]) / 2, int(top) - name.shape[0]
 
 
 def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
@@ -209,7 +237,8 @@ def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
 class NextRows:
     """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
 
-    They lie beside or below each other, whichever makes them larger, each with its name, "next" or "then".
+    They lie beside or below each other, whichever makes them larger, each with its name: "next", "then", "and then", or
+    "again" where the row is the same as the one before it.
 
     scale : pixels of one at the layout's default size; where the pads of so many rows would be too small, there are
     fewer
@@ -225,9 +254,9 @@ class NextRows:
         scale: float,
     ) -> None:
         self.rows, self.face = rows, face
-        least, text = NEXT_LEAST * scale, NEXT_TEXT * scale
-        self.names = [face.sprite(name, text, NAMES, weight=text / 90) for name in ("next", "then")]
-        wide, high = (max(name.shape[axis] for name in self.names) for axis in (1, 0))
+        least = NEXT_LEAST * scale
+        self.names = {name: name_sprite(name, face, scale) for name in (*IN_TURN, AGAIN)}
+        wide, high = (max(name.shape[axis] for name in self.names.values()) for axis in (1, 0))
         while True:
             beside, below = cut(box, count, 0), cut(box, count, 1)
             above = [PadMap(view, (a, b + high, c, d)) for a, b, c, d in beside]
@@ -252,13 +281,19 @@ class NextRows:
             for foot, column in enumerate(self.rows.feet[row]):
                 if column >= 0 and limbs[column] < 0:
                     self._mark(frame, pads, int(column), foot % 2, RESTING)
-            blit(frame, self.names[min(place, 1)], *self._corner(pads, self.names[min(place, 1)]))
+            name = self.name(place, row)
+            blit(frame, name, *self._corner(pads, name))
+
+    def name(self, place: int, row: int) -> Sprite:
+        """What the pad at `place` with this row is called."""
+        same = place > 0 and bool((self.rows.limb[row] == self.rows.limb[row - 1]).all())
+        return self.names[AGAIN if same else IN_TURN[min(place, len(IN_TURN) - 1)]]
 
     def _corner(self, pads: PadMap, name: Sprite) -> tuple[float, float]:
         """Where the name of a pad stands: in the middle above it, or on its left."""
-        left, top, right, bottom = pads.edges
+        left, top, _, bottom = pads.edges
         if self._above:
-            return (left + right - name.shape[1]) / 2, int(top) - name.shape[0]
+            return above(pads, name)
         return left - name.shape[1] - 2, round((top + bottom - name.shape[0]) / 2)
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:

@@ -24,7 +24,7 @@ from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
-TURNED = "facing you: her left is on the right"  # of feet and arrows, which are turned with her
+TURNED = "facing you: left and right swapped, notes too"  # all arrows are turned with her
 LET_GO = 0.25  # opacity of holds and rolls from where on nobody plays them
 TAGS_APART = 2.0  # pixels between two tags
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
@@ -193,20 +193,19 @@ class Highway:
 
     def _draw_turned(self, frame: Frame) -> None:
         """Say that the arrows stand the other way round, in the gap that notes do not come through."""
-        geometry, plate = self.geometry, self._turned
+        geometry, words = self.geometry, self._turned
         _, top, _, bottom = geometry.box
         edge, half = (bottom, 0.5 * self.size) if geometry.down else (top, -0.5 * self.size)
-        x = geometry.left + (geometry.lane * len(geometry.directions) - plate.shape[1]) / 2
-        blit(frame, plate, x, round((edge + geometry.receptor + half - plate.shape[0]) / 2), 1.0, self._rows)
+        x = geometry.left + (geometry.lane * len(geometry.directions) - words.shape[1]) / 2
+        blit(frame, words, x, round((edge + geometry.receptor + half - words.shape[0]) / 2), 1.0, self._rows)
 
     @cached_property
     def _turned(self) -> Sprite:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
-        size = max(FLAG_LEAST, min(0.5 * gap, 0.33 * geometry.lane))
-        width = geometry.lane * len(geometry.directions) - sprites.FLAG_EDGE * size - 5
-        lines, size = fitted(TURNED, size, width, self.face, most=1)
-        return sprites.flag(lines, size, self.style.callout["move"], self.face)
+        size = max(FLAG_LEAST, min(0.4 * gap, 0.33 * geometry.lane))
+        (line,), size = fitted(TURNED, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
+        return self.face.sprite(line, size, self.style.callout["move"], weight=0.012 * size)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0

@@ -114,8 +114,11 @@ def test_lights_flash_fade_and_hold() -> None:
     lights = PanelLights(presses, 4, 0.2)
     assert lights.at(0, 0.999) == (0.0, -1)
     assert lights.at(0, 1.0) == (1.0, 0)
-    assert 0.0 < lights.at(0, 1.1)[0] < 0.6
-    assert lights.at(0, 1.3)[0] == 0.0
+    assert lights.at(0, 1.1)[0] == pytest.approx(0.75)
+    assert lights.at(0, 1.201)[0] == lights.at(0, 1.3)[0] == 0.0
+    fading = np.array([lights.at(0, second)[0] for second in np.linspace(1.0, 1.2, 201)])
+    assert (np.diff(fading) <= 0.0).all()
+    assert ((fading > 0.0) & (fading < 0.3)).mean() < 0.2, "neither on nor off"
     assert lights.at(0, 2.9)[0] > 0.5 and lights.at(0, 2.9)[1] == 1
     assert lights.at(0, 3.5)[0] == 0.0 and lights.at(1, 2.0) == (0.0, -1)
 

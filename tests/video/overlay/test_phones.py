@@ -60,7 +60,7 @@ def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
 
 @pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single", "pump-double"])
 def test_small_pads_say_which_rows_they_are(steps: str) -> None:
-    """ "next" and "then" stand beside or above the pads, in their box, and cover none of them."""
+    """ "next", "then" or "again" stand beside or above the pads, in their box, and cover none of them."""
     pad, layout = load_pad(steps), load_layout("practice")
     assert pad is not None and layout.next is not None
     rows = DiagramRows(np.arange(1.0, 4.0), np.full((3, len(pad)), -1, np.int8), np.full((3, 2), -1, np.int16))
@@ -69,7 +69,7 @@ def test_small_pads_say_which_rows_they_are(steps: str) -> None:
     frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
     small.draw(frame, 0.0)
     for place, one in enumerate(small.pads):
-        name = small.names[min(place, 1)]
+        name = small.name(place, place)
         x, y = small._corner(one, name)
         assert box[0] <= x and box[1] <= y and x + name.shape[1] <= box[2] and y + name.shape[0] <= box[3] + 2
         assert frame[round(y) : round(y) + name.shape[0], round(x) : round(x) + name.shape[1]].max() > 150
