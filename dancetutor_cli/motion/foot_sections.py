@@ -25,8 +25,8 @@ class StepSettings:
     jack_height: float
     edge: float
     edge_margin: float
-    middle_over: float
-    middle_over_most: float
+    middle_inside: float
+    middle_inside_hasty: float
     on_the_way: float
     lift_pitch: float
     swing_pitch: float

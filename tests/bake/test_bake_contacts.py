@@ -140,9 +140,9 @@ def test_the_report_tells_how_far_soles_are_inside_their_panels(medley: Motion) 
     assert report(shifted)["soles with their middle on the panel"].value == 0.0
 
 
-@pytest.mark.parametrize(("gap", "least"), [(0.4, 0.1), (0.2, -0.0105)])
+@pytest.mark.parametrize(("gap", "least"), [(0.4, 0.1), (0.2, -1e-3), (0.12, -1e-3)])
 def test_soles_keep_their_middle_on_the_panel(gap: float, least: float) -> None:
-    """To and fro between both pads: slow steps stand well on the panel, quick ones at most 1 cm over its edge."""
+    """To and fro between both pads: slow steps stand well on the panel, quick ones near its edge, but on it."""
     events = [(1.0 + gap * k, {(3, 4, 6, 5, 7, 4, 2, 1)[k % 8]: (L, R)[k % 2]}) for k in range(24)]
     inside = soles_inside(bake(chart(), play(events, True), pad(True)))
     assert len(inside) == len(events)

@@ -96,8 +96,9 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     cut = max(hurry, step.edge, wide * step.wide_inward)
     yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
     toes = footing.toes(foot, yaw)
-    over_edge = step.middle_over + goal.haste * (step.middle_over_most - step.middle_over)
-    spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL + over_edge - room)))
+    hard = max(goal.haste, float(np.clip((far - 2 * HALF_PANEL) / (step.wide - 2 * HALF_PANEL), 0.0, 1.0)))
+    inside = step.middle_inside + hard * (step.middle_inside_hasty - step.middle_inside)
+    spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL - inside - room)))
     ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
     # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
     way = (foot.ball + (foot.ball if following is None else following)) / 2
