@@ -23,7 +23,7 @@ from dancetutor_cli.video.picture import Frame
 CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
 CALL_SMALL = 0.5  # and to more than two lines
 SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
-CALL_STAYS = 0.2  # seconds that a call stays after its note
+CALL_STAYS, CALL_FADES = 0.2, 0.06  # seconds that a call stays after its note; in which it goes: no ghost of it stands
 COUNTED = "starts in"  # said above the numbers of the count-in
 
 
@@ -170,7 +170,8 @@ class Calls:
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
                 break  # it would cover what stands below; the tag beside the notes says it, too
             x = self.box[2] - label.shape[1]
-            fade = min(1.0, (second - one.begin) / 0.12, (max(one.end, one.second) + CALL_STAYS - second) / CALL_STAYS)
+            over = max(one.end, one.second) + CALL_STAYS
+            fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)
             blit(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
             share = _left(one, second)

@@ -182,8 +182,9 @@ class Highway:
             flag = self._flag(self._tags[i].words, self._tags[i].severity)
             middle = max(way * y[i], free + flag.shape[0] / 2)
             free = middle + flag.shape[0] / 2 + TAGS_APART
-            if self._tag_seconds[i] > now.second:
-                blit(frame, flag, x, way * middle - flag.shape[0] / 2, 1.0, self._rows)
+            at, (top, bottom) = way * middle - flag.shape[0] / 2, self._rows
+            if self._tag_seconds[i] > now.second and top <= at and at + flag.shape[0] <= bottom:  # whole, or not yet
+                blit(frame, flag, x, at, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry

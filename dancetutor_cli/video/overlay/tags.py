@@ -16,6 +16,10 @@ from dancetutor_cli.video.overlay.text import Typeface, fitted, narrowest
 LETTERS, LEAST = 15.0, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
 LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
 SEEN = 4.0  # seconds before its row that a tag, or a note, may be in the picture
+LONG, LONG_APART = (
+    20,
+    1.2,
+)  # letters of tags that stand at least so many seconds apart: brackets made a wall of small ones
 LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
 NEAR = 0.95  # of the letters' size that is as good as all of it: sizes are tried in steps
 FEWER = 0.85  # and so much that is better than more lines, if these are not smaller than `LEAST`
@@ -50,11 +54,21 @@ class RowTag(NamedTuple):
 
 
 def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
-    """Each passage's tag where it begins, and those of its other moves, in order of time."""
+    """Each passage's tag where it begins, and those of its other moves, in order of time.
+
+    Of long ones that follow each other quickly, such as brackets', the first: the calls beside her tell the others.
+    """
     found = [
         RowTag(*one, call.severity) for call in callouts for one in ((call.second, call.beat, call.tag), *call.further)
     ]
-    return sorted(found, key=lambda one: one.second)
+    kept, last = [], -np.inf
+    for one in sorted(found, key=lambda one: one.second):
+        if len(one.words) > LONG:
+            if one.second - last < LONG_APART:
+                continue
+            last = one.second
+        kept.append(one)
+    return kept
 
 
 def told(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:

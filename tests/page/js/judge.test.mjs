@@ -135,7 +135,7 @@ test("a row's moves are named in a dancer's words, each once", () => {
   };
   assert.equal(named("en", "crossover-front", "crossover-half"), "crossover in front");
   assert.equal(named("en", "crossover-half", "candle", "stream"), "crossover, long step, long run");
-  assert.equal(named("en", "doublestep", "forced-doublestep"), "same foot again");
+  assert.equal(named("en", "doublestep", "forced-doublestep"), "same foot twice in a row");
   assert.equal(named("de", "crossover-back", "crossover-half", "jack"), "Überkreuzen hinten, noch einmal dasselbe Feld");
 });
 

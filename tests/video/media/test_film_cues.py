@@ -77,7 +77,7 @@ def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
     words, timing = subtitle_words(), charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing
     found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, pad)]
     assert found == [
-        ("right foot again", (), "doublestep"),
+        ("right foot: twice in a row", (), "doublestep"),
         ("left foot: heel on left, toe on down", (), "bracket"),
         ("right foot: heel on right, toe on up", (), "bracket"),
         ("left hand down", (), "hand"),

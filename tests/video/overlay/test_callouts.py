@@ -109,20 +109,20 @@ def test_an_uncrossed_jump_or_a_rest_parts_what_is_called_out() -> None:
 
 def test_moves_that_follow_closely_are_joined_and_others_are_not() -> None:
     found = called(moves((0.0, "crossover-half"), (1.0, "footswitch-up"), (20.0, "footswitch-up")))
-    assert [one.text for one in found] == ["crossover, footswitch", "footswitch"]
+    assert [one.text for one in found] == ["crossover, footswitch: swap feet", "footswitch: swap feet"]
     assert found[0].tag == "crossover", "the place beside the notes is narrow"
 
 
 def test_nothing_is_called_out_for_longer_than_four_measures() -> None:
     found = called(moves(*((float(beat), "footswitch-up") for beat in range(40))))
-    assert [one.text for one in found] == ["footswitch ×17", "footswitch ×17", "footswitch ×6"]
+    assert [one.text for one in found] == [f"footswitch: swap feet ×{times}" for times in (17, 17, 6)]
 
 
 def test_at_a_chart_of_false_tempo_seconds_join_them() -> None:
     """Pump's charts may run at 312 BPM and more: a measure there is less than a second."""
     quick = moves(*((float(beat), "footswitch-up") for beat in (0, 4, 8)))
     quick.chart.timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 48 * 60 / 312)
-    assert [one.text for one in called(quick)] == ["footswitch ×3"]
+    assert [one.text for one in called(quick)] == ["footswitch: swap feet ×3"]
 
 
 def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
@@ -163,7 +163,7 @@ def test_the_foot_and_the_hand_are_named() -> None:
     found = called(
         subject((0.0, ("doublestep",), {3: 1}, {0: 0, 1: 3}), (9.0, ("hand",), {0: 0, 2: 1, 1: 2}, {0: 0, 1: 2}))
     )
-    assert [one.text for one in found] == ["right foot again", "left hand down"]
+    assert [one.text for one in found] == ["right foot: twice in a row", "left hand down"]
 
 
 def test_a_note_that_is_let_go_is_said() -> None:
@@ -206,8 +206,8 @@ def test_findings_are_for_authors_who_ask_for_them(monkeypatch: pytest.MonkeyPat
     finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", name="fast-step")
     monkeypatch.setattr("dancetutor_cli.lint.check.findings_of", lambda _: [finding])
     what = moves((8.0, "footswitch"))
-    assert [one.text for one in called(what)] == ["footswitch"]
+    assert [one.text for one in called(what)] == ["footswitch: swap feet"]
     assert [(one.text, one.severity) for one in called(what, findings=True)] == [
         ("fast step", "warning"),
-        ("footswitch", "move"),
+        ("footswitch: swap feet", "move"),
     ]

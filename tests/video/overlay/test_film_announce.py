@@ -206,3 +206,17 @@ def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPat
     Calls(found, (300, 10, 300 + width, 350), 1.0, FACE, highway_style()).draw(frame, 4.5)
     assert " ".join(written) == said
     assert drawn(frame)[0] >= 300 - 2, "inside of its box"
+
+
+def test_a_call_goes_quickly() -> None:
+    """Its grey ghost in the corner was taken for a mistake."""
+    one = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
+    calls = Calls((one,), (0, 0, 600, 200), 1.0, FACE, highway_style())
+    seen = []
+    for second in np.arange(2.0, 2.3, 0.01):
+        frame = black()
+        calls.draw(frame, float(second))
+        seen.append(int(frame.max()))
+    faint = [light for light in seen if 0 < light < 0.9 * max(seen)]
+    assert seen[0] == max(seen) and seen[-1] == 0
+    assert len(faint) <= 6, "hundredths of a second"

@@ -18,6 +18,7 @@ from dancetutor_cli.video.notes import Callout
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.highway import Highway
+from dancetutor_cli.video.overlay.tags import row_tags
 
 GIF = round(FORMATS["gif"].side)
 CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
@@ -107,3 +108,35 @@ def test_words_too_long_for_their_place_leave_lanes_most_of_their_width(monkeypa
     lines, _ = drawn_tag(highway, said, monkeypatch)
     assert lines == [said]
     assert highway.geometry.lane > 0.75 * plain.geometry.lane
+
+
+def test_of_long_tags_that_follow_quickly_the_first_stands() -> None:
+    """Quick brackets made a wall of small words that nobody reads."""
+    bracket = "heel on down-left, toe on centre"
+    calls = [replace(CALL, second=2.0 + 0.5 * k, beat=4.0 + k, tag=bracket) for k in range(6)]
+    calls.append(replace(CALL, second=3.1, beat=6.2, tag="crossover ×12"))
+    found = [(tag.second, tag.words) for tag in row_tags(calls)]
+    assert found == [(2.0, bracket), (3.1, "crossover ×12"), (3.5, bracket)]
+
+
+@pytest.mark.parametrize("down", [False, True])
+def test_a_tag_is_seen_whole_or_not_at_all(down: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The edge that notes come from cut its words."""
+    layout = load_layout("side-by-side")
+    plan = film_plan(np.array([1.0, 2.0, 3.0]))
+    plan = replace(plan, callouts=(CALL,), look=FilmLook(layout, (1280, 720), down=down))
+    highway = Film(plan).highway
+    assert highway is not None
+    drawn: list[tuple[float, int]] = []
+
+    def noted(frame: Any, sprite: Sprite, x: float, y: float, *rest: Any) -> None:
+        if x == highway.geometry.tags_left:
+            drawn.append((y, sprite.shape[0]))
+
+    monkeypatch.setattr("dancetutor_cli.video.overlay.highway.blit", noted)
+    frame = np.zeros((720, 1280, 3), np.uint8)
+    for second in np.arange(0.0, 2.0, 1 / 60):
+        highway.draw(frame, float(second), float(2 * second))
+    _, top, _, bottom = highway.geometry.box
+    assert len(drawn) > 20
+    assert all(top <= y and y + high <= bottom for y, high in drawn)
