@@ -49,7 +49,7 @@ class Runs:
     def _text(self, number: int) -> str:
         one, count = self.clock.passes[number], len(self.clock.passes)
         speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
-        return f"{speed} · {number + 1} of {count}" if count > 1 else speed
+        return f"{speed} · run {number + 1} of {count}" if count > 1 else speed
 
     def _corner(self, label: Sprite) -> tuple[float, float]:
         return (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)

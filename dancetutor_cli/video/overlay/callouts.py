@@ -76,10 +76,14 @@ class _Passage:
     def text(self) -> str:
         return ", ".join(said if count == 1 else f"{said} ×{count}" for said, count in self.words.items())
 
-    def tag(self) -> str:
-        """What it begins with, for the narrow place beside the notes, whose markers say which foot it is."""
+    def tag(self, further: int) -> str:
+        """What it begins with, for the narrow place beside the notes, whose markers say which foot it is.
+
+        further : how many of its other moves have tags of their own; where all have, this one counts none
+        """
         said, count = next(iter(self.words.items()))
-        return short_words(said) if count == 1 else f"{short_words(said)} ×{count}"
+        counted = count > 1 and further + 1 < len(self.moves)
+        return f"{short_words(said)} ×{count}" if counted else short_words(said)
 
     def further(self, second: Mapping[int, float]) -> list[tuple[int, str]]:
         """Tick and tag of each other move that is well apart from the one before it."""
@@ -157,7 +161,7 @@ def callouts_of(
             _ORDER[passage.weight],
             float(begin),
             float(end),
-            passage.tag(),
+            passage.tag(len(passage.further(seconds))),
             tuple(further(passage)),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)

@@ -42,12 +42,16 @@ def _can(main: str | None, character: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _runs(main: str | None, text: str) -> tuple[tuple[str | None, str], ...]:
-    """A text cut into (font, part): one font for all of it if there is one, since a letter from elsewhere is ugly."""
+    """A text cut into (font, part): one font for all its letters if there is one, since one from elsewhere is ugly.
+
+    Signs may come from elsewhere: the whole of "crossover ×4" in another font was uglier.
+    """
     if has_all(main, text):
         return ((main, text),)
-    for path in (None, *system_fonts()):
-        if has_all(path, text):
-            return ((path, text),)
+    if not all(has_glyph(main, c) for c in text if c.isalpha()):
+        for path in (None, *system_fonts()):
+            if has_all(path, text):
+                return ((path, text),)
     parts = groupby(text, lambda c: _font_of(main, c))
     return tuple((path, "".join(part)) for path, part in parts)
 

@@ -55,8 +55,16 @@ def moves(*beats_and_names: tuple[float, str]) -> Any:
 def test_crossovers_in_a_row_are_one_passage_with_a_count() -> None:
     rows = [(beat, "crossover-half" if beat % 2 else "") for beat in range(8)]
     (one,) = called(moves(*((float(beat), name) for beat, name in rows)))
-    assert (one.text, one.tag) == ("crossover ×4", "crossover ×4")
+    assert (one.text, one.tag) == ("crossover ×4", "crossover")
+    assert [tag for *_, tag in one.further] == ["crossover"] * 3, "each has its tag, so none has a count"
     assert (one.second, one.end) == (0.5, 3.5)
+
+
+def test_the_first_of_quick_moves_has_the_count_in_its_tag() -> None:
+    """The others stand too close for tags of their own."""
+    (one,) = called(moves(*((0.5 * k, "footswitch-up") for k in range(4))))
+    assert (one.text, one.tag) == ("footswitch: swap feet ×4", "swap feet ×4")
+    assert len(one.further) == 1
 
 
 def test_a_crossover_that_goes_on_is_counted_once() -> None:

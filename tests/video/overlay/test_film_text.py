@@ -54,6 +54,8 @@ def test_letters_the_built_in_font_lacks_come_from_the_system(fonts: list[str]) 
     assert face.drawable("Ночь é") == "Ночь é" and face.missing("Ночь 日") == "日"
     assert text._runs(None, "Night")[0][0] is None  # what the built-in one can draw, it draws
     assert [part for part, _ in text._runs(None, "Ночь 1")] == [wide]  # one font for a line if there is one
+    letters = [path for path, part in text._runs(None, "crossover ×4") if part.strip() != "×"]
+    assert letters == [None, None], "a sign from elsewhere changes no letter"
     ink = face.sprite("Ночь", 30, (255, 255, 255))[..., 3]
     box = face.sprite("????", 30, (255, 255, 255))[..., 3]
     assert ink.shape[0] == box.shape[0] and (ink > 128).sum() > 200
