@@ -75,7 +75,9 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, danced: Motion) 
 
 
 def git(folder: Path, *words: str) -> None:
-    subprocess.run(["git", "-C", str(folder), *words], check=True)
+    subprocess.run(
+        ["git", "-C", str(folder), "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false", *words], check=True
+    )
 
 
 def test_a_commit_stands_above_and_today_below(

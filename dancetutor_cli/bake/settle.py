@@ -68,7 +68,8 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
     for number in range(rounds):
         targets = targets_at(plan, body, coarse, context)
         poses = solve(context.skeleton, targets, settings.body.reach)
-        offset = mass_of(context.skeleton, poses) - poses.root
+        placed = world_transforms(context.skeleton, poses.rotations, poses.root)
+        offset = centre_of_mass(context.skeleton, *placed) - poses.root
         taken = sample_path(np.column_stack((body.mass, body.mass_height.at(times))), times, coarse)
         planned = taken - sample_path(np.column_stack((body.ground, body.height)), times, coarse)
         residuals.append(float(np.abs(offset[:, [0, 2, 1]] - planned).max()))
@@ -83,7 +84,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
         push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
         last = number == rounds - 1
-        turning = moved_by_turning(context.skeleton, poses.rotations, poses.root, rate / COARSE)
+        turning = moved_by_turning(context.skeleton, *placed, rate / COARSE)
         known = Known(
             body, above, cubic(coarse, turning, times), hips, push, deeper, keep=number > 0 and not last,
             tightened=TIGHTENED if last else 0,

@@ -119,7 +119,8 @@ class Film:
         limbs = beside.limbs_seen(self.plan.notes, self.plan.clock.passes)
         box = self._below(self._box("legend"), LEGEND_OFF * self.scale * part.text)
         if (pads := self._feet_box) is not None and overlap(pads, box):
-            box = lowered(box, pads[3] + LEGEND_OFF * self.scale)
+            under = lowered(box, pads[3] + LEGEND_OFF * self.scale)
+            box = under if under[3] <= self.size[1] else box  # a layout of one's own may leave no room there
         return captions.Legend(
             limbs,
             box,

@@ -19,7 +19,7 @@ def crossing_share(grips: tuple[Grip, ...], times: Array, numbers: AcrossSetting
     Wholly a little before the hand is there, until a little after; positive where she is turned to the left, so that
     the right hand is the far one.
     """
-    out, ease = np.zeros(len(times)), numbers.ease
+    out, ease = np.zeros(len(times)), max(numbers.ease, 1e-6)
     for grip in grips:
         if grip.across:
             first, last = grip.start - numbers.early, grip.end + numbers.early

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.motion.trajectory.support import Support, along_sides
 from dancetutor_cli.numerics.smoothing import low_pass
 from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.mass import GRAVITY, mass_points
 from dancetutor_cli.rig.skeleton import Skeleton
 
@@ -23,13 +22,12 @@ FARTHEST = 0.03  # metres that it goes at most; farther, ankles of wide stands b
 LEAST_CARRIED = 0.4  # of her weight: lighter feet than that hold no moment worth planning for
 
 
-def moved_by_turning(skeleton: Skeleton, rotations: Array, root: Array, rate: float) -> Array:
+def moved_by_turning(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
     """Where the zero-moment point lies beyond the point mass's, (f, 2) metres along x and z, below 10 Hz.
 
-    rotations (f, j, 4), root (f, 3) : poses at `rate` per second
+    positions (f, j, 3), world (f, j, 4) : of the joints, as of `world_transforms`, at `rate` per second
     """
     joints, masses, offsets = mass_points(skeleton)
-    positions, world = world_transforms(skeleton, rotations, root)
     places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
     mass = np.einsum("m,fmx->fx", masses, places)
     arms = places - mass[:, None]

@@ -46,8 +46,9 @@ def push_off(plan: Plan, times: Array, feet: Feet, hips: Array, context: Context
             continue
         k = int(np.clip(np.searchsorted(times, start), 1, len(times) - 1)) - 1
         side, pitch = _more(_at(feet, k), hips[k], np.radians(jump.heel_most), context.skeleton)
-        near = slice(*np.searchsorted(times, (lifts[side] - jump.heel_up, end)))
-        shape = smooth((times[near] - lifts[side] + jump.heel_up) / jump.heel_up)
+        rising = max(jump.heel_up, 1e-6)
+        near = slice(*np.searchsorted(times, (lifts[side] - rising, end)))
+        shape = smooth((times[near] - lifts[side] + rising) / rising)
         shape *= smooth((end - times[near]) / (end - start))
         out[near, side] = np.maximum(out[near, side], share * pitch * shape)
     up = np.column_stack([foot.pitch for foot in feet])

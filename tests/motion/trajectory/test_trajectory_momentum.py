@@ -53,7 +53,7 @@ def test_the_whole_bodys_point_is_the_masss_and_what_turning_adds() -> None:
     mass = centre_of_mass(skeleton, positions, world)
     a = accelerations(mass)
     point = (mass - mass[:, 1:2] * a / (a[:, 1:2] + GRAVITY))[:, [0, 2]]
-    moved = moved_by_turning(skeleton, rotations, root, RATE)
+    moved = moved_by_turning(skeleton, positions, world, RATE)
     middle = slice(240, 480)
     assert np.abs((whole - point)[middle]).max() > 0.03  # or nothing is shown
     np.testing.assert_allclose(moved[middle], (whole - point)[middle], atol=0.001)
