@@ -35,10 +35,12 @@ class ArmSettings:
     forward: float
     down: float
     stream_up: float
-    stream_forward: float
+    stream_back: float
     stream_out: float
     stream_wander: float
     unlike: float
+    loose: float
+    loose_time: float
     step: float
     step_effort: float
     jump: float

@@ -140,6 +140,7 @@ class JumpSettings:
     full_time: float
     arms_after: float
     arms_time: float
+    arms_down: float
     lean_before: float
     lean_after: float
     push_time: float

@@ -47,6 +47,32 @@ def test_hands_in_streams_are_aside_and_each_at_its_own_height(danced: Motion) -
     assert np.abs(busy[0] - busy[1])[:, 1].mean() > 0.06
 
 
+def test_forearms_are_not_held_level_in_streams(danced: Motion) -> None:
+    """A sleepwalker's or a boxer's are; what swings through is not held."""
+    places, _ = world_transforms(danced.skeleton, *sample(danced, STREAM))
+    index = danced.skeleton.index
+    for side in "lr":
+        forearm = places[:, index(f"{side}_radiocarpal")] - places[:, index(f"{side}_elbow")]
+        level = np.abs(forearm[:, 1]) < np.sin(np.radians(15.0)) * np.linalg.norm(forearm, axis=1)
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], level, [False])).astype(int)))
+        assert (edges[1::2] - edges[::2]).max(initial=0) * 0.05 <= 0.4
+
+
+@pytest.mark.parametrize(("gap", "least", "most"), [(1.2, 0.10, 0.30), (0.30, 0.0, 0.06)])
+def test_both_arms_swing_up_in_jumps_and_down_as_she_lands(gap: float, least: float, most: float) -> None:
+    """By the jump's height: those for which there is little time have little of it."""
+    jumps = [(2.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
+    motion = bake(chart(), play(jumps), pad())
+    land = jumps[4][0]
+    up, crouched, landed = (
+        hands(motion, np.arange(land + first, land + last, 0.01))[..., 1]
+        for first, last in ((-0.22, 0.0), (-0.5, -0.2), (0.0, 0.28))
+    )
+    for low in (crouched, landed):
+        rise = up.max(axis=1) - low.min(axis=1)
+        assert least < rise.min() and (rise.max() < most or least > 0.0)
+
+
 def test_hands_are_never_quite_still_nor_mirror_images(danced: Motion) -> None:
     waiting = hands(danced, WAIT)
     assert np.ptp(waiting, axis=1).max(axis=1).min() > 0.015

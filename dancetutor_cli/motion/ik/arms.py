@@ -15,7 +15,7 @@ from dancetutor_cli.motion.ik.beside_legs import beside_legs
 from dancetutor_cli.motion.ik.full_body import arm_rotations
 from dancetutor_cli.motion.ik.hands import HandTargets, Torso
 from dancetutor_cli.motion.ik.ik_kernels import ArmGoal
-from dancetutor_cli.motion.ik.knees import Legs
+from dancetutor_cli.motion.ik.knees import Legs, middle_joint, square_to
 from dancetutor_cli.motion.ik.palms import palm_down
 from dancetutor_cli.motion.ik.rail import hold, kept_clear
 from dancetutor_cli.motion.ik.spine import shoulders_over, torso_rotations
@@ -42,6 +42,8 @@ WAVES = 1.3  # about the size of both waves together
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
+LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
+SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
 ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
@@ -130,9 +132,10 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang = np.empty((len(swing), 2, 3))
     hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
     hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort * unlike
-    hang[..., 2] = arms.forward + swing + arms.stream_forward * effort
+    hang[..., 2] = arms.forward + swing - arms.stream_back * effort
+    hang[..., 1] -= _hung(hang, rate, context)
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
-    hang[..., 1] += 0.5 * arms.jump_up * (jump + np.abs(jump))
+    hang[..., 1] += 0.5 * arms.jump_up * (jump + jump**2)
     hang[..., 2] += arms.jump * jump
     pumped = context.settings.groove.hands * body.sway[:, None] * (1.0 + effort)
     hang[..., 1] += 0.5 * np.abs(pumped)
@@ -159,6 +162,18 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     if context.bar is not None:  # behind her back, a hand has the trunk in its way
         held[:] = 1.0
     return hang, lag, held
+
+
+def _hung(hang: Array, rate: float, context: Context) -> Array:
+    """How far hands (n, 2, 3) sink, (n, 2): a forearm that is up hangs from its elbow, and is level only as it swings
+    through."""
+    arms, skeleton = context.settings.arms, context.skeleton
+    lengths = tuple(float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
+    poles = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
+    poles = np.broadcast_to(poles, hang.shape)
+    over = hang[..., 1] - middle_joint(hang, square_to(hang, poles), (lengths[0], lengths[1]))[..., 1]
+    slowly = smooth_path(over, np.ones(len(over)), rate, arms.loose_time)
+    return np.asarray(SUNK * LOOSE_SOFT * np.logaddexp(0.0, (slowly + arms.loose) / LOOSE_SOFT))
 
 
 def _at_most(way: Array, most: float) -> Array:

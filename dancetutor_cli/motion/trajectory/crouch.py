@@ -81,17 +81,26 @@ def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Arr
 
 
 def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """Where arms are (n,) that help a jump: -1 back as she crouches, 1 ahead and up as she leaves the ground."""
+    """Where arms are (n,) that help a jump: -1 back as she crouches, 1 ahead and up in the air, back as she lands.
+
+    As far as the jump is high, and as there is time for it.
+    """
     flights = plan.flights
     out, wide = np.zeros(len(times)), jump.arms_time
     if not len(flights):
         return out
     start, end = flights.T
-    share = time_for_jumps(flights, jump)[0] * np.clip((end - start) / jump.arms_full, 0.0, 1.0)
+    before, after = (share**2 for share in time_for_jumps(flights, jump))  # the less time, the quicker a swing is
+    high = np.clip((end - start) / jump.arms_full, 0.0, 1.0) ** 2
+    swings = (
+        (-before, start - jump.crouch_before),
+        (before, start + jump.arms_after),
+        (-jump.arms_down * np.minimum(before, after), end + jump.follow_after),
+    )
     for k in range(len(flights)):
-        for sign, time in ((-1.0, start[k] - jump.crouch_before), (1.0, start[k] + jump.arms_after)):
-            near = slice(*np.searchsorted(times, (time - 4 * wide, time + 4 * wide)))
-            out[near] += sign * share[k] * np.exp(-(((times[near] - time) / wide) ** 2))
+        for size, time in swings:
+            near = slice(*np.searchsorted(times, (time[k] - 4 * wide, time[k] + 4 * wide)))
+            out[near] += high[k] * size[k] * np.exp(-(((times[near] - time[k]) / wide) ** 2))
     return np.clip(out, -1.0, 1.0)
 
 
