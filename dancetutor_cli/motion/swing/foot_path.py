@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 HEEL_BACK, BALL_UP = dancer_foot()
 SHAKE_RAMPS = 2.8  # a leg that is shaken out goes back, and comes again, in one part of so many
 FLAPS_LATE = 1.2  # radians that a loose foot's flapping is behind the way of its leg
+LOW = 0.001  # metres over the ground at which a foot that comes down from a jump is on it, and must not slide
+SLOW = 0.02  # the last part of a way's time, in which a foot goes hardly any more
+MOST_LOW = 0.15  # of the time of a jump that is hardly off the ground
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 
 
@@ -64,7 +67,8 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
     even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
-    ground = np.where(swinging[:, None], _ground(track, place, i, travelled(s, step, even)), place[done])
+    gone = travelled(s, step, even, _low(track)[i])
+    ground = np.where(swinging[:, None], _ground(track, place, i, gone), place[done])
     level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
     climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
     up = np.where(swinging, _height(track, i, s, risen(s, step, even)) + climb, 0.0)
@@ -113,6 +117,12 @@ def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
 def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
     """Which of a foot's moves are of some kinds."""
     return np.array([isinstance(move, kinds) for move in track.moves])
+
+
+def _low(track: FootTrack) -> Array:
+    """The last part of each move's time in which a foot that jumps comes straight down, as it would slide otherwise."""
+    heights = np.array([m.height if isinstance(m, Jump) else np.inf for m in track.moves])
+    return np.asarray(np.clip(LOW / np.maximum(4.0 * heights, 1e-9) - SLOW, 0.0, MOST_LOW))
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> Array:

@@ -24,17 +24,18 @@ def evenness(duration: ArrayLike, step: StepSettings) -> Array:
     return np.asarray(np.clip(missing / max(step.even_slow - step.even_quick, 1e-9), 0.0, 1.0))
 
 
-def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0) -> Array:
+def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
     """How far over the ground a swing has come at each part of its time.
 
     Slow at both ends, a cubic: of the ways from rest to rest that were tried its quick parts throw the body aside
     least. That holds for what lasts longer than a tenth of a second; steps as short as that are gone at one speed, and
     what their ends do the body, which is heavy, does not feel.
 
-    even : as of `evenness`
+    even : as of `evenness`; low : the last part of the time, in which it comes straight down, if that is longer than an
+    even step's
     """
     share = np.asarray(even, dtype=np.float64)
-    late = step.on_ground * share
+    late = np.maximum(step.on_ground * share, low)
     free = np.clip((np.asarray(s, dtype=np.float64) - step.off_ground) / (1.0 - step.off_ground - late), 0.0, 1.0)
     slow = free * free * (3.0 - 2.0 * free)
     return np.asarray(slow + share * (_at_one_speed(free, step.even_ends) - slow))

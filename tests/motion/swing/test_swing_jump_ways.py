@@ -53,6 +53,20 @@ def test_feet_that_land_together_after_far_ways_do_not_cross() -> None:
     assert least_gap(footing, 1.0, 1.1) >= 0.076  # what the report asks for
 
 
+@pytest.mark.parametrize("seconds", [0.04, 0.06, 0.09, 0.12, 0.3])
+def test_feet_come_down_from_a_jump_straight(seconds: float) -> None:
+    """Lower than a millimetre, where a foot counts as standing, it goes less than half of one aside."""
+    footing = _standing(((0.14, 0.05), 0.0), ((-0.14, 0.05), 0.0))
+    goals = [(np.array([0.34, -0.2]), 0.0), (np.array([0.06, -0.2]), 0.0)]
+    footing = flown(footing, Flight(1.0, 1.0 + seconds), goals, [(0.0, 0.0, 0.0, 0.0)] * 2)
+    times = 1.0 + seconds * np.linspace(0.5, 1.0, 2001)
+    for track, (ball, _) in zip((foot.track() for foot in footing.feet), goals, strict=True):
+        path = foot_path(track, times, default_settings()).ball
+        low = path[:, 1] <= 0.001
+        assert low.any() and not low[0]
+        assert np.linalg.norm(path[low][:, [0, 2]] - ball, axis=1).max() < 5e-4
+
+
 def _standing(*places: tuple[tuple[float, float], float]) -> Footing:
     """A footing whose feet have always been where they are now: ball and yaw of the left and the right one."""
     footing = Footing.at_home(context(), 0)
