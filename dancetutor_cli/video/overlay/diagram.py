@@ -54,13 +54,19 @@ def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRo
     keep = shown.any(axis=1)
     limb = np.where(shown, play.limb, np.int8(-1))
     feet = [_feet_at(play.rows.tick[keep], own, first) for own, first in dancers]
-    return DiagramRows(play.rows.second[keep], limb[keep], np.hstack(feet) if feet else play.feet[keep])
+    return DiagramRows(play.rows.second[keep], limb[keep], np.hstack(feet) if feet else _stood(play)[keep])
+
+
+def _stood(play: Play) -> NDArray[np.int16]:
+    """`play.feet`, -1 until a foot has stepped: before that the play only supposes where it is."""
+    stepped = np.column_stack([(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)])
+    return np.where(np.logical_or.accumulate(stepped, axis=0), play.feet, -1).astype(np.int16)
 
 
 def _feet_at(ticks: NDArray[np.int64], own: Play, first: int) -> NDArray[np.int16]:
     """Where the feet of one of several stand after the rows at `ticks`, int16 (r, 2)."""
     row = np.searchsorted(own.rows.tick, ticks, side="right") - 1
-    feet = np.where(row[:, None] >= 0, own.feet[np.maximum(row, 0)], -1)
+    feet = np.where(row[:, None] >= 0, _stood(own)[np.maximum(row, 0)], -1)
     return np.where(feet >= 0, feet + first, -1).astype(np.int16)
 
 

@@ -24,7 +24,7 @@ from dancetutor_cli.video.scroll import Scroll
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
-TURNED = "facing you: left and right swapped, notes too"  # all arrows are turned with her
+TURNED = "facing you: all is turned round, notes too"  # all arrows are turned with her
 LET_GO = 0.25  # opacity of holds and rolls from where on nobody plays them
 TAGS_APART = 2.0  # pixels between two tags
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
