@@ -47,6 +47,7 @@ class Watch:
 
 def _request(kind: str) -> Any:
     """The film that a row is about."""
+    from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.library.selection import Selection
     from dancetutor_cli.video.film_look import FilmLook
@@ -55,7 +56,7 @@ def _request(kind: str) -> Any:
     renderer = "gl" if kind == "gl" else "cpu"
     look = FilmLook(load_layout("side-by-side"), (1280, 720), "draft" if kind == "draft" else "good", renderer)
     selection = Selection(steps_type="dance-single", difficulty="hard")
-    return FilmRequest(DEMO, selection, look, preset="itg", section=SECTIONS[kind])
+    return FilmRequest(DanceRequest(DEMO, selection, "itg"), look, section=SECTIONS[kind])
 
 
 def child(output: str, kind: str) -> None:
@@ -175,6 +176,7 @@ def pack() -> list[Row]:
 
 def pack_child(folder: str) -> None:
     """Make the films of a folder's pack with workers of this process and print for how long they had work, as JSON."""
+    from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
     from dancetutor_cli.jobs.film_request import FilmRequest
@@ -198,7 +200,8 @@ def pack_child(folder: str) -> None:
             self.since, self.working = now, sum(worker.task is not None for worker in self._workers)
 
     look = FilmLook(load_layout("side-by-side"), (640, 360), "good", "cpu")
-    request = FilmRequest(Path(), Selection(steps_type="dance-single"), look, preset="itg", section="4:9")
+    dance = DanceRequest(Path(), Selection(steps_type="dance-single"), "itg")
+    request = FilmRequest(dance, look, section="4:9")
     encoding = Encoding("mp4", look.size, request.fps)
     videos = Path(folder) / "videos"
     videos.mkdir()

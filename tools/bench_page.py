@@ -13,8 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from dancetutor_cli.jobs.bake import BakeTask
-from dancetutor_cli.jobs.page import PageTask, make_page
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.jobs.page import PageRequest, make_page
 from dancetutor_cli.library.selection import Selection
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "page"))
@@ -40,7 +40,7 @@ Row = tuple[str, float, str, str, str]
 
 def measure() -> list[Row]:
     """Rows for tools/bench.py."""
-    page = make_page(PageTask(BakeTask(DEMO, Selection(difficulty="challenge"))))
+    page = make_page(PageRequest(DanceRequest(DEMO, Selection(difficulty="challenge"))))
     out: list[Row] = [("page without music", len(page.html) / 1e6, "MB", "4 for two minutes", "")]
     out += [(f"page, {part}", size / 1e3, "kB", "", "") for part, size in sorted(page.sizes.items())]
     if shutil.which("chromium") is None:

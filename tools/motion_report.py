@@ -168,20 +168,24 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
 def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
     """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
     from dancetutor_cli.bake import mines_of, report
-    from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+    from dancetutor_cli.dance.performance import perform, solve
+    from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.motion.baked import Cut
     from dancetutor_cli.reports.motion_report import as_json
 
     started = time.monotonic()
-    task = BakeTask(Path(wanted.path), Selection(index=wanted.index), preset, bar=bar)
-    asked = ask(task)
-    stepped = asked.play.rows.second[(asked.play.limb >= 0).any(axis=1)]
-    start = 0.0
+    request = DanceRequest(Path(wanted.path), Selection(index=wanted.index, player=1), preset, bar=bar)
+    performance = perform(solve(request), request)
+    dancer = performance.dancers[0]
+    stepped = dancer.play.rows.second[(dancer.play.limb >= 0).any(axis=1)]
+    start, cut = 0.0, None
     if length > 0.0:
         start = section_start(stepped, wanted.place, length)
-        asked = replace(asked, section=(start, start + length))
+        cut = Cut(start, start + length)
         stepped = stepped[(stepped >= start) & (stepped <= start + length)]
-    found = as_json(report(bake_asked(asked, task), mines_of(asked.play, asked.pad)))
+    motion = performance.motions(cut)[0].motion
+    found = as_json(report(motion, mines_of(dancer.play, dancer.pad)))
     return Measured(
         wanted.path, wanted.index, wanted.label, len(stepped), float(np.ptp(stepped)) if len(stepped) else 0.0,
         peak_rate(stepped), round(time.monotonic() - started, 2), "", found["figures"], found["notes"], start,

@@ -20,13 +20,12 @@ import numpy as np
 from earlier import baked_by
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.bake import bake
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.motion.baked import Cut, Motion
 from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.motion.settings import load_settings
 from dancetutor_cli.rig.kinematics import joint_matrices
 from dancetutor_cli.video.scene import renderer
 from dancetutor_cli.video.scene.look import default_look
@@ -95,10 +94,9 @@ def _options() -> argparse.Namespace:
 
 def baked(moments: Moments, changed: Path | None = None) -> tuple[Motion, Any]:
     """The motion around these moments, and its pad; changed : a file of changed numbers of the motion."""
-    asked = ask(BakeTask(moments.chart, Selection(index=moments.index)))
-    settings = load_settings(changed)
-    section = moments.section
-    return bake(asked.chart, asked.play, asked.pad, section=section, bar=moments.bar, settings=settings), asked.pad
+    request = DanceRequest(moments.chart, Selection(index=moments.index, player=1), bar=moments.bar, motion=changed)
+    performance = perform(solve(request), request)
+    return performance.motions(Cut(*moments.section))[0].motion, performance.pad
 
 
 def baked_before(commit: str, moments: Moments) -> Motion:

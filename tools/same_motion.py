@@ -14,15 +14,15 @@ import pickle
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import motion_report
 import numpy as np
 
 from dancetutor_cli.bake import bake
+from dancetutor_cli.dance.performance import solve
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
@@ -52,15 +52,16 @@ def freeze(options: argparse.Namespace) -> int:
     wanted = motion_report._everything(motion_report.DEMO) + motion_report.pick(options.count, options.seed)
     for number, chart in enumerate(wanted):
         try:
-            asked = ask(BakeTask(Path(chart.path), Selection(index=chart.index)))
+            one = solve(DanceRequest(Path(chart.path), Selection(index=chart.index, player=1)))[0]
         except DancetutorError as error:
             print(f"left out: {error}", file=sys.stderr)
             continue
         whole = chart.path.startswith(str(motion_report.DEMO[0]))
         how = {"bar": True, "gait": "heels"} if number % 5 == 0 else {}
-        section = None if whole else _section(asked.play.rows.second, number)
+        assert one.play is not None
+        section = None if whole else _section(one.play.rows.second, number)
         scene = Scene(
-            f"{number:02d} {Path(chart.path).stem[:36]} {chart.label}", asked.play, asked.pad, asked.chart.timing,
+            f"{number:02d} {Path(chart.path).stem[:36]} {chart.label}", one.play, one.pad, one.chart.timing,
             section, how,
         )  # fmt: skip
         (options.folder / f"{number:02d}.pickle").write_bytes(pickle.dumps(scene.__dict__))
@@ -82,8 +83,7 @@ def _section(second: Any, number: int) -> tuple[float, float]:
 
 def baked(scene: Scene) -> Any:
     """The motion of a scene."""
-    chart: Any = SimpleNamespace(timing=scene.timing)
-    return bake(chart, scene.play, scene.pad, section=scene.section, **scene.how)
+    return bake(scene.timing, scene.play, scene.pad, section=scene.section, **scene.how)
 
 
 def check(options: argparse.Namespace) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import random
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from motion_sheet import AROUND, sheet
 
-from dancetutor_cli.bake.styled import styled
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.settings import default_settings
+from dancetutor_cli.motion.baked import Cut
 from dancetutor_cli.physics.style import style_names
 
 
@@ -28,17 +29,16 @@ def main() -> None:
     """The command line."""
     options = _options()
     start, end = (float(x) for x in options.at.split(":"))
-    section = f"{start - AROUND}:{end + AROUND}"
-    task = BakeTask(options.file, Selection(index=options.index), section=section)
-    asked = ask(task)
-    plain = bake_asked(asked, task)
+    request = DanceRequest(options.file, Selection(index=options.index, player=1))
+    solved = solve(request)
     names = style_names()
     random.Random(options.seed).shuffle(names)
     options.folder.mkdir(parents=True, exist_ok=True)
     key = []
     for letter, name in zip("ABCDEFGHIJ", names, strict=False):
-        motion = styled(plain, name, default_settings()).motion
-        sheet(motion, asked.pad, np.linspace(start, end, options.count)).save(options.folder / f"{letter}.png")
+        performance = perform(solved, replace(request, style=name))
+        motion = performance.motions(Cut(start - AROUND, end + AROUND))[0].motion
+        sheet(motion, performance.pad, np.linspace(start, end, options.count)).save(options.folder / f"{letter}.png")
         key.append(f"{letter} {name}\n")
     Path(f"{options.folder}.key").write_text("".join(key), encoding="utf-8")
     print(f"{options.folder}: {len(key)} sheets; {options.folder}.key")

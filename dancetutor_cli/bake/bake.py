@@ -1,17 +1,16 @@
-"""The one place that orders the work of a bake: plan, trajectory, inverse kinematics, layers, hair."""
+"""The one place that orders the work of a bake: plan, trajectory, inverse kinematics, layers, ragdoll, hair."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.grips import grips_of
-from dancetutor_cli.bake.keys import doubtful, key_times, refined
-from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, in_turn, joined, piece_ends, trimmed
+from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
+from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, Ragdoll, Span, in_turn, joined, needed, pieces_of
 from dancetutor_cli.bake.settle import heels_may_rise, mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
@@ -36,10 +35,10 @@ from dancetutor_cli.motion.trajectory.posture import Trajectory, stepping
 from dancetutor_cli.motion.waits import waiting_at
 from dancetutor_cli.numerics.smoothing import sample_path
 from dancetutor_cli.physics.hair import add_hair
-from dancetutor_cli.play.let_go import LetGo, told, without_unplayable
+from dancetutor_cli.play.let_go import LetGo, without_unplayable
 
 if TYPE_CHECKING:
-    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.chart.timing import Timing
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
 
@@ -47,50 +46,45 @@ Array = NDArray[np.float64]
 BEATS_AFTER = 16  # beats after the last row that she still hears
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
-MARGIN = 1.0  # seconds planned and smoothed beyond both ends of a section
-OVERLAP = 5.0  # seconds that a piece of a long song is planned and baked beyond its ends: what differs has died away
 
 
-class How(TypedDict, total=False):
-    """How she dances.
+class Manner(TypedDict, total=False):
+    """How a play is danced.
 
     settings : numbers of the motion, those of `configs/motion.yaml` unless given
-    rate : speed at which the music is played; the play's rows are already at it, and all times are those of
-        the music as played, so jumps keep real gravity
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
-    stays : she does not walk off after the last step
     let_go : why notes that no limb has in the play are let go, where the caller has decided that
-    each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
 
     settings: MotionSettings | None
-    rate: float
     bar: bool
     gait: str
     sides: tuple[int, int] | None
-    stays: bool
     let_go: tuple[LetGo, ...]
-    each: Each
 
 
 def bake(
-    chart: Chart,
+    timing: Timing,
     play: Play,
     pad: Pad,
     *,
     fps: float = 60.0,
-    section: tuple[float, float] | None = None,
-    **how: Unpack[How],
+    section: Span | None = None,
+    each: Each = in_turn,
+    **manner: Unpack[Manner],
 ) -> Motion:
     """Make the dancer play a chart.
 
     Parameters
     ----------
-    chart : gives the times of beats; play : who steps what; pad : where the panels are
+    timing : gives the times of beats; play : who steps what; pad : where the panels are. Timing and play are those of
+        the music as it is heard (`Timing.at_rate`), so jumps keep real gravity
     fps : frames per second of the result, which gets extra keys at every contact
-    section : (start, end) in seconds of the music; None: from before the first step to after the last
-    how : as in `How`
+    section : (start, end) in seconds of the music; None: from before the first step to after the last. It is cut out
+        of the dance of the whole chart
+    each : does the pieces of a long song, in turn or in several processes; the result is the same
+    manner : as in `Manner`
 
     Returns
     -------
@@ -100,37 +94,27 @@ def bake(
     ------
     DancetutorError if the play has no steps or the section is empty.
     """
-    plan, context = planned(chart, play, pad, **how)
-    left = max((walk.end for walk in plan.walks), default=-np.inf) + context.settings.walk.gone
-    start, end = section or (
-        min(0.0, plan.first - context.settings.walk.lead_in),
-        max(plan.last + context.settings.walk.lead_out, left),
-    )
-    if not start < end:
-        raise DancetutorError(
-            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
-        )
-    return bake_plan(plan, context, fps, (start, end), how.get("each", in_turn))
+    plan, context = planned(timing, play, pad, **manner)
+    return bake_plan(plan, context, fps, section, each)
 
 
-def plan_of(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> Plan:
+def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> Plan:
     """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
-    return planned(chart, play, pad, **how)[0]
+    return planned(timing, play, pad, **manner)[0]
 
 
-def planned(chart: Chart, play: Play, pad: Pad, **how: Unpack[How]) -> tuple[Plan, Context]:
+def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
     """The plan of a play, with the context that it is danced in. Arguments as in `bake`."""
-    settings, rate = how.get("settings") or default_settings(), how.get("rate", 1.0)
-    bar = how.get("bar", False)
+    settings, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
     rail = bar_of(pad, settings.bar) if bar else None
-    context = context_of(pad, holding(settings) if bar else settings, _beats(chart, play, rate), rail)
-    context = replace(context, sides=how.get("sides"), stays=how.get("stays", False))
+    context = context_of(pad, holding(settings) if bar else settings, _beats(timing, play), rail)
+    context = replace(context, sides=manner.get("sides"))
 
     def second(tick: int) -> float:
-        return float(chart.timing.seconds(np.array([tick], dtype=np.int64))[0]) / rate
+        return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
 
-    play, gone = without_unplayable(play, pad, how.get("let_go", ()))
-    plan = replace(plan_footwork(play, second, how.get("gait", "flat"), context), let_go=gone)
+    play, gone = without_unplayable(play, pad, manner.get("let_go", ()))
+    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), let_go=gone)
     return (plan if rail is None else grips_of(plan, _standing(plan, context.settings.walk), context)), context
 
 
@@ -146,28 +130,21 @@ def mines_of(play: Play, pad: Pad) -> Array:
     return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
 
 
-def bake_plan(plan: Plan, context: Context, fps: float, section: tuple[float, float], each: Each = in_turn) -> Motion:
-    """Bake a plan over a section, seconds; the work behind `bake`.
+def bake_plan(plan: Plan, context: Context, fps: float, section: Span | None = None, each: Each = in_turn) -> Motion:
+    """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there."""
+    pieces = pieces_of(plan, context, fps)
+    return cut(pieces, section or (pieces[0].kept[0], pieces[-1].kept[1]), each).motion
 
-    Long songs are baked in pieces, always the same ones, so memory and time per second stay as they are in a short one.
-    """
+
+def cut(pieces: list[Piece], section: Span, each: Each = in_turn) -> BakedPiece:
+    """A section, seconds, of the dance that all these pieces make; only those that it needs are baked."""
     start, end = section
-    pieces = []
-    for k, (first, last) in enumerate(pairwise(piece_ends(plan, start, end))):
-        before = first if k == 0 else first - OVERLAP
-        margin = MARGIN if k == 0 else MARGIN + OVERLAP
-        after = MARGIN if last == end else OVERLAP
-        part = trimmed(plan, first - margin, last + after)
-        span = (np.floor(4 * (before - MARGIN)) / 4, last + after)
-        pieces.append(Piece(part, context, fps, (before, last), (first if k else -np.inf, last), span))
-    done = joined(pieces, each([(bake_piece, piece) for piece in pieces]))
-    add_hair(context.skeleton, *done.keys, context.settings.hair)  # whole: where it hangs depends on where it hung
-    contacts = tuple(c for c in plan.contacts if start <= c.start <= end)
-    grips = tuple(g for g in plan.grips if g.end > start and g.start < end)
-    ground = context.ground if plan.walks else None
-    gone = tuple(one for one in plan.let_go if start <= one.second <= end)
-    notes = (*((told(gone),) if gone else ()), *done.notes)
-    return Motion(context.skeleton, fps, *done.keys, contacts, context.bar, grips, ground, notes, gone)
+    if not start < end:
+        raise DancetutorError(
+            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
+        )
+    some = pieces[needed(pieces, start, end)]
+    return joined(some, list(each(bake_piece, some)), start, end)
 
 
 def bake_piece(piece: Piece) -> BakedPiece:
@@ -190,7 +167,24 @@ def bake_piece(piece: Piece) -> BakedPiece:
         f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"
         for what in body.softened
     )
-    return BakedPiece(keys, notes)
+    motion = _motion(piece, keys, notes)
+    add_hair(skeleton, motion.times, motion.rotations, motion.root, settings.hair)
+    return BakedPiece(motion) if piece.ragdoll is None else _followed(motion, piece.ragdoll, settings)
+
+
+def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
+    plan, context, (first, last) = piece.plan, piece.context, piece.baked
+    grips = tuple(g for g in plan.grips if g.end > first and g.start < last)
+    return Motion(context.skeleton, piece.fps, *keys, piece.contacts, context.bar, grips, piece.ground, notes)
+
+
+def _followed(motion: Motion, ragdoll: Ragdoll, settings: MotionSettings) -> BakedPiece:
+    """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise."""
+    from dancetutor_cli.physics.pipeline import through_ragdoll
+
+    passed = through_ragdoll(motion, ragdoll.style, ragdoll.wishes.within(motion.times[0], motion.times[-1]))
+    add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, settings.hair)
+    return BakedPiece(passed.motion, passed.distances)
 
 
 def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
@@ -227,9 +221,9 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     return poses
 
 
-def _beats(chart: Chart, play: Play, rate: float) -> tuple[float, ...]:
+def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
     """Seconds of all beats from the first measure to a while after the last row."""
     if not len(play.rows):
         return ()
     ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
-    return tuple(float(t) for t in chart.timing.seconds(ticks) / rate)
+    return tuple(timing.seconds(ticks).tolist())

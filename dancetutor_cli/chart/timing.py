@@ -6,7 +6,7 @@ Segments are kept as exact fractions of the decimals in the file; floats are mad
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -18,7 +18,13 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT
 Segments = tuple[tuple[int, Fraction], ...]  # (tick, value), sorted, one per tick
 _FIXED = 1 << 80  # sums of seconds are kept in these parts of a second: no float noise, no endless fractions
 _LONGEST = 1 << 2000  # sums of fractions with longer denominators are cut to _FIXED: thousands of changes in one gap
+SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
 _FAR = 1 << 40  # a tick beyond every chart
+
+
+def heard(second: float, rate: float) -> float:
+    """The second at which one hears what a song has at `second`, when its music plays at `rate`, 1 its own speed."""
+    return second / rate
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,20 @@ class Timing:
     def beats(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Beat at each second; it rests during stops and delays, and jumps over warps."""
         return self._knots.ticks(np.asarray(seconds, dtype=np.float64)) / TICKS_PER_BEAT
+
+    def at_rate(self, rate: float) -> Timing:
+        """The timing of music that plays so fast, 1 its own speed: at half speed everything comes twice as late."""
+        if rate == 1.0:
+            return self
+        speed = Fraction(rate)
+
+        def slower(segments: Segments) -> Segments:
+            return tuple((tick, seconds / speed) for tick, seconds in segments)
+
+        bpms = tuple((tick, bpm * speed) for tick, bpm in self.bpms)
+        return replace(
+            self, bpms=bpms, stops=slower(self.stops), delays=slower(self.delays), offset=self.offset / speed
+        )
 
     def bpm_at(self, tick: int) -> float:
         """BPM in force at a tick; a change on the tick counts, the first BPM reaches back before beat 0."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST
 from dancetutor_cli.commands.chart_options import (
     TABLE,
     Selection,
@@ -31,32 +32,30 @@ from dancetutor_cli.commands.paths import GivenPath
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.formats.writers import FORMATS
-from dancetutor_cli.lint.part import FASTEST, SLOWEST
 from dancetutor_cli.outputs import check_file, one_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.bake import MotionReport
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.bake import Asked
-    from dancetutor_cli.jobs.baked_dance import BakedDance
+    from dancetutor_cli.dance.performance import Performance
+    from dancetutor_cli.dance.request import ChartChoice
+    from dancetutor_cli.jobs.animation import AnimatedDancer
 
 _FILE = GivenPath()
+AFTER = 2.5  # seconds after the last row that a section may still reach
 
 
 @dataclass(frozen=True, slots=True)
-class AnimateOptions:
-    """How she shall dance; named as the fields of `jobs.bake.BakeTask`."""
+class DanceOptions:
+    """How she shall dance; named as the fields of `dance.request.DanceRequest`."""
 
     preset: str | None
     fps: float
-    section: str | None
-    rate: float
-    play_file: Path | None
+    play: Path | None
     bar: bool
     gait: str
     form: str
     motion: Path | None
-    jobs: int
     style: str | None
     push: tuple[str, ...]
     trip: tuple[float, ...]
@@ -72,6 +71,9 @@ class Result:
     character: str
     yes: bool
     physics: bool
+    section: str | None
+    rate: float
+    jobs: int
 
 
 @click.command()
@@ -94,7 +96,7 @@ class Result:
     show_default=True,
     help="Speed of the music she dances to.",
 )
-@click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
+@click.option("--play", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @report_option("Measure the motion (the dancer's, whoever dances).")
 @click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
@@ -112,9 +114,9 @@ class Result:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("dance", AnimateOptions)
+@into("dance", DanceOptions)
 @into("result", Result)
-def command(file: Path, selection: Selection, dance: AnimateOptions, result: Result) -> None:
+def command(file: Path, selection: Selection, dance: DanceOptions, result: Result) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
@@ -123,44 +125,66 @@ def command(file: Path, selection: Selection, dance: AnimateOptions, result: Res
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
     from dancetutor_cli.character.partner import partner_of
-    from dancetutor_cli.jobs.bake import BakeTask, ask, style_for, tasks_of
-    from dancetutor_cli.jobs.baked_dance import BakedDance
+    from dancetutor_cli.dance.performance import perform, pooled, solve
+    from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
+    from dancetutor_cli.jobs.animation import AnimatedDancer, Animation
     from dancetutor_cli.library import one_song
+    from dancetutor_cli.library.selection import note_bytes
     from dancetutor_cli.lint.presets import choice_for
     from dancetutor_cli.reports.safe import safe
 
-    output, character, report_to = result.output, result.character, result.report_to
-    if output is not None:
-        check_file(output, tuple(FORMATS))
-    if result.plot is not None:
-        check_file(result.plot, (".svg", ".png"))
-    if report_to is not None and report_to != TABLE:
-        check_file(Path(report_to), (".json",), or_device=True)
+    _check(result)
+    output, character = result.output, result.character
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance.gait))
-    task = BakeTask(one_song(file), selection, **asdict(dance))
-    if result.physics and task.style is None:
-        task = replace(task, style="neutral")
-    task = replace(task, style=style_for(task.style, task.push, task.trip))
-    from dancetutor_cli.library.selection import note_bytes
-
-    tell_of_compiling(choice_for(task.path, task.preset), lambda: note_bytes(task.path, task.selection))
-    tasks = tasks_of(task)
-    dancers = (dances, partner_of(dances)) if len(tasks) > 1 else (dances,)
-    both = [ask(each) for each in tasks]
-    for note in dict.fromkeys(note for asked in both for note in asked.notes):
+    request = DanceRequest(one_song(file), selection, rates=(result.rate,), **asdict(dance))
+    if result.physics and request.style is None:
+        request = replace(request, style="neutral")
+    request = with_style(request)
+    tell_of_compiling(choice_for(request.path, request.preset), lambda: note_bytes(request.path, selection))
+    check_request(request)
+    choice = read_chart(request, result.section)
+    performance = perform(solve(request, choice), request, result.rate)
+    for note in choice.warnings:
         click.echo(f"warning: {safe(note)}", err=True)
-    target = output or Path(default_name(both[0].song, both[0].chart))
+    target = output or Path(default_name(choice.song, choice.parts[0]))
     check_file(target, tuple(FORMATS))
-    for asked in both:
-        _allow_long(asked, file, result.yes)
-    places = _Places(target, None if report_to is None or report_to == TABLE else Path(report_to), result.plot)
-    made = [BakedDance(asked, each, dancer) for asked, each, dancer in zip(both, tasks, dancers, strict=True)]
-    if len(made) > 1:
-        made[0].other, made[1].other = made[1], made[0]
-    for one in made:
-        _write(one, places if one.other is None else places.of(one.asked.chart.player), report_to is not None)
+    section = _section(choice, result.section, performance)
+    _allow_long(performance, section, file, result.yes)
+    places = _Places(target, _report_file(result), result.plot)
+    animation = Animation(performance, section, pooled(result.jobs))
+    for k, who in enumerate((dances, partner_of(dances))[: len(performance.dancers)]):
+        player = choice.parts[k].player
+        own = places if len(performance.dancers) == 1 else places.of(player)
+        _write(AnimatedDancer(animation, k, who), own, result.report_to is not None)
+
+
+def _check(result: Result) -> None:
+    """UsageError for files that cannot be written, before the work."""
+    if result.output is not None:
+        check_file(result.output, tuple(FORMATS))
+    if result.plot is not None:
+        check_file(result.plot, (".svg", ".png"))
+    if (report := _report_file(result)) is not None:
+        check_file(report, (".json",), or_device=True)
+
+
+def _report_file(result: Result) -> Path | None:
+    return None if result.report_to in (None, TABLE) else Path(str(result.report_to))
+
+
+def _section(choice: ChartChoice, section: str | None, performance: Performance) -> tuple[float, float] | None:
+    """The section in seconds of the music as it is heard."""
+    from dancetutor_cli.chart.timing import heard
+    from dancetutor_cli.dance.request import section_of
+
+    if section is None:
+        return None
+    plays = [one.solved.play for one in performance.dancers]
+    last = max(float(play.rows.second[-1]) for play in plays if play is not None)
+    start, end = section_of(choice, section, last + AFTER)
+    return heard(start, performance.rate), heard(end, performance.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,15 +201,16 @@ class _Places:
         return _Places(*(path and path.with_stem(f"{path.stem}-p{player}") for path in parts))  # type: ignore[arg-type]
 
 
-def _allow_long(asked: Asked, file: Path, yes: bool) -> None:
-    first, last = (float(second) for second in asked.play.rows.second[[0, -1]])
-    start, end = asked.section or (first, last)
+def _allow_long(performance: Performance, section: tuple[float, float] | None, file: Path, yes: bool) -> None:
+    rows = [one.play.rows.second for one in performance.dancers]
+    first, last = min(float(seconds[0]) for seconds in rows), max(float(seconds[-1]) for seconds in rows)
+    start, end = section or (first, last)
     seconds = min(end, last) - max(start, first)
     if seconds > LONG and not yes:
         confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
-def _write(dance: BakedDance, places: _Places, report: bool) -> None:
+def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
     form = FORMATS[places.output.suffix.lower()]
     measured = report or places.plot is not None
     for note in dance.notes(form.has_motion or measured):
@@ -196,9 +221,9 @@ def _write(dance: BakedDance, places: _Places, report: bool) -> None:
         from dancetutor_cli.bake import report as report_of
         from dancetutor_cli.bake.quality.retargeting import with_distances
 
-        asked = dance.asked
-        whole = report_of(dance.own_motion, mines_of(asked.play, asked.pad))
-        _report(with_distances(whole, dance.styled.distances, dance.task.style), report, places)
+        dancer = dance.animation.performance.dancers[dance.number]
+        whole = report_of(dance.baked.motion, mines_of(dancer.play, dancer.pad))
+        _report(with_distances(whole, dance.baked.distances, dance.animation.performance.request.style), report, places)
 
 
 def default_name(song: Song, chart: Chart) -> str:

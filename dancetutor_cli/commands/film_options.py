@@ -117,6 +117,13 @@ _OPTIONS = (
         metavar="TIME",
         help="How long before a move it is called out: seconds, or beats as b2 [default: 0.9].",
     ),
+    click.option(
+        "--dance",
+        type=GivenPath(),
+        multiple=True,
+        metavar="FILE.npz",
+        help="Draw this motion, which `animate` has baked; of a chart for two give both.",
+    ),
     click.option("--show-findings", is_flag=True, help="Call out what the linter found, too: for authors."),
     click.option("--font", type=GivenPath(), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
@@ -133,7 +140,7 @@ def film_options(command: _Command) -> _Command:
 def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmRequest:
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
-    from dancetutor_cli.jobs.bake import style_for
+    from dancetutor_cli.dance.request import DanceRequest, with_style
     from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.video.ahead import parse_ahead
     from dancetutor_cli.video.film_look import FilmLook
@@ -168,39 +175,39 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         parse_ahead(options["call_ahead"]) if options["call_ahead"] else None,
         options["show_findings"],
     )
+    names = ("preset", "play", "bar", "gait", "form", "motion", "style", "push", "trip")
+    selection = Selection(options["steps_type"], options["difficulty"], options["index"], options["player"])
+    dance = DanceRequest(file, selection, rates=_rates(options, layout), **{name: options[name] for name in names})
     return FilmRequest(
-        path=file,
-        selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
-        look=look,
+        with_style(dance),
+        look,
         fps=options["fps"] or form.fps,
-        preset=options["preset"],
         section=options["section"],
         sync=options["sync_offset"] / 1000,
         mute=options["mute"],
         practice=_practice(options, layout, film=not options.get("poses")),
-        play=options["play"],
         character=check_character(options["character"]),
-        bar=options["bar"],
-        gait=options["gait"],
-        form=options["form"],
-        motion=options["motion"],
-        style=style_for(options["style"], options["push"], options["trip"]),
-        push=options["push"],
-        trip=options["trip"],
         background=background,
+        motions=options["dance"],
     )
+
+
+def _rates(options: dict[str, Any], layout: Layout) -> tuple[float, ...]:
+    from dancetutor_cli.video.layout import PracticePart
+    from dancetutor_cli.video.practice import parse_rates
+
+    return parse_rates(options["rate"]) if options["rate"] else (layout.practice or PracticePart()).rates
 
 
 def _practice(options: dict[str, Any], layout: Layout, film: bool) -> Practice:
     """film : of a passage she comes to rest after it; poses are single pictures of its rows"""
     from dancetutor_cli.video.layout import PracticePart
-    from dancetutor_cli.video.practice import REST, Practice, parse_rates
+    from dancetutor_cli.video.practice import REST, Practice
 
     usual = layout.practice or PracticePart()
-    rates = parse_rates(options["rate"]) if options["rate"] else usual.rates
     count_in = usual.count_in if options["count_in"] is None else options["count_in"]
     rest = REST if film else 0.0
-    return Practice(rates, options["loop"] or 0, count_in, options["assist_tick"], options["metronome"], rest)
+    return Practice(options["loop"] or 0, count_in, options["assist_tick"], options["metronome"], rest)
 
 
 def _default_size(size: tuple[int, int], form: FilmFormat) -> tuple[int, int]:

@@ -27,7 +27,7 @@ from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.page import PageTask
+    from dancetutor_cli.jobs.page import PageRequest
 
 _FILE = GivenPath()
 SUFFIXES = (".html", ".htm")
@@ -92,55 +92,54 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     learns it. Its hardest passages are listed. If PATH is a folder, every chart below it that matches gets a page, and
     an index leads to them.
     """
-    from dancetutor_cli.jobs.bake import BakeTask
-    from dancetutor_cli.jobs.page import PageTask
+    from dancetutor_cli.dance.request import DanceRequest
+    from dancetutor_cli.jobs.page import PageRequest
     from dancetutor_cli.library import one_song
     from dancetutor_cli.lint.presets import choice_for
 
     output = wish.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
-    bake = BakeTask(
-        file, selection, wish.preset, play_file=wish.play_file, bar=wish.bar, gait=wish.gait, motion=wish.motion,
-        jobs=wish.jobs, form=wish.form,
-    )  # fmt: skip
-    task = PageTask(bake, wish.character, wish.music, wish.beside)
+    dance = DanceRequest(
+        file, selection, wish.preset, wish.play_file, bar=wish.bar, gait=wish.gait, form=wish.form, motion=wish.motion
+    )
+    request = PageRequest(dance, wish.character, wish.music, wish.beside, wish.jobs)
     tell_of_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
     if file.is_dir():
-        _pages(task, output or Path("pages"), wish)
+        _pages(request, output or Path("pages"), wish)
         return
     if output is not None:
         check_file(output, SUFFIXES)
-    _page(task, output, wish.quiet)
+    _page(request, output, wish.quiet)
 
 
-def _page(task: PageTask, output: Path | None, quiet: bool) -> None:
+def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
     from dancetutor_cli.files import write_atomic
-    from dancetutor_cli.jobs.page import ask_page, pack_page
+    from dancetutor_cli.jobs.page import look_up_page, pack_page
 
-    asked = ask_page(task)
-    target = output or Path(_default_name(asked.title, asked.label))
+    subject = look_up_page(request)
+    target = output or Path(_default_name(subject.title, subject.label))
     check_file(target, SUFFIXES)
-    page = pack_page(asked)
+    page = pack_page(subject)
     write_atomic(target, page.html)
     if not quiet:
         _warn(page.warnings)
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
 
 
-def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
+def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
     from dancetutor_cli.jobs.page_batch import INDEX, make_all, page_jobs, write_index
     from dancetutor_cli.reports.failures import failures_table
     from dancetutor_cli.reports.joined_warnings import JoinedWarnings
     from dancetutor_cli.reports.safe import safe, safe_path
 
-    if task.bake.play_file is not None:
-        raise UsageError(f"--play is for one chart, and {task.bake.path} is a folder")
+    if request.dance.play is not None:
+        raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
     check_folder(folder)
-    wanted, bad = page_jobs(task, folder)
+    wanted, bad = page_jobs(request, folder)
     if not wanted and not bad:
-        raise UsageError(f"{task.bake.path}: no chart here matches")
-    if not wanted and [path for path, _ in bad] == [task.bake.path]:  # a folder without chart files, or a closed one
+        raise UsageError(f"{request.dance.path}: no chart here matches")
+    if not wanted and [path for path, _ in bad] == [request.dance.path]:  # a folder without charts, or a closed one
         raise DancetutorError(bad[0][1])
     if wanted:
         make_folder(folder)
@@ -150,7 +149,7 @@ def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
         for number, one in enumerate(make_all(wanted, wish.jobs), 1):
             outcomes[one.job.target] = one
             for warning in one.warnings:
-                warnings.add(one.job.task.bake.path, warning)
+                warnings.add(one.job.request.dance.path, warning)
             if not wish.quiet:
                 said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
                 click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
@@ -159,8 +158,8 @@ def _pages(task: PageTask, folder: Path, wish: PageWish) -> None:
             click.echo(line, err=True)
     ordered = [outcomes[job.target] for job in wanted]
     if wanted:
-        write_index(folder, ordered, task.bake.path.resolve().name)
-    failed = [(str(one.job.task.bake.path), one.job.entry.label, one.error) for one in ordered if one.error]
+        write_index(folder, ordered, request.dance.path.resolve().name)
+    failed = [(str(one.job.request.dance.path), one.job.entry.label, one.error) for one in ordered if one.error]
     if wanted and not wish.quiet:
         made = len(ordered) - len(failed)
         click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")

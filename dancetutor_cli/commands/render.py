@@ -22,7 +22,7 @@ from dancetutor_cli.video.media.film_formats import FILES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.film_request import FilmRequest, Subject
+    from dancetutor_cli.jobs.film_request import FilmRequest, FilmSubject
 
 
 # Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
@@ -177,7 +177,7 @@ def _render_one(
     request = film_request(path, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
-    tell_of_compiling(choice_for(path, request.preset), lambda: end - start, quiet=quiet)
+    tell_of_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=quiet)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     if folder is None:
         check_file(target)
@@ -201,7 +201,7 @@ def default_name(song: Song, chart: Chart) -> str:
     return f"{plain_name(f'{song.title or song.path.stem}-{chart.difficulty}') or 'film'}.mp4"
 
 
-def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
+def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
     """Ask before hours of work; without a terminal nobody can answer, so refuse."""
     clock = subject.clock
     if yes or max(clock.seconds, subject.written) <= LONG:
@@ -213,7 +213,7 @@ def _allow_long(subject: Subject, file: Path, yes: bool) -> None:
 
 
 def _make(
-    request: FilmRequest, subject: Subject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
+    request: FilmRequest, subject: FilmSubject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.jobs.film_plan import Prepared, prepare
     from dancetutor_cli.jobs.pool import default_jobs

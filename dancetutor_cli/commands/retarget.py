@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -67,16 +67,15 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
     are kept, and legs end where the captured feet stood, all in proportion to the character's legs.
     """
-    from dancetutor_cli.jobs.bake import wishes_of
     from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
-    from dancetutor_cli.physics.pipeline import Wishes
+    from dancetutor_cli.physics.pipeline import wishes_of
 
     check_file(wanted.output, SUFFIXES)
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
     if wanted.report_to is not None and wanted.report_to != TABLE:
         check_file(Path(wanted.report_to), (".json",), or_device=True)
-    wishes = wishes_of(wanted.push, wanted.trip, corrections_of(wanted.correct)) or Wishes()
+    wishes = replace(wishes_of(wanted.push, wanted.trip), corrections=corrections_of(wanted.correct))
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
     words = _written(work, wanted.output)

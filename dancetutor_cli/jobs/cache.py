@@ -10,21 +10,18 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
-import dancetutor_cli
 from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.errors import FileError
+from dancetutor_cli.fingerprint import program_stamp
 from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
 from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.library.feet_files import feet_fingerprint
-from dancetutor_cli.resources import PACKAGE, config_path
 from dancetutor_cli.suffixes import SONG_SUFFIXES
 
-_ROOMS = ("chart", "library", "pads", "feet", "play", "meter", "lint", "jobs")
 _LARGEST = CHART_LIMIT  # bytes of a kept result
 _KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
 
@@ -50,7 +47,7 @@ class ResultCache:
             task.meter_scale, task.rate,
         )  # fmt: skip
         asked = f"{task.path}|{task.path.absolute()}|{wanted}"
-        for part in (_program(), asked, task.settings.fingerprint(), *self._beside(task.path)):
+        for part in (program_stamp(), asked, task.settings.fingerprint(), *self._beside(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))
         return digest.hexdigest()
 
@@ -109,24 +106,6 @@ def default_folder() -> Path | None:
         return Path(named) / "analyze"
     folder = users_folder("dancetutor")
     return None if folder is None else folder / "analyze"
-
-
-@cache
-def _program() -> str:
-    """The program itself: its version, and size and time of the files that make results, to notice work on it."""
-    parts = [dancetutor_cli.__version__]
-    for root in (*(PACKAGE / room for room in _ROOMS), config_path("")):
-        parts += [f"{path}{stat.st_size}{stat.st_mtime_ns}" for path, stat in _files(str(root))]
-    return hashlib.sha256("".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
-
-
-def _files(folder: str) -> Iterator[tuple[str, os.stat_result]]:
-    for entry in sorted(os.scandir(folder), key=lambda e: e.name):
-        if entry.is_dir():
-            if entry.name != "__pycache__":
-                yield from _files(entry.path)
-        elif entry.name.endswith((".py", ".yaml")):
-            yield entry.path, entry.stat()
 
 
 def _listing(folder: Path) -> str:

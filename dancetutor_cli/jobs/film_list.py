@@ -125,7 +125,7 @@ def chart_files(paths: Sequence[Path]) -> Iterator[Path]:
 
 def _charts(batch: BatchRequest, song: Song) -> Iterator[Chart]:
     low, high = batch.meters or (0, 10**9)
-    for chart in batch.request.selection.charts(song):
+    for chart in batch.request.dance.selection.charts(song):
         if low <= chart.meter <= high and chart.columns and len(chart.notes):
             yield chart
 
@@ -137,7 +137,8 @@ def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> Film
     while name.lower() in taken:  # two charts of one name; file systems may not tell upper from lower case
         name, number = f"{stem}-{number}", number + 1
     taken.add(name.lower())
-    request = replace(batch.request, path=song.path, selection=Selection(index=chart.index))
+    dance = replace(batch.request.dance, path=song.path, selection=Selection(index=chart.index))
+    request = replace(batch.request, dance=dance)
     return FilmJob(request, chart.label, batch.folder / f"{name}{suffix}", batch.encoding, batch.longest)
 
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dancetutor_cli.chart.tempo import fastest_bpm
-from dancetutor_cli.jobs.counted_in import notes_without, play_without, quiet_after, quiet_in
-from dancetutor_cli.jobs.film_request import FilmRequest, Subject
+from dancetutor_cli.jobs.counted_in import notes_without, quiet_after, quiet_in
+from dancetutor_cli.jobs.film_request import FilmRequest, FilmSubject
 from dancetutor_cli.video.ahead import parse_ahead
 from dancetutor_cli.video.media.clicks import clicks_of
 from dancetutor_cli.video.media.cues import cues_of
 from dancetutor_cli.video.media.sound import SoundPlan
 from dancetutor_cli.video.media.subtitles import subtitle_words
-from dancetutor_cli.video.overlay.callouts import CallStyle, callouts_of
+from dancetutor_cli.video.overlay.callouts import Called, CallStyle, callouts_of
 from dancetutor_cli.video.overlay.captions import SongShape
 from dancetutor_cli.video.overlay.diagram import step_rows
 from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
@@ -29,10 +30,12 @@ from dancetutor_cli.video.tracks import beat_lines, note_track, presses_of
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart
-    from dancetutor_cli.jobs.danced import Danced
+    from dancetutor_cli.jobs.film_dance import FilmDance
+    from dancetutor_cli.lint.finding import Finding
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
+    from dancetutor_cli.play.solved import Solved
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.notes import Callout, Cue, NoteTrack
 
@@ -50,13 +53,13 @@ class Prepared:
     warnings: tuple[str, ...]
 
 
-def prepare(request: FilmRequest, subject: Subject) -> Prepared:
+def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
     from dancetutor_cli.character import dressed
-    from dancetutor_cli.jobs.danced import danced
+    from dancetutor_cli.jobs.film_dance import film_dance
 
     song, chart, clock = subject.song, subject.chart, subject.clock
-    dance = danced(request, subject)
+    dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
     quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls, dance.on_mines)
@@ -66,9 +69,8 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     start, end = clock.passes[0].start, clock.passes[-1].until
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
-    who = dressed(request.character, request.gait)
-    character, motions = _fitted(who, dance.motions)
-    _, partners = _fitted(who, dance.partners)
+    who = dressed(request.character, request.dance.gait)
+    character, motions = _fitted(who, dance.motions, bool(request.motions))
     look = _seen(request.look, character, pad)
     plan = FilmPlan(
         look=look,
@@ -84,9 +86,8 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
         directions=pad.directions,
         motions=motions,
         pad=pad,
-        rows=step_rows(play_without(play_without(play, quiet), after), _dancers(dance)),
+        rows=step_rows(play, _dancers(dance)),
         character=character,
-        partners=partners,
         callouts=() if request.background else _callouts(dance, _calls(look), scrolls),
         cues=tuple(_cues(dance, turned(look))),
         fade=FADE if request.practice.rest and not request.background else 0.0,
@@ -95,14 +96,14 @@ def prepare(request: FilmRequest, subject: Subject) -> Prepared:
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
     clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
     sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
-    notes = [note for rate, motion in motions.items() for note in _at_rate(rate, motion.notes)]
+    notes = [note for rate, some in motions.items() for motion in some for note in _at_rate(rate, motion.notes)]
     return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
 
 
-def _dancers(dance: Danced) -> list[tuple[Play, int]]:
+def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:
     """Of several who dance each one's play, and which column its first one is."""
-    plays = [(one.play, one.chart.first_column) for one in dance.solved if one.play is not None]
-    return plays if len(dance.solved) > 1 else []
+    plays = [(play, one.chart.first_column) for one, play in zip(dance.solved, dance.plays, strict=True)]
+    return plays if len(plays) > 1 else []
 
 
 def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
@@ -123,21 +124,33 @@ def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
     return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
 
 
-def _callouts(dance: Danced, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
+def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
     """What is called out; of two who dance what both do, for no call says whom it means, but for one's mines."""
     if len(dance.solved) == 1:
-        return callouts_of(dance.solved[0], dance.play, style, scrolls, dance.on_mines)
-    first, *others = (callouts_of(one, one.play, style, scrolls) for one in dance.solved)
+        return callouts_of(_about(dance.solved[0]), dance.play, style, scrolls, dance.on_mines)
+    pairs = zip(dance.solved, dance.plays, strict=True)
+    first, *others = (callouts_of(_about(one), play, style, scrolls) for one, play in pairs)
     both = [call for call in first if all(call in of_other for of_other in others)]
     return tuple(sorted([*both, *_mines_of_each(dance, style, scrolls)], key=lambda call: call.second))
 
 
-def _mines_of_each(dance: Danced, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
+def _about(one: Solved) -> Called:
+    return Called(one.chart, one.pad, partial(_findings, one))
+
+
+def _findings(one: Solved) -> tuple[Finding, ...]:
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.solved import subject_of
+
+    return findings_of(subject_of(one))
+
+
+def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
     """Of two who dance the mines that a foot is on, with whose foot it is."""
     mines_alone = replace(style, findings=False)
     for one in dance.solved:
         under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
-        for call in callouts_of(one, None, mines_alone, scrolls, under):
+        for call in callouts_of(_about(one), None, mines_alone, scrolls, under):
             yield replace(call, text=f"player {one.chart.player}: {call.text.replace(': ', ' ')}")
 
 
@@ -146,7 +159,7 @@ def _calls(look: FilmLook) -> CallStyle:
     return CallStyle(callout_words(), look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
 
 
-def _cues(dance: Danced, facing: bool) -> Iterator[Cue]:
+def _cues(dance: FilmDance, facing: bool) -> Iterator[Cue]:
     """The moves for subtitles; of two who dance with the player's number. facing : she faces who looks on"""
     words = subtitle_words()
     if len(dance.solved) == 1:
@@ -154,9 +167,9 @@ def _cues(dance: Danced, facing: bool) -> Iterator[Cue]:
         return
     cues = [
         replace(cue, text=f"P{one.chart.player}: {cue.text}")
-        for one in dance.solved
-        if one.play is not None and one.pad is not None
-        for cue in cues_of(one.play, one.chart.timing, words, one.pad, facing)
+        for one, play in zip(dance.solved, dance.plays, strict=True)
+        if one.pad is not None
+        for cue in cues_of(play, one.chart.timing, words, one.pad, facing)
     ]
     yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
 
@@ -165,14 +178,26 @@ def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
     return [note if rate == 1.0 else f"at rate {rate:g}, {note}" for note in notes]
 
 
-def _fitted(name: str, motions: Mapping[float, Motion]) -> tuple[Character | None, Mapping[float, Motion]]:
-    """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand."""
+def _fitted(
+    name: str, motions: Mapping[float, tuple[Motion, ...]], given: bool
+) -> tuple[Character | None, Mapping[float, tuple[Motion, ...]]]:
+    """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand.
+
+    given : the motions are of files, which may be for the character's skeleton already
+    """
     from dancetutor_cli.character import DANCER, load_character
 
-    if not motions or name == DANCER:
+    if not motions or (name == DANCER and not given):
         return None, motions
     from dancetutor_cli.character.feet import with_foot_colours
     from dancetutor_cli.character.retarget import retarget
 
     character = with_foot_colours(load_character(name))
-    return character, {rate: retarget(motion, character) for rate, motion in motions.items()}
+
+    def fitted(motion: Motion) -> Motion:
+        if given and motion.skeleton.names == character.skeleton.names:
+            return motion
+        return retarget(motion, character)
+
+    some = {rate: tuple(map(fitted, both)) for rate, both in motions.items()}
+    return None if name == DANCER else character, some

@@ -9,74 +9,68 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
-from dancetutor_cli.jobs.chosen import chosen
+from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of
+from dancetutor_cli.fingerprint import CHARACTERS, NAMED
 from dancetutor_cli.library.music import find_music
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.part import part_of
-from dancetutor_cli.motion.forms import USUAL
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.practice import Practice, passes_of, whole_song
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.play.preset import Preset
 
 
 @dataclass(frozen=True, slots=True)
 class FilmRequest:
     """What film is wanted. Pickles, so that another process can prepare it.
 
-    path : the chart file; selection : which chart
-    preset : name or file of the cost preset; None: what `lint.presets` finds for the chart
+    dance : which chart, and how it is danced; look : how it is shown
     section : "START:END" in seconds, beats or measures, or None for the whole song
-    play : a JSON file of analyze whose feet hold instead of the solver's
-    character : a name of `character.BUILT_IN`, or a .glb or .vrm file
-    bar : she holds the bar behind the pad; gait : name or file of how she walks on and off
-    form : name or file of how she stands and turns
-    motion : file with numbers of the motion that are other than those of configs/motion.yaml
-    background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
-    style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
-    push, trip : what befalls her, as `jobs.bake.wishes_of` takes it; only with a style
     sync : seconds by which the music plays late against the notes
+    character : a name of `character.BUILT_IN`, or a .glb or .vrm file
+    background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
+    motions : files of a baked motion that is drawn in place of the request's own dance, one for each dancer
     """
 
-    path: Path
-    selection: Selection
+    dance: DanceRequest
     look: FilmLook
     fps: int = 30
-    preset: str | None = None
     section: str | None = None
     sync: float = 0.0
     mute: bool = False
     practice: Practice = field(default_factory=Practice)
-    play: Path | None = None
-    character: str = "dancer"
-    bar: bool = False
-    gait: str = "flat"
-    motion: Path | None = None
-    form: str = USUAL
-    style: str | None = None
-    push: tuple[str, ...] = ()
-    trip: tuple[float, ...] = ()
+    character: str = field(default="dancer", metadata={NAMED: CHARACTERS})
     background: bool = False
+    motions: tuple[Path, ...] = ()
+
+    @property
+    def path(self) -> Path:
+        """The chart file."""
+        return self.dance.path
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
-    """The chart that a request is about, read and checked.
+class FilmSubject:
+    """What a film is about, read and checked.
 
-    preset : with which the feet are found
     music : the song's file, None for a film without; section : whether only a part is wanted
     """
 
-    song: Song
-    chart: Chart
-    preset: Preset
+    choice: ChartChoice
     clock: Clock
     music: Path | None
     section: bool
     warnings: tuple[str, ...]
+
+    @property
+    def song(self) -> Song:
+        """The song."""
+        return self.choice.song
+
+    @property
+    def chart(self) -> Chart:
+        """The chart that the film shows."""
+        return self.choice.shown
 
     @property
     def written(self) -> float:
@@ -87,26 +81,24 @@ class Subject:
         return float(self.chart.timing.seconds(end)[0])
 
 
-def look_up(request: FilmRequest) -> Subject:
+def look_up(request: FilmRequest) -> FilmSubject:
     """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
     if request.look.layout.dancer is not None:
-        from dancetutor_cli.jobs.bake import check_motion, check_style, wishes_of
-
-        check_motion(request.motion, request.gait, request.form)
-        check_style(request.style)
-        wishes_of(request.push, request.trip)
-    song, chart, preset, notes = chosen(request.path, request.selection, request.preset, request.section, both=True)
+        check_request(request.dance)
+    choice = read_chart(request.dance, request.section)
+    song, chart = choice.song, choice.shown
     music, missing = (None, None) if request.mute else find_music(song, chart)
     instead = "the film ends after the last note" if request.background else "the film has claps on the steps instead"
     warnings = () if missing is None else (f"{missing}; {instead}",)
-    start, end = _section(request, song, chart, preset)
+    whole = whole_song(chart)
+    start, end = whole if request.section is None else section_of(choice, request.section, whole[1])
     if request.background:
         start, end = _with_the_music(end, music)
     practice = request.practice
-    if request.section is None or end >= whole_song(chart)[1]:
+    if request.section is None or end >= whole[1]:
         practice = replace(practice, rest=0.0)
-    clock = Clock(passes_of(chart, practice, start, end), request.fps)
-    return Subject(song, chart, preset, clock, music, request.section is not None, (*warnings, *notes))
+    clock = Clock(passes_of(chart, practice, request.dance.rates, start, end), request.fps)
+    return FilmSubject(choice, clock, music, request.section is not None, (*warnings, *choice.warnings))
 
 
 def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
@@ -114,10 +106,3 @@ def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
     from dancetutor_cli.video.media.sound import seconds_of
 
     return 0.0, end if music is None else max(end, seconds_of(music))
-
-
-def _section(request: FilmRequest, song: Song, chart: Chart, preset: Preset) -> tuple[float, float]:
-    whole = whole_song(chart)
-    if request.section is None:
-        return whole
-    return part_of(request.section, song, chart, preset, whole[1])

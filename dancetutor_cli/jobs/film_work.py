@@ -70,7 +70,7 @@ class FilmOutcome:
         return {
             "path": str(self.job.request.path),
             "chart": self.job.label,
-            "index": self.job.request.selection.index,
+            "index": self.job.request.dance.selection.index,
             "output": str(self.job.output),
             "status": self.status,
             "error": self.error,

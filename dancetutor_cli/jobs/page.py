@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked, tasks_of
-from dancetutor_cli.jobs.page_two import findings_of_two, pair_of, passages_of_two
+from dancetutor_cli.motion.baked import shifted
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.bake import Asked
-    from dancetutor_cli.jobs.page_two import Pair
+    from dancetutor_cli.dance.request import DanceRequest
+    from dancetutor_cli.lint.finding import Finding
     from dancetutor_cli.motion.baked import Motion
     from dancetutor_cli.page import Content
     from dancetutor_cli.play.played import Play
-    from dancetutor_cli.play.preset import Preset
+    from dancetutor_cli.play.solved import Solved
 
 MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", ".wav": "audio/wav",
                ".flac": "audio/flac", ".opus": "audio/ogg"}  # fmt: skip
@@ -29,17 +30,19 @@ NEXT = "next"
 
 
 @dataclass(frozen=True, slots=True)
-class PageTask:
-    """What page to make. Pickles, so that another process can do it.
+class PageRequest:
+    """What page is wanted. Pickles, so that another process can make it.
 
-    bake : the chart, its preset and how she dances; character : who; music : the song's file goes into the page
+    dance : which chart, and how it is danced; character : who; music : the song's file goes into the page
     beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON
+    jobs : processes for the pieces of a long song
     """
 
-    bake: BakeTask
+    dance: DanceRequest
     character: str = "dancer"
     music: bool = False
     beside: str | None = None
+    jobs: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,140 +57,176 @@ class Page:
 
 
 @dataclass(frozen=True, slots=True)
-class AskedPage:
-    """A page that can be made: its chart is read and solved. pair : both plays of a chart for two"""
+class PageSubject:
+    """What a page is about: its chart is read and solved.
 
-    task: PageTask
+    solved : each player's part, one for most charts; warnings : lines for people, of presets for other pads
+    """
+
+    request: PageRequest
     character: Character
-    asked: Asked
-    pair: Pair | None
+    solved: tuple[Solved, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def song(self) -> Song:
+        """The song."""
+        return self.solved[0].song
+
+    @property
+    def chart(self) -> Chart:
+        """The chart that the page shows: of one for two as it is written."""
+        first = self.solved[0].chart
+        return first if len(self.solved) == 1 else self.song.charts[first.index]
 
     @property
     def title(self) -> str:
         """Of the song; that of its file where it has none."""
-        return self.asked.song.title or self.asked.song.path.stem
+        return self.song.title or self.song.path.stem
 
     @property
     def label(self) -> str:
         """Of the chart, for people."""
-        return self.asked.chart.label
+        return self.chart.label
 
 
-def make_page(task: PageTask) -> Page:
+def make_page(request: PageRequest) -> Page:
     """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
-    return pack_page(ask_page(task))
+    return pack_page(look_up_page(request))
 
 
-def ask_page(task: PageTask) -> AskedPage:
+def look_up_page(request: PageRequest) -> PageSubject:
     """The quick part of `make_page`: read and solve."""
     from dancetutor_cli.character import dressed, load_character
     from dancetutor_cli.character.feet import with_foot_colours
+    from dancetutor_cli.dance.request import check_request, read_chart
 
-    character = with_foot_colours(load_character(dressed(task.character, task.bake.gait)))
-    tasks = tasks_of(task.bake)
-    pair = pair_of(tasks) if len(tasks) > 1 else None
-    if pair is not None and task.beside is not None:
+    character = with_foot_colours(load_character(dressed(request.character, request.dance.gait)))
+    check_request(request.dance)
+    choice = read_chart(request.dance)
+    if len(choice.parts) > 1 and request.beside is not None:
         raise UsageError(
-            f"{task.bake.path}: --beside is for one dancer, and the chart is for two: choose with --player"
+            f"{request.dance.path}: --beside is for one dancer, and the chart is for two: choose with --player"
         )
-    return AskedPage(task, character, ask(task.bake) if pair is None else pair.both, pair)
+    return PageSubject(request, character, solve(request.dance, choice), choice.warnings)
 
 
-def pack_page(page: AskedPage) -> Page:
+def pack_page(page: PageSubject) -> Page:
     """The rest of it: bake and pack."""
-    from dancetutor_cli.lint.presets import choice_for, preset_for
+    from dancetutor_cli.character.retarget import retarget
     from dancetutor_cli.page import document, pack_content
 
-    task, character, asked, pair = page.task, page.character, page.asked, page.pair
-    preset = preset_for(asked.chart, task.bake.path, choice_for(task.bake.path, task.bake.preset))
-    music, warnings = _music(asked.song, asked.chart) if task.music else (None, ())
-    beside = _beside(task, asked, preset)
-    motions = pair.motions() if pair else [bake_asked(one, task.bake) for one in (asked, beside) if one is not None]
-    warnings = (*asked.notes, *warnings, *(note for motion in motions for note in motion.notes))
-    fitted = [_retargeted(motion, character) for motion in motions]
-    content = _content(task, (asked, beside), preset, character, fitted, music)
-    if pair is not None:
-        found = list(findings_of_two(pair))
-        content = replace(content, findings=found, passages=passages_of_two(pair), pair=True)
-    doc, blob = pack_content(content)
+    request, solved = page.request, page.solved
+    music, warnings = _music(page.song, page.chart) if request.music else (None, ())
+    beside = _beside(page)
+    motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
+    warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
+    fitted = [retarget(motion, page.character) for motion in motions]
+    doc, blob = pack_content(_content(page, beside, fitted, music))
     html = document(doc, blob, music[1] if music else None)
     return Page(html, page.title, page.label, warnings, _sizes(blob.sizes, music))
 
 
-def _beside(task: PageTask, asked: Asked, preset: Preset) -> Asked | None:
-    """The other play that a second dancer dances: the next best, another preset's, or a file's; None if none is."""
-    if task.beside is None:
-        return None
-    from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.formats.play_json import read_play
-    from dancetutor_cli.lint.solved import solved_chart
-    from dancetutor_cli.play import alternatives, load_preset
+def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
+    """Of each who dances, where she stands on the pad under all."""
+    performance = perform(solved, request.dance)
+    done = performance.motions(each=pooled(request.jobs))
+    return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
-    play: Play | None
-    if task.beside == NEXT:
-        overrides, _, _ = overrides_for(asked.song, asked.chart)
-        found = alternatives(asked.play.rows, asked.pad, preset, 2, overrides)
-        if len(found) < 2:
-            raise UsageError(f"{task.bake.path}: {asked.chart.label}: there is no other way to play it")
-        play = found[1].play
-    elif task.beside.lower().endswith(".json"):
-        play = read_play(Path(task.beside), asked.chart, asked.play.rows, asked.pad)
-    else:
-        play = solved_chart(asked.song, asked.chart, load_preset(task.beside)).play
-        assert play is not None
-    return replace(asked, play=play)
+
+def _beside(page: PageSubject) -> tuple[Solved, ...]:
+    """The other play that a second dancer dances: the next best, another preset's, or a file's; empty if none is."""
+    wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
+    if wanted is None:
+        return ()
+    from dancetutor_cli.formats.play_json import read_play
+    from dancetutor_cli.play import alternatives, load_preset
+    from dancetutor_cli.play.solved import solve_song
+
+    assert one.play is not None and one.pad is not None
+    if wanted.lower().endswith(".json"):
+        return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows, one.pad)),)
+    if wanted != NEXT:
+        preset = load_preset(wanted)
+        return tuple(solve_song(one.song, [one.chart], lambda _: preset))
+    found = alternatives(one.play.rows, one.pad, one.preset, 2, one.overrides)
+    if len(found) < 2:
+        raise UsageError(f"{path}: {one.chart.label}: there is no other way to play it")
+    return (replace(one, play=found[1].play),)
 
 
 def _content(
-    task: PageTask,
-    both: tuple[Asked, Asked | None],
-    preset: Preset,
-    character: Character,
-    motions: list[Motion],
-    music: tuple[str, bytes] | None,
+    page: PageSubject, beside: tuple[Solved, ...], motions: list[Motion], music: tuple[str, bytes] | None
 ) -> Content:
-    from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.lint.check import findings_of
-    from dancetutor_cli.lint.passages import hardest
-    from dancetutor_cli.lint.subject import ChartSubject
     from dancetutor_cli.page import Content
     from dancetutor_cli.page.facts import beats_of, ticks_of, words_of
     from dancetutor_cli.page.flips import flips_of
-    from dancetutor_cli.page.sentences import told
-    from dancetutor_cli.play.let_go import without_unplayable
     from dancetutor_cli.video.scroll import parse_segments
     from dancetutor_cli.video.tracks import note_track
 
-    asked, other = both
-    song, chart, play, pad = asked.song, asked.chart, asked.play, asked.pad
-    # Of two each one's part is so already; and only of the solver's own play for one can it say what else would cost.
-    shown = play if chart.players else without_unplayable(play, pad)[0]
-    solved = task.bake.play_file is None and not chart.players
-    overrides, ignores, problems = overrides_for(song, chart)
-    subject = ChartSubject(song, chart, play, pad, overrides, ignores, problems)
+    solved, chart, pad = page.solved, page.chart, pad_of(page.solved)
+    first = solved[0]
+    shown = play_of_all(solved, [playable(one, page.request.dance.rates) for one in solved])
+    play = first.play if len(solved) == 1 else shown
+    assert play is not None
+    # only of the solver's own play for one can it say what else would cost
+    alone = page.request.dance.play is None and len(solved) == 1
     return Content(
-        words=words_of(song, chart, preset.name),
+        words=words_of(page.song, chart, first.preset.name),
         play=replace(play, moves=shown.moves, events=None),
         pad=pad,
         notes=note_track(chart, shown, parse_segments("")),
         ticks=ticks_of(chart),
         beats=beats_of(chart),
-        findings=() if chart.players else findings_of(subject),
-        character=character,
+        findings=list(_findings(solved)),
+        character=page.character,
         motions=motions,
         directions=pad.directions,
-        beside=Path(task.beside or "").stem,
-        beside_rows=[] if other is None else np.flatnonzero((other.play.limb != play.limb).any(axis=1)).tolist(),
-        passages=[told(passage) for passage in hardest(play, chart.timing)],
-        flips=flips_of(play, pad, preset, overrides) if solved else (),
+        beside=Path(page.request.beside or "").stem,
+        beside_rows=[row for one in beside for row in _differing(one.play, play)],
+        passages=_passages(solved),
+        flips=flips_of(play, pad, first.preset, overrides)
+        if alone and (overrides := first.overrides) is not None
+        else (),
+        pair=len(solved) > 1,
         music=music,
     )
 
 
-def _retargeted(motion: Motion, character: Character) -> Motion:
-    from dancetutor_cli.character.retarget import retarget
+def _differing(other: Play | None, play: Play) -> list[int]:
+    """Rows that two plays step with other limbs."""
+    assert other is not None
+    rows: list[int] = np.flatnonzero((other.limb != play.limb).any(axis=1)).tolist()
+    return rows
 
-    return retarget(motion, character)
+
+def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
+    """What the linter finds; of two parts told with whose it is."""
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.solved import subject_of
+
+    for one in solved:
+        for found in findings_of(subject_of(one)):
+            if len(solved) == 1:
+                yield found
+                continue
+            column = None if found.note_column is None else found.note_column + one.chart.first_column
+            yield replace(found, message=f"P{one.chart.player}: {found.message}", note_column=column)
+
+
+def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
+    """The hardest passages, the hardest first; of two parts told with whose they are."""
+    from dancetutor_cli.lint.passages import hardest
+    from dancetutor_cli.page.sentences import told
+
+    pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
+    if len(solved) == 1:
+        return [told(passage) for passage, _ in pairs]
+    out = []
+    for passage, chart in sorted(pairs, key=lambda one: -one[0].score):
+        data = told(passage)
+        out.append({**data, "sentence": {name: f"P{chart.player}: {text}" for name, text in data["sentence"].items()}})
+    return out
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:

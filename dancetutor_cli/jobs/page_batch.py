@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from dancetutor_cli.errors import DancetutorError, NoChartsError
-from dancetutor_cli.jobs.page import PageTask, make_page
+from dancetutor_cli.jobs.page import PageRequest, make_page
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.page.index import IndexEntry, index_page
 
@@ -18,7 +18,7 @@ INDEX = "index.html"
 class PageJob:
     """One page of a batch: what to make, as which file, and how the index names it."""
 
-    task: PageTask
+    request: PageRequest
     target: Path
     entry: IndexEntry
 
@@ -33,8 +33,8 @@ class PageOutcome:
     error: str | None = None
 
 
-def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[Path, str]]]:
-    """The pages to make of all charts below `task.bake.path` that match, and the files that cannot be read.
+def page_jobs(request: PageRequest, folder: Path) -> tuple[list[PageJob], list[tuple[Path, str]]]:
+    """The pages to make of all charts below `request.dance.path` that match, and the files that cannot be read.
 
     Charts without a pad, and those without notes, are left out. Files get names as films do.
     """
@@ -46,7 +46,7 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
     jobs: list[PageJob] = []
     bad: list[tuple[Path, str]] = []
     taken = {Path(INDEX).stem}
-    for path in chart_files((task.bake.path,)):
+    for path in chart_files((request.dance.path,)):
         try:
             song = charts.load(path)
         except NoChartsError:  # the music of a menu: nobody meant it to be danced
@@ -54,7 +54,7 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
         except (DancetutorError, OSError) as error:
             bad.append((path, str(error)))
             continue
-        for chart in task.bake.selection.charts(song):
+        for chart in request.dance.selection.charts(song):
             if not len(chart.notes) or load_pad(chart.steps_type) is None:
                 continue
             stem = name = file_name(DEFAULT_NAME, song, chart)
@@ -62,11 +62,11 @@ def page_jobs(task: PageTask, folder: Path) -> tuple[list[PageJob], list[tuple[P
             while name.lower() in taken:
                 name, number = f"{stem}-{number}", number + 1
             taken.add(name.lower())
-            bake = replace(task.bake, path=path, selection=Selection(index=chart.index), jobs=1)
+            dance = replace(request.dance, path=path, selection=Selection(index=chart.index))
             entry = IndexEntry(
                 f"{name}.html", clean(song.title) or song.path.stem, clean(song.artist), clean(chart.label)
             )
-            jobs.append(PageJob(replace(task, bake=bake), folder / entry.file, entry))
+            jobs.append(PageJob(replace(request, dance=dance, jobs=1), folder / entry.file, entry))
     return jobs, bad
 
 
@@ -95,6 +95,6 @@ def write_index(folder: Path, outcomes: list[PageOutcome], title: str) -> None:
 def _make(_: Callable[[int], None], job: PageJob) -> tuple[int, tuple[str, ...]]:
     from dancetutor_cli.files import write_atomic
 
-    page = make_page(job.task)
+    page = make_page(job.request)
     write_atomic(job.target, page.html)
     return len(page.html), page.warnings

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.resources import charts_path
@@ -58,10 +59,8 @@ def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
     look = FilmLook(load_layout("television"), (320, 180), renderer="cpu")
     selection = Selection(steps_type=steps_type, difficulty="hard")
     practice = Practice(metronome=True)
-    request = FilmRequest(
-        charts_path() / _SONG, selection, look, preset=DEFAULT_PRESET, section="m3:m5", practice=practice,
-        bar=steps_type == _TYPES[1],
-    )  # fmt: skip
+    dance = DanceRequest(charts_path() / _SONG, selection, DEFAULT_PRESET, bar=steps_type == _TYPES[1])
+    request = FilmRequest(dance, look, section="m3:m5", practice=practice)
     prepared[steps_type] = prepare(request, look_up(request))
 
 

@@ -1,4 +1,4 @@
-"""Which part of a chart a motion or a film is about, and at which speeds: the same for `animate` and `render`."""
+"""Which part of a chart a motion or a film is about: the same for `animate` and `render`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.play.preset import Preset
 
-SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
 AROUND = 8  # beats before and after a finding
 _FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
 _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)

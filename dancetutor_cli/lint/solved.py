@@ -1,20 +1,19 @@
-"""A chart with its feet, as every command sees it: what people said about them holds, the rest is solved."""
+"""Charts with their feet as the rules look at them."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.feet import SongFeet
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import solver
-from dancetutor_cli.play.played import Rows
 from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.rows import prepare_all
+from dancetutor_cli.play.solved import Solved, solve_song
 
-_AT_ONCE = 16  # charts whose rows are prepared together
+
+def subject_of(solved: Solved) -> ChartSubject:
+    """What rules look at of a solved chart."""
+    one = solved
+    return ChartSubject(one.song, one.chart, one.play, one.pad, one.overrides, one.ignores, one.problems)
 
 
 def solved_chart(song: Song, chart: Chart, preset: Preset) -> ChartSubject:
@@ -23,30 +22,5 @@ def solved_chart(song: Song, chart: Chart, preset: Preset) -> ChartSubject:
 
 
 def solved_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[ChartSubject]:
-    """Charts with the cheapest plays that keep pinned measures and `data.sme`; without a play where there is no pad.
-
-    What contradicts itself in them is not kept; it is in `problems`, of which the linter makes findings.
-    """
-    feet = SongFeet(song)
-    for first in range(0, len(charts), _AT_ONCE):
-        some = [(chart, preset_of(chart)) for chart in charts[first : first + _AT_ONCE]]
-        for (chart, preset), rows in zip(some, _rows(some), strict=True):
-            overrides, ignores, problems = feet.told(chart)
-            pad = load_pad(chart.steps_type)
-            play = None if pad is None or rows is None else solver.solve(rows, pad, preset, overrides)
-            yield ChartSubject(song, chart, play, pad, overrides, ignores, problems)
-
-
-def _rows(charts: Sequence[tuple[Chart, Preset]]) -> list[Rows | None]:
-    """The rows of charts, None for those without a pad; of those of one pad and timing they are prepared together."""
-    alike: dict[tuple[str, int, float], list[int]] = defaultdict(list)
-    for place, (chart, preset) in enumerate(charts):
-        alike[chart.steps_type, id(chart.timing), preset.roll_window].append(place)
-    found: list[Rows | None] = [None] * len(charts)
-    for (steps_type, _, window), places in alike.items():
-        pad = load_pad(steps_type)
-        if pad is not None:
-            rows = prepare_all([charts[place][0] for place in places], pad, window)
-            for place, one in zip(places, rows, strict=True):
-                found[place] = one
-    return found
+    """Charts of a song, solved as `play.solved.solve_song` does."""
+    return map(subject_of, solve_song(song, charts, preset_of))

@@ -103,6 +103,19 @@ class Motion:
     let_go: tuple[LetGo, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A part of a dance, from `start` to `end`, seconds of the music as it is heard.
+
+    steps_from : she stands before this second, as she will begin; steps_until : from this one on she comes to rest
+    """
+
+    start: float
+    end: float
+    steps_from: float = -np.inf
+    steps_until: float = np.inf
+
+
 def shifted(motion: Motion, x: float, z: float) -> Motion:
     """A motion and all that stands where it is, moved along the ground, metres."""
     if x == z == 0.0:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.numerics.ease import smooth
 from dancetutor_cli.numerics.smoothing import cubic, upper_envelope
@@ -19,7 +20,7 @@ from dancetutor_cli.physics.holds import hands_held
 from dancetutor_cli.physics.legs import risen, soft_legs
 from dancetutor_cli.physics.plants import Plants, let_go, planted, tidied
 from dancetutor_cli.physics.points import place_points, points_of
-from dancetutor_cli.physics.pushes import Blow, Push, Struck, Stumble, disturbed, recovered, told
+from dancetutor_cli.physics.pushes import Blow, Push, Struck, Stumble, disturbed, parse_push, recovered, told
 from dancetutor_cli.physics.ragdoll import bones_of
 from dancetutor_cli.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.physics.restrain import restrained
@@ -64,6 +65,23 @@ class Wishes:
     corrections: tuple[str, ...] = ()
     pushes: tuple[Push, ...] = ()
     trips: tuple[Stumble, ...] = ()
+
+    def within(self, start: float, end: float) -> Wishes:
+        """The same with only what befalls her between two seconds."""
+        pushes = tuple(push for push in self.pushes if start <= push.second <= end)
+        return replace(self, pushes=pushes, trips=tuple(trip for trip in self.trips if start <= trip.second <= end))
+
+
+def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> Wishes:
+    """Pushes and trips as on the command line, at seconds of the song, as what befalls her in music at a rate.
+
+    UsageError for a push that is none.
+    """
+    pushes = map(parse_push, push)
+    return Wishes(
+        pushes=tuple(replace(one, second=heard(one.second, rate)) for one in pushes),
+        trips=tuple(Stumble(heard(second, rate)) for second in trip),
+    )
 
 
 def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> Passed:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.motion.baked import Cut
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,11 @@ class Pass:
     @property
     def seconds(self) -> float:
         """How long it lasts in the film."""
-        return (self.end - self.start) / self.rate
+        return self.shown(self.end)
+
+    def shown(self, second: float) -> float:
+        """Seconds of the film from the pass's beginning to a second of the music."""
+        return heard(second - self.start, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +50,7 @@ class Moment:
     @property
     def heard(self) -> float:
         """The second in the music as it is heard: at half speed everything comes at twice its second."""
-        return self.second / self.rate
+        return heard(self.second, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +85,16 @@ class Clock:
                 return one.start + film * one.rate, number
             film -= one.seconds
         return self.passes[-1].end, len(self.passes) - 1
+
+    def cut_at(self, rate: float) -> Cut:
+        """What is danced at a rate, from the first pass to the last, in seconds of the music as it is heard then.
+
+        Before the step that passes count to nobody steps, nor while the music fades.
+        """
+        first, last = self.passes[0], self.passes[-1]
+        seconds = (first.start, last.end, first.sound_from if first.count else -math.inf, last.until)
+        start, end, steps_from, steps_until = (heard(second, rate) for second in seconds)
+        return Cut(start, end, steps_from, steps_until if last.rest else math.inf)
 
     def moment(self, frame: int) -> Moment:
         """The second of the music that a frame shows, with the rate of its pass."""

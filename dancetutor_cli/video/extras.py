@@ -64,7 +64,7 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     aim = one.start + (one.end - one.start) / 3
     moment = calls[0] if calls else float(steps[np.argmin(np.abs(steps - aim))]) if len(steps) else aim
     before = sum(other.seconds for other in plan.clock.passes[:-1])
-    number = round((before + (moment - one.start) / one.rate) * plan.clock.fps + 0.5)
+    number = round((before + one.shown(moment)) * plan.clock.fps + 0.5)
     picture = Film(plan).frame(min(number, plan.clock.frames - 1))
     data = io.BytesIO()
     Image.fromarray(picture).save(data, "PNG")

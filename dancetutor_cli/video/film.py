@@ -140,7 +140,7 @@ class Film:
         if (part := self.layout.feet) is None or not (part.wide or self._breadth <= WIDE_PAD):
             return None
         box = self._box("feet")
-        taken = bool(self.plan.partners) and overlap(box, self._box("dancer"))
+        taken = self.plan.dancers > 1 and overlap(box, self._box("dancer"))
         return None if taken else self._below(box, LEGEND_OFF * self.scale)
 
     @cached_property
@@ -213,7 +213,7 @@ class Film:
             self.layout.region(self._breadth),
             stands=self.layout.screen is not None,
         )
-        return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character, plan.partners)
+        return dancer.Dancer(plan.motions, plan.pad, self.lights, shot, plan.character)
 
     @cached_property
     def _screen(self) -> Television | None:
@@ -228,7 +228,7 @@ class Film:
         large, small = None, None
         view = PadView(plan.pad, self._directions, self.turned)
         if feet:
-            rims = self.style.players if plan.partners else (captions.WHITE,)
+            rims = self.style.players if plan.dancers > 1 else (captions.WHITE,)
             now = name_sprite("now", self.face, self.scale) if after else None
             large = FeetDiagram(PadMap(view, below(feet, now)), self.lights, self.face, rims, now)
         if after and plan.rows is not None:

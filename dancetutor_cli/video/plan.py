@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,11 +30,10 @@ class FilmPlan:
 
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
-    character : who dances, the motion is for its skeleton; None for the project's own dancer
-    partners : of a chart for two the motions of the second one; empty for one
+    character : who dances, the motions are for its skeleton; None for the project's own dancer
     scroll_bpm : the tempo of which M mods make their speed
     speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
-    motions : the dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
+    motions : each dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
         the layout has no dancer; rows : the play's, for the next rows' pads
     callouts : words in the picture; cues : moves for the subtitles
     fade : seconds of the film at its end in which the picture goes dark
@@ -50,15 +49,19 @@ class FilmPlan:
     beats: NDArray[np.float64]
     scroll_bpm: float
     directions: tuple[float | None, ...]
-    motions: Mapping[float, Motion]
+    motions: Mapping[float, tuple[Motion, ...]]
     pad: PadLike | None
     rows: DiagramRows | None = None
     callouts: tuple[Callout, ...] = ()
     cues: tuple[Cue, ...] = ()
     speeds: NDArray[np.float64] | None = None
     character: Character | None = None
-    partners: Mapping[float, Motion] = field(default_factory=dict)
     fade: float = 0.0
+
+    @property
+    def dancers(self) -> int:
+        """How many dance in the picture."""
+        return max((len(some) for some in self.motions.values()), default=0)
 
     def light(self, frame: int) -> float:
         """How much of a frame's picture is seen, 0 to 1: less and less towards the end, in the last one nothing."""

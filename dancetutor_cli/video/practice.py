@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST
 from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.lint.part import FASTEST, SLOWEST
 from dancetutor_cli.video.clock import Pass
 
 if TYPE_CHECKING:
@@ -23,13 +23,12 @@ COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; so
 
 @dataclass(frozen=True, slots=True)
 class Practice:
-    """What helps to learn. rates : speeds of the runs in turn; loop : number of runs (0: one for each rate)
+    """What helps to learn. loop : number of runs (0: one for each rate)
 
     count_in : beats counted before each run; rest : seconds of film after the last one, in which she comes to rest
     claps : a clap on each step; metronome : a tick on each beat
     """
 
-    rates: tuple[float, ...] = (1.0,)
     loop: int = 0
     count_in: int = 0
     claps: bool = False
@@ -50,8 +49,8 @@ def parse_rates(text: str) -> tuple[float, ...]:
     return rates
 
 
-def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tuple[Pass, ...]:
-    """The runs through a section, slower ones first as asked for, each with its count-in.
+def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start: float, end: float) -> tuple[Pass, ...]:
+    """The runs through a section, at each of the rates in turn, each with its count-in.
 
     A count-in leads to steps: measures without any at the section's beginning are left out. It counts beats, or halves
     or doubles of them where nobody counts so slowly or so fast.
@@ -60,10 +59,12 @@ def passes_of(chart: Chart, practice: Practice, start: float, end: float) -> tup
     if practice.count_in:
         start = _first_measure(chart, start, end)
         beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
-        lead = practice.count_in * _counted(beat, min(practice.rates))
-    count = practice.loop or len(practice.rates)
-    rates = (practice.rates[i % len(practice.rates)] for i in range(count))
-    runs = [Pass(start - lead, end, rate, start if lead else -math.inf, practice.count_in) for rate in rates]
+        lead = practice.count_in * _counted(beat, min(rates))
+    count = practice.loop or len(rates)
+    runs = [
+        Pass(start - lead, end, rates[i % len(rates)], start if lead else -math.inf, practice.count_in)
+        for i in range(count)
+    ]
     rest = practice.rest * runs[-1].rate
     return (*runs[:-1], replace(runs[-1], end=end + rest, rest=rest))
 

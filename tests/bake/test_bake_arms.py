@@ -20,7 +20,7 @@ STREAM, WAIT = np.arange(3.0, 6.5, 0.05), np.arange(9.0, 16.0, 0.05)
 
 @pytest.fixture(scope="module")
 def danced() -> Motion:
-    return bake(chart(), play([*stream(2.0, 40, 0.125), (17.0, {0: L}), (17.5, {3: R})]), pad())
+    return bake(chart().timing, play([*stream(2.0, 40, 0.125), (17.0, {0: L}), (17.5, {3: R})]), pad())
 
 
 def hands(motion: Motion, at: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ def test_forearms_are_not_held_level_in_streams(danced: Motion) -> None:
 def test_both_arms_swing_up_in_jumps_and_down_as_she_lands(gap: float, least: float, most: float) -> None:
     """By the jump's height: those for which there is little time have little of it."""
     jumps = [(2.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
-    motion = bake(chart(), play(jumps), pad())
+    motion = bake(chart().timing, play(jumps), pad())
     land = jumps[4][0]
     up, crouched, landed = (
         hands(motion, np.arange(land + first, land + last, 0.01))[..., 1]
@@ -89,14 +89,14 @@ def test_wrists_of_free_hands_are_bent_a_little(danced: Motion) -> None:
 def test_no_arm_is_in_a_trunk_that_leans_far_aside() -> None:
     """Wide steps to and fro on two pads: the hand of the higher shoulder would hang against the trunk."""
     events = [(1.0 + 0.8 * k, {(0, 4, 3, 7)[k % 4]: (R, L)[k % 2]}) for k in range(12)]
-    measured = report(bake(chart(), play(events, True), pad(True)))
+    measured = report(bake(chart().timing, play(events, True), pad(True)))
     assert [f.value for f in measured.figures if f.name == "limb in torso"] == [0.0]
 
 
 def test_no_hand_hangs_in_hips_that_turn_and_sway() -> None:
     """From panel to panel over two pads and back, two steps a second: the hips are ahead of the shoulders."""
     events = [(1.0 + 0.5 * k, {(0, 1, 2, 3, 4, 5, 6, 7, 6, 5, 4, 3, 2, 1)[k % 14]: (L, R)[k % 2]}) for k in range(20)]
-    measured = report(bake(chart(), play(events, True), pad(True)))
+    measured = report(bake(chart().timing, play(events, True), pad(True)))
     assert [f.value for f in measured.figures if f.name in ("limb in torso", "arm in leg")] == [0.0, 0.0]
 
 

@@ -26,7 +26,7 @@ def events(wait: float) -> list[Event]:
 
 
 def planned(wait: float, double: bool = True, **more: Any) -> Plan:
-    return plan_of(chart(), play(sorted([*events(wait), *more.pop("rows", [])]), double, **more), pad(double))
+    return plan_of(chart().timing, play(sorted([*events(wait), *more.pop("rows", [])]), double, **more), pad(double))
 
 
 def asides(plan: Plan) -> list[tuple[int, Swing]]:
@@ -80,7 +80,7 @@ def test_feet_come_no_farther_apart_than_a_straddle() -> None:
 
 @pytest.mark.parametrize("wait", [1.2, 2.4])
 def test_every_goal_is_met(wait: float) -> None:
-    measured = report(bake(chart(), play(events(wait), True), pad(True)))
+    measured = report(bake(chart().timing, play(events(wait), True), pad(True)))
     missed = {f.name for f in measured.figures if f.met is False}
     # In the leap of 0.9 m in 0.25 s legs swing faster than the ground can make up for: 0.23 body weights x m, goal 0.2.
     assert missed <= ({"residual moment, 99th percentile"} if wait < 2.0 else set()), measured.notes
@@ -90,12 +90,12 @@ def test_she_stays_without_time_or_reason() -> None:
     assert not asides(planned(0.8))
     assert not asides(planned(2.0, double=True, rows=[(6.0, {3: R}), (6.6, {0: L})]))
     near = [*events(1.6)[:7], (LAST + 1.6, {3: R}), (LAST + 2.0, {0: L})]
-    assert not asides(plan_of(chart(), play(near, True), pad(True)))
+    assert not asides(plan_of(chart().timing, play(near, True), pad(True)))
 
 
 def test_she_does_not_wait_with_a_foot_on_each_pad() -> None:
     rows = [*events(1.6)[:6], (5.4, {2: L}), (5.8, {4: R}), (7.4, {3: R}), (7.8, {0: L})]
-    plan = plan_of(chart(), play(rows, True), pad(True))
+    plan = plan_of(chart().timing, play(rows, True), pad(True))
     stood = [[s.target for s in t.moves if s.land <= 7.0][-1] for t in plan.feet]
     wide = [[s.target for s in t.moves if s.land <= 5.8][-1] for t in plan.feet]
     assert np.hypot(*(np.array(wide[0]) - wide[1])) > 0.6 and np.hypot(*(np.array(stood[0]) - stood[1])) < 0.3

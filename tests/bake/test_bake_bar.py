@@ -27,7 +27,7 @@ BOTH = replace(default_settings(), bar=replace(default_settings().bar, one_slow=
 
 @pytest.fixture(scope="module")
 def held() -> Motion:
-    return bake(chart(), play(PLAY), pad(), bar=True, settings=BOTH)
+    return bake(chart().timing, play(PLAY), pad(), bar=True, settings=BOTH)
 
 
 def palm(motion: Motion, side: int, times: np.ndarray) -> np.ndarray:
@@ -73,8 +73,8 @@ def test_a_hand_lets_go_in_time_when_she_turns() -> None:
     """Crossovers behind and in front and a whole spin: arms stay within their joints' limits, out of the torso."""
     turns = [(2.0, {0: L}), (2.6, {3: R}), (3.2, {1: R}), (3.8, {3: L}), (4.4, {2: R}), (5.0, {0: L})]
     spin = [(5.5, {1: R}), (6.0, {3: L}), (6.5, {2: R}), (7.0, {0: L}), (7.5, {3: R}), *stream(8.5, 8, 0.3)]
-    motion = bake(chart(), play([*turns, *spin]), pad(), bar=True, settings=BOTH)
-    for measured in (report(motion), report(bake(chart(), play([*turns, *spin]), pad(), bar=True))):
+    motion = bake(chart().timing, play([*turns, *spin]), pad(), bar=True, settings=BOTH)
+    for measured in (report(motion), report(bake(chart().timing, play([*turns, *spin]), pad(), bar=True))):
         assert measured["limb in torso"].met and measured["palm off the bar"].met
         assert measured["wrist speed"].met, "hands have the time for their ways"
     measured = report(motion)
@@ -87,7 +87,7 @@ def test_a_hand_lets_go_in_time_when_she_turns() -> None:
 def test_a_hand_on_its_way_is_never_across_the_body() -> None:
     """Twice around within 3 s: neither hand takes the rail where it would have to go through her to get there."""
     around = [(2.0 + 0.35 * k, {(0, 2, 3, 1)[k % 4]: (L, R)[k % 2]}) for k in range(9)]
-    motion = bake(chart(), play([*around, *stream(6.0, 12, 0.3)]), pad(), bar=True)
+    motion = bake(chart().timing, play([*around, *stream(6.0, 12, 0.3)]), pad(), bar=True)
     places, _ = world_transforms(motion.skeleton, *sample(motion, np.arange(1.0, 9.0, 1 / 120)))
     for name in "lr":
         wrist = places[:, motion.skeleton.index(f"{name}_radiocarpal")]
@@ -104,7 +104,7 @@ def test_a_hand_goes_to_its_panel_and_comes_back(held: Motion) -> None:
 
 
 def test_goals_hold_but_balance_has_none() -> None:
-    measured = report(bake(chart(), play([e for e in PLAY if len(e[1]) == 1]), pad(), bar=True))
+    measured = report(bake(chart().timing, play([e for e in PLAY if len(e[1]) == 1]), pad(), bar=True))
     assert [f for f in measured.figures if f.met is False] == []
     assert measured["balance"].goal is None and measured["palm off the bar"].met
 
@@ -114,7 +114,7 @@ def test_the_report_sees_a_palm_off_the_bar(held: Motion) -> None:
 
 
 def test_she_leans_back(held: Motion) -> None:
-    free = bake(chart(), play(PLAY), pad())
+    free = bake(chart().timing, play(PLAY), pad())
     head = held.skeleton.index("skullbase")
     at = np.arange(2.0, 5.0, 0.1)
 
@@ -128,7 +128,7 @@ def test_she_leans_back(held: Motion) -> None:
 
 def test_doubles_have_two_bars() -> None:
     events = [(1.0 + 0.3 * k, {k: (L, R)[k % 2]}) for k in range(8)]
-    motion = bake(chart(), play(events, double=True), pad(double=True), bar=True)
+    motion = bake(chart().timing, play(events, double=True), pad(double=True), bar=True)
     assert motion.bar is not None and len(motion.bar.spans) == 2
     (left, right) = sorted(motion.bar.spans)
     assert left[0] + right[1] == pytest.approx(0.0) and left[1] < 0 < right[0]

@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from bake_mirror import mirrored_play
 from bake_plays import L, R, chart, pad, play, stream
+from dance_requests import baked
 
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.formats.npz import read_npz, write_npz
-from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Grip, Motion
 from dancetutor_cli.motion.settings import MotionSettings, default_settings
@@ -37,7 +38,7 @@ def settings(often: float = 1.0, both: float = 1.0) -> MotionSettings:
 def danced(events: list[tuple[float, dict[int, object]]], mirrored: bool = False, **how: float) -> Motion:
     made = play(events)  # type: ignore[arg-type]
     made = mirrored_play(made, SINGLE) if mirrored else made
-    return bake(chart(), made, pad(), bar=True, settings=settings(**how))
+    return bake(chart().timing, made, pad(), bar=True, settings=settings(**how))
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +116,5 @@ def test_files_tell_which_hands_crossed_over(crossed: Motion, tmp_path: Path) ->
 def test_a_hand_lets_go_where_hips_that_turned_from_the_chest_come_to_it(corpus: Path) -> None:
     """A wait on the bar, feet turned aside and chest to the screen: hips swayed into a hand, 2 cm deep."""
     path = sorted(corpus.glob("*/g0101_*.ssc"))[0]
-    asked = ask(BakeTask(path, Selection(index=0), bar=True))
-    measured = report(bake(asked.chart, asked.play, asked.pad, bar=True, section=(88.5, 102.0)))
+    measured = report(baked(DanceRequest(path, Selection(index=0), bar=True), "88.5:102"))
     assert measured["limb in torso"].value == 0.0 and measured["hands on the bar"].value >= 2

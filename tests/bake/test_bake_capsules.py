@@ -23,7 +23,7 @@ Array = np.ndarray
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return bake(chart(), play(MEDLEY), pad())
+    return bake(chart().timing, play(MEDLEY), pad())
 
 
 def test_tapered_capsules_as_brute_force_has_them() -> None:
@@ -116,6 +116,6 @@ def test_posture_is_told(motion: Motion) -> None:
 
 
 def test_a_wait_is_measured_between_its_steps() -> None:
-    waiting = bake(chart(), play([*stream(2.0, 8, 0.5), (12.0, {0: L}), (12.5, {3: R})]), pad())
+    waiting = bake(chart().timing, play([*stream(2.0, 8, 0.5), (12.0, {0: L}), (12.5, {3: R})]), pad())
     shifts = weight_shifts(body_of(waiting), waiting.contacts)
     assert len(shifts) == 1 and shifts[0] > 0.001

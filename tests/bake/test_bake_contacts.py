@@ -19,7 +19,7 @@ from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
 
 @pytest.fixture(scope="module")
 def medley() -> Motion:
-    return bake(chart(), play(MEDLEY), pad())
+    return bake(chart().timing, play(MEDLEY), pad())
 
 
 def lowest(motion: Motion, limb: int, time: float) -> tuple[float, np.ndarray]:
@@ -74,7 +74,7 @@ def test_keys_are_increasing_and_hold_every_note(medley: Motion) -> None:
 
 def test_doubles_cross_the_whole_pad() -> None:
     events = [(1.0 + 0.3 * k, {k: (L, R)[k % 2]}) for k in range(8)]
-    motion = bake(chart(), play(events, double=True), pad(double=True))
+    motion = bake(chart().timing, play(events, double=True), pad(double=True))
     assert np.nanmax(np.abs(report(motion).contact_errors)) < 1.0
     travelled = motion.root[:, 0].max() - motion.root[:, 0].min()
     assert travelled > 3 * 0.28  # from the left pad to the right one
@@ -82,7 +82,7 @@ def test_doubles_cross_the_whole_pad() -> None:
 
 def test_held_foot_stays_and_the_other_taps() -> None:
     events = [(1.0, {0: L}), (1.5, {3: R}), (1.75, {2: R}), (2.0, {3: R}), (2.5, {1: L})]
-    motion = bake(chart(), play(events, holds={(0, 0): 2.25}), pad())
+    motion = bake(chart().timing, play(events, holds={(0, 0): 2.25}), pad())
     for time in np.linspace(1.0, 2.25, 40):
         height, touching = lowest(motion, Limb.LEFT_FOOT, time)
         assert abs(height) < 1e-3 and (np.abs(touching - [0.28, 0.0]).max(axis=1) <= 0.14).any()
@@ -90,41 +90,41 @@ def test_held_foot_stays_and_the_other_taps() -> None:
 
 def test_bracket_presses_two_panels_with_heel_and_toe() -> None:
     events = [(1.0, {0: L}), (1.5, {1: R, 3: R})]
-    motion = bake(chart(), play(events, brackets={(1, 1): Part.HEEL, (1, 3): Part.TOE}), pad())
+    motion = bake(chart().timing, play(events, brackets={(1, 1): Part.HEEL, (1, 3): Part.TOE}), pad())
     assert np.abs(report(motion).contact_errors).max() < 1.0
 
 
 @pytest.mark.parametrize("gap", [0.05, 0.08, 0.1, 0.3, 0.7])
 def test_streams_of_any_speed_hit(gap: float) -> None:
-    motion = bake(chart(), play(stream(1.0, 20, gap)), pad())
+    motion = bake(chart().timing, play(stream(1.0, 20, gap)), pad())
     assert np.abs(report(motion).contact_errors).max() < 1.0
 
 
 def test_mine_lifts_the_foot_off_its_panel() -> None:
     events = [(1.0, {0: L}), (1.5, {3: R}), (2.5, {}), (3.5, {0: L})]
-    motion = bake(chart(), play(events, mines={2: [0]}), pad())
+    motion = bake(chart().timing, play(events, mines={2: [0]}), pad())
     for time in np.linspace(2.43, 2.57, 20):
         assert lowest(motion, Limb.LEFT_FOOT, time)[0] >= 0.03
 
 
 def test_section_is_part_of_the_whole() -> None:
-    whole = bake(chart(), play(MEDLEY), pad())
-    part = bake(chart(), play(MEDLEY), pad(), section=(3.0, 5.0))
+    whole = bake(chart().timing, play(MEDLEY), pad())
+    part = bake(chart().timing, play(MEDLEY), pad(), section=(3.0, 5.0))
     assert part.times[0] >= 3.0 and part.times[-1] <= 5.0
     inside = [c for c in whole.contacts if 3.0 <= c.start <= 5.0]
     assert list(part.contacts) == inside
 
 
 def test_same_input_same_motion() -> None:
-    first, second = (bake(chart(), play(MEDLEY), pad()) for _ in range(2))
+    first, second = (bake(chart().timing, play(MEDLEY), pad()) for _ in range(2))
     assert first.rotations.tobytes() == second.rotations.tobytes()
 
 
 def test_nothing_to_dance_is_said() -> None:
     with pytest.raises(DancetutorError, match="no steps"):
-        bake(chart(), play([(1.0, {})], mines={0: [1]}), pad())
+        bake(chart().timing, play([(1.0, {})], mines={0: [1]}), pad())
     with pytest.raises(DancetutorError, match="empty"):
-        bake(chart(), play(MEDLEY), pad(), section=(5.0, 5.0))
+        bake(chart().timing, play(MEDLEY), pad(), section=(5.0, 5.0))
 
 
 def test_hand_reaches_the_floor_with_its_palm(medley: Motion) -> None:
@@ -144,6 +144,6 @@ def test_the_report_tells_how_far_soles_are_inside_their_panels(medley: Motion) 
 def test_soles_keep_their_middle_on_the_panel(gap: float, least: float) -> None:
     """To and fro between both pads: slow steps stand well on the panel, quick ones near its edge, but on it."""
     events = [(1.0 + gap * k, {(3, 4, 6, 5, 7, 4, 2, 1)[k % 8]: (L, R)[k % 2]}) for k in range(24)]
-    inside = soles_inside(bake(chart(), play(events, True), pad(True)))
+    inside = soles_inside(bake(chart().timing, play(events, True), pad(True)))
     assert len(inside) == len(events)
     assert inside.min() > least

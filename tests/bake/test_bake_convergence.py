@@ -57,7 +57,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
         return found if most else replace(found, found=False, x=np.full_like(found.x, np.nan))
 
     monkeypatch.setattr(qp, "solve", once)
-    motion = bake(chart(), play(MEDLEY), pad(), section=(3.0, 6.0))
+    motion = bake(chart().timing, play(MEDLEY), pad(), section=(3.0, 6.0))
     assert [note.split(" no path of ")[1].split(" keeps")[0] for note in motion.notes] == [
         "her balance", "the height of her body"
     ]  # fmt: skip
@@ -71,9 +71,9 @@ def test_a_bake_that_has_no_path_ends_with_one_line(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(qp, "ROUNDS", 1)
     monkeypatch.setattr(qp, "MORE_ROUNDS", 1)
     with pytest.raises(DancetutorError, match=r"from -?\d+\.\d s to \d+\.\d s was not found") as error:
-        bake(chart(), play(MEDLEY), pad(), section=(3.0, 6.0))
+        bake(chart().timing, play(MEDLEY), pad(), section=(3.0, 6.0))
     assert len(str(error.value).splitlines()) == 1
 
 
 def test_a_usual_bake_has_nothing_to_say() -> None:
-    assert bake(chart(), play(MEDLEY), pad()).notes == ()
+    assert bake(chart().timing, play(MEDLEY), pad()).notes == ()

@@ -25,7 +25,7 @@ PLACES: dict[str, list[Event]] = {
 
 @pytest.fixture(scope="module", params=list(PLACES))
 def down(request: pytest.FixtureRequest) -> Motion:
-    return bake(chart(), play(PLACES[request.param]), pad())
+    return bake(chart().timing, play(PLACES[request.param]), pad())
 
 
 def test_arms_and_back_stay_within_their_limits(down: Motion) -> None:
@@ -42,7 +42,7 @@ def test_the_palm_is_on_time_and_nothing_is_in_the_torso(down: Motion) -> None:
 
 def test_she_looks_at_a_panel_that_her_hand_is_on() -> None:
     """Down and ahead, not at the screen."""
-    motion = bake(chart(), play(PLACES["before"]), pad())
+    motion = bake(chart().timing, play(PLACES["before"]), pad())
     _, world = world_transforms(motion.skeleton, *sample(motion, np.array([4.0])))
     face = quat.rotate(world[0, motion.skeleton.index("skullbase")], np.array([0.0, 0.0, 1.0]))
     assert -85.0 < np.degrees(np.arcsin(face[1])) < -50.0 and face[2] > 0.0

@@ -24,7 +24,7 @@ FAST = stream(2.0, 40, 1 / 12)
 
 
 def steps_of(events: list[Event]) -> list[Step]:
-    plan = plan_of(chart(), play(events), pad())
+    plan = plan_of(chart().timing, play(events), pad())
     return [m for track in plan.feet for m in track.moves if isinstance(m, Step)]
 
 
@@ -35,7 +35,7 @@ def test_the_faster_the_steps_the_lower_feet_rise() -> None:
 
 def test_in_the_fastest_streams_a_foot_leaves_a_moment_before_the_other_lands() -> None:
     """And nobody takes that for a flight."""
-    plan = plan_of(chart(), play(FAST), pad())
+    plan = plan_of(chart().timing, play(FAST), pad())
     moves = sorted((m for track in plan.feet for m in track.moves if isinstance(m, Step)), key=lambda m: m.land)
     early = [a.land - b.lift for a, b in pairwise(moves[8:])]
     assert 0.0 < np.median(early) < LEAST_FLIGHT
@@ -47,7 +47,9 @@ def test_heels_that_rock_and_late_feet_throw_the_body() -> None:
     before = replace(SETTINGS.step, overlap=0.0, height_hasty=0.02, lift_flat=0.4, swing_flat=0.6, stream_pitch=8.0)
     rough = []
     for step in (SETTINGS.step, before):
-        body = body_of(bake(chart(), play(FAST), pad(), section=(3.0, 5.0), settings=replace(SETTINGS, step=step)))
+        body = body_of(
+            bake(chart().timing, play(FAST), pad(), section=(3.0, 5.0), settings=replace(SETTINGS, step=step))
+        )
         rough.append(float(jerk(body.joints[:, 0], body.rate).mean()))
     assert rough[0] < 0.9 * rough[1]
 
@@ -56,7 +58,7 @@ def test_quick_feet_that_go_at_one_speed_throw_the_body_less() -> None:
     """By a tenth and more than those that are slow at both ends; none of them slides, and she keeps her balance."""
     slow, rough, kept = replace(SETTINGS.step, even_quick=0.0, even_slow=0.01), [], []
     for step in (SETTINGS.step, slow):
-        motion = bake(chart(), play(FAST), pad(), section=(3.0, 5.0), settings=replace(SETTINGS, step=step))
+        motion = bake(chart().timing, play(FAST), pad(), section=(3.0, 5.0), settings=replace(SETTINGS, step=step))
         body = body_of(motion)
         rough.append(float(jerk(body.joints[:, 0], body.rate).mean()))
         kept.append(balance_figures(body)[0].value)
@@ -67,14 +69,14 @@ def test_quick_feet_that_go_at_one_speed_throw_the_body_less() -> None:
 
 def test_the_other_foot_of_a_gallop_goes_up_with_the_body() -> None:
     events = [(2.0, {0: L}), (2.5, {3: R}), (3.5, {0: L}), (3.6, {2: R}), (4.5, {3: R})]
-    plan = plan_of(chart(), play(events), pad())
+    plan = plan_of(chart().timing, play(events), pad())
     gallops = [m for track in plan.feet for m in track.moves if isinstance(m, Gallop)]
     assert gallops and all(m.height >= SETTINGS.jump.apex_near + SETTINGS.jump.tuck for m in gallops)
 
 
 def test_legs_push_off_nearly_straight_in_jumps_with_time() -> None:
     events = [(2.0 + 0.9 * k, {0: L, 3: R} if k % 2 else {1: L, 2: R}) for k in range(8)]
-    motion = bake(chart(), play(events), pad())
+    motion = bake(chart().timing, play(events), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
     flights = intervals(~body.standing.any(axis=1))[1:]
@@ -86,7 +88,7 @@ def test_legs_push_off_nearly_straight_in_jumps_with_time() -> None:
 
 @pytest.mark.parametrize("drift", [0.0, 0.003])
 def test_a_pivot_whose_ball_slides_is_a_slide(drift: float) -> None:
-    motion = bake(chart(), play(stream(2.0, 4, 0.5)), pad(), section=(2.0, 4.0))
+    motion = bake(chart().timing, play(stream(2.0, 4, 0.5)), pad(), section=(2.0, 4.0))
     body, count, ball = body_of(motion), 20, np.array([0.1, 0.0, 0.2])
     angle = np.radians(np.linspace(0.0, 20.0, count))
     away = np.array([[0.0, -0.17], [0.03, -0.17], [-0.04, -0.01], [0.04, -0.01], [-0.03, 0.08], [0.03, 0.08]])

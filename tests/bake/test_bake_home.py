@@ -28,7 +28,7 @@ def played(wait: float, **more: dict[int, list[int]] | dict[tuple[int, int], flo
 
 
 def planned(wait: float, **how: bool) -> Plan:
-    return plan_of(chart(), played(wait), pad(), **how)
+    return plan_of(chart().timing, played(wait), pad(), **how)
 
 
 def home_steps(plan: Plan) -> list[tuple[int, Swing]]:
@@ -65,12 +65,14 @@ def test_the_first_step_from_home_does_not_turn_her_for_a_foot_that_is_not_there
 
 @pytest.mark.parametrize("wait", [2.0, 4.5])
 def test_every_goal_is_met(wait: float) -> None:
-    measured = report(bake(chart(), played(wait), pad()))
+    measured = report(bake(chart().timing, played(wait), pad()))
     assert [f for f in measured.figures if f.met is False] == [], measured.notes
 
 
 def test_the_mirror_image_goes_home_as_the_mirror_image() -> None:
-    one, image = (home_steps(plan_of(chart(), p, pad())) for p in (played(4.5), mirrored_play(played(4.5), SINGLE)))
+    one, image = (
+        home_steps(plan_of(chart().timing, p, pad())) for p in (played(4.5), mirrored_play(played(4.5), SINGLE))
+    )
     assert len(one) == len(image) > 0
     for (side, a), (other, b) in zip(one, image, strict=True):
         assert (side, a.lift, a.land) == (1 - other, b.lift, b.land)
@@ -81,25 +83,25 @@ def test_she_stays_in_a_short_wait_at_the_bar_and_while_a_foot_holds() -> None:
     assert home_steps(planned(3.2))
     assert not home_steps(planned(1.8))
     assert not home_steps(planned(4.5, bar=True))
-    assert not home_steps(plan_of(chart(), played(4.5, holds={(3, 2): LAST + 2.8}), pad()))
-    held = home_steps(plan_of(chart(), played(6.0, holds={(3, 2): LAST + 2.0}), pad()))
+    assert not home_steps(plan_of(chart().timing, played(4.5, holds={(3, 2): LAST + 2.8}), pad()))
+    held = home_steps(plan_of(chart().timing, played(6.0, holds={(3, 2): LAST + 2.0}), pad()))
     assert held and held[0][1].lift >= LAST + 2.0
 
 
 def test_after_how_long_is_a_number_of_the_settings() -> None:
     default = default_settings()
     never = replace(default, home=replace(default.home, after=100.0))
-    assert not home_steps(plan_of(chart(), played(8.0), pad(), settings=never))
+    assert not home_steps(plan_of(chart().timing, played(8.0), pad(), settings=never))
 
 
 def test_who_stands_there_already_stays() -> None:
     settings = default_settings()
     wide = replace(settings, home=replace(settings.home, near=1.0, facing=180.0))
-    assert not home_steps(plan_of(chart(), played(8.0), pad(), settings=wide))
+    assert not home_steps(plan_of(chart().timing, played(8.0), pad(), settings=wide))
 
 
 @pytest.mark.parametrize("foot", [L, R])
 def test_the_way_home_ends_with_the_foot_that_does_not_step_next(foot: int) -> None:
     one = play([(3.0, {0: L}), (3.5, {3: R}), (6.0, {(0, 3)[foot]: foot}), (6.5, {(3, 0)[foot]: 1 - foot})])
-    found = home_steps(plan_of(chart(), one, pad()))
+    found = home_steps(plan_of(chart().timing, one, pad()))
     assert [side for side, _ in found] == [foot, 1 - foot]

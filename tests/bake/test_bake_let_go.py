@@ -23,7 +23,7 @@ def trill() -> Play:
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return bake(chart(), trill(), pad(), fps=30.0)
+    return bake(chart().timing, trill(), pad(), fps=30.0)
 
 
 def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
@@ -37,14 +37,14 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
 
 
 def test_a_section_tells_only_of_its_own() -> None:
-    one = bake(chart(), trill(), pad(), fps=30.0, section=(0.7, 1.9))
+    one = bake(chart().timing, trill(), pad(), fps=30.0, section=(0.7, 1.9))
     assert [g.row for g in one.let_go] == [4]
 
 
 def test_files_have_them(motion: Motion, tmp_path: Path) -> None:
     write_npz(tmp_path / "x.npz", motion)
     assert read_npz(tmp_path / "x.npz").let_go == motion.let_go
-    data = moves_data(plan_of(chart(), trill(), pad()), "T", "c", (-10.0, 10.0))
+    data = moves_data(plan_of(chart().timing, trill(), pad()), "T", "c", (-10.0, 10.0))
     assert data["let_go"] == [
         {"second": 0.675, "column": 1, "why": "leap"},
         {"second": 0.825, "column": 1, "why": "leap"},

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from bake_mirror import apart, mirrored_motion, mirrored_play
 from bake_plays import MEDLEY, L, R, chart, pad, play, stream
+from dance_requests import solved_one
 
 from dancetutor_cli.bake import bake, plan_of
 from dancetutor_cli.chart import load
-from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.trajectory.crouch import jump_lean
-from dancetutor_cli.pads import load_pad
+from dancetutor_cli.pads import Pad, load_pad
+from dancetutor_cli.play.played import Play
 from dancetutor_cli.resources import charts_path
 
 SINGLE = np.array([3, 1, 2, 0])
@@ -32,12 +35,18 @@ REAL = (  # charts of the corpus with jumps, gallops, mines, holds, hands and cr
 )
 
 
-def check(path: Path, index: int, section: tuple[float, float] | None, **how: object) -> None:
-    asked = ask(BakeTask(path, Selection(index=index), "thesis"))
-    columns = asked.pad.mirrored(left_right=True)
+def mirrorable(path: Path, index: int) -> tuple[Timing, Play, Pad, np.ndarray]:
+    """Timing, play and pad of a chart, and the column that each one is in the mirror image."""
+    one = solved_one(path, Selection(index=index), "thesis")
+    assert one.play is not None and one.pad is not None
+    columns = one.pad.mirrored(left_right=True)
     assert columns is not None
-    one = bake(asked.chart, asked.play, asked.pad, section=section, **how)  # type: ignore[arg-type]
-    image = bake(asked.chart, mirrored_play(asked.play, columns), asked.pad, section=section, **how)  # type: ignore[arg-type]
+    return one.chart.timing, one.play, one.pad, columns
+
+
+def check(path: Path, index: int, section: tuple[float, float] | None, **how: Any) -> None:
+    timing, played, own, columns = mirrorable(path, index)
+    one, image = (bake(timing, p, own, section=section, **how) for p in (played, mirrored_play(played, columns)))
     for part, (far, turned) in apart(one, mirrored_motion(image)).items():
         assert far < MOST_MM and turned < MOST_DEGREES, f"{part}: {far:.2f} mm, {turned:.2f} degrees"
 
@@ -73,7 +82,7 @@ SCENES = {
 def test_plays_by_hand(scene: str) -> None:
     events, mines = SCENES[scene]
     one = play(events, mines=mines)
-    motion, image = (bake(chart(), p, pad()) for p in (one, mirrored_play(one, SINGLE)))
+    motion, image = (bake(chart().timing, p, pad()) for p in (one, mirrored_play(one, SINGLE)))
     for part, (far, turned) in apart(motion, mirrored_motion(image)).items():
         assert far < MOST_MM and turned < MOST_DEGREES, f"{part}: {far:.2f} mm, {turned:.2f} degrees"
 
@@ -83,7 +92,7 @@ def test_any_gallop_leans_whoever_leads_the_song() -> None:
     leans = []
     for first, second, columns in ((L, R, (1, 3)), (R, L, (1, 0))):
         events = [(2.0, {0: L}), (2.5, {3: R}), (4.0, {columns[0]: first}), (4.1, {columns[1]: second})]
-        plan = plan_of(chart(), play(events), pad())
+        plan = plan_of(chart().timing, play(events), pad())
         assert plan.lead == 0
         leans.append(jump_lean(plan, np.arange(3.0, 5.0, 0.01), default_settings().jump))
     assert np.abs(leans[0]).max() > np.radians(1.0)
@@ -91,11 +100,9 @@ def test_any_gallop_leans_whoever_leads_the_song() -> None:
 
 
 def test_the_foot_that_steps_first_leads_and_she_comes_from_its_side() -> None:
-    asked = ask(BakeTask(DEMO, Selection(index=3), "thesis"))
-    columns = asked.pad.mirrored(left_right=True)
-    assert columns is not None
-    for one, lead in ((asked.play, 0), (mirrored_play(asked.play, columns), 1)):
-        plan = plan_of(asked.chart, one, asked.pad)
+    timing, played, own, columns = mirrorable(DEMO, 3)
+    for one, lead in ((played, 0), (mirrored_play(played, columns), 1)):
+        plan = plan_of(timing, one, own)
         alone = next(limbs[limbs >= 0] for limbs in one.limb if (limbs >= 0).sum() == 1)
         assert plan.lead == lead == alone[0]
         assert [np.sign(track.start[0]) for track in plan.feet] == [1 - 2 * lead] * 2
@@ -104,7 +111,7 @@ def test_the_foot_that_steps_first_leads_and_she_comes_from_its_side() -> None:
 def test_the_mirror_sees_a_difference() -> None:
     """The test itself: a foot that is not mirrored is told."""
     one = play(stream(2.0, 8, 0.5))
-    motion = bake(chart(), one, pad())
+    motion = bake(chart().timing, one, pad())
     assert apart(motion, mirrored_motion(motion))["legs"][0] > 50.0
     moved = replace(motion, root=motion.root + np.array([0.002, 0.0, 0.0]))
     assert apart(motion, moved)["root"][0] == pytest.approx(2.0)

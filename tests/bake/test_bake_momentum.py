@@ -34,7 +34,7 @@ def test_the_whole_body_turns_less_than_with_a_stiff_chest() -> None:
     dance = play([e for e in MEDLEY if e[0] < 11.5])
     settings = default_settings()
     stiff = replace(settings, arms=replace(settings.arms, twist=0.0))
-    loose, still = (momentum(bake(chart(), dance, pad(), settings=s), 2.0, 11.5) for s in (settings, stiff))
+    loose, still = (momentum(bake(chart().timing, dance, pad(), settings=s), 2.0, 11.5) for s in (settings, stiff))
     assert np.sqrt(np.mean(loose**2)) < 0.9 * np.sqrt(np.mean(still**2))
 
 
@@ -44,7 +44,7 @@ def test_the_chest_does_not_turn_far_for_it() -> None:
     at = np.arange(2.0, 11.5, 0.02)
     yaws = []
     for arms in (settings.arms, replace(settings.arms, twist=0.0)):
-        motion = bake(chart(), dance, pad(), settings=replace(settings, arms=arms))
+        motion = bake(chart().timing, dance, pad(), settings=replace(settings, arms=arms))
         places, _ = world_transforms(motion.skeleton, *sample(motion, at))
         across = places[:, motion.skeleton.index("l_shoulder")] - places[:, motion.skeleton.index("r_shoulder")]
         yaws.append(np.arctan2(-across[:, 2], across[:, 0]))
@@ -55,8 +55,8 @@ def test_the_chest_does_not_turn_far_for_it() -> None:
 def test_the_weight_makes_up_for_legs_that_swing(monkeypatch: pytest.MonkeyPatch) -> None:
     """In a stream the ground has less to supply that it cannot, and her hips are no more jerked for it."""
     dance = play([(1.0 + 0.14 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
-    with_it = report(bake(chart(), dance, pad()))
+    with_it = report(bake(chart().timing, dance, pad()))
     monkeypatch.setattr(settle, "moved_by_turning", lambda _, places, *rest: np.zeros((len(places), 2)))
-    without = report(bake(chart(), dance, pad()))
+    without = report(bake(chart().timing, dance, pad()))
     assert with_it["residual moment, median"].value < 0.9 * without["residual moment, median"].value
     assert with_it["jerk of the root"].value < without["jerk of the root"].value

@@ -24,7 +24,7 @@ def danced(events: list[Event], mines: dict[int, list[int]], double: bool = Fals
 
 
 def planned(steps: Play, double: bool = False) -> Plan:
-    plan = plan_of(chart(), steps, pad(double))
+    plan = plan_of(chart().timing, steps, pad(double))
     for track in plan.feet:
         for before, after in pairwise(track.moves):
             assert before.lift < before.land <= after.lift + 1e-9
@@ -37,7 +37,7 @@ def flights(plan: Plan) -> np.ndarray:
 
 
 def meets(steps: Play, double: bool = False) -> None:
-    measured = report(bake(chart(), steps, pad(double)), mines_of(steps, pad(double)))
+    measured = report(bake(chart().timing, steps, pad(double)), mines_of(steps, pad(double)))
     assert [f for f in measured.figures if f.name in CLEAR and f.met is False] == []
     assert np.abs(measured.contact_errors).max() < 1.0
 
@@ -158,7 +158,7 @@ def test_in_the_fastest_streams_one_foot_is_on_the_ground(gap: float) -> None:
 def test_notes_of_one_foot_a_few_milliseconds_apart_are_two_swings() -> None:
     steps = play([*ROWS, (2.0, {2: L}), (2.0 + 1 / 96, {0: L}), (2.5, {3: R})])
     planned(steps)
-    assert np.abs(report(bake(chart(), steps, pad())).contact_errors).max() < 1.0
+    assert np.abs(report(bake(chart().timing, steps, pad())).contact_errors).max() < 1.0
 
 
 def test_a_foot_that_has_just_landed_taps_where_it_is() -> None:
@@ -167,7 +167,7 @@ def test_a_foot_that_has_just_landed_taps_where_it_is() -> None:
     first, again = [move for move in planned(steps).feet[0].moves if 1.9 < move.land < 2.1]
     assert (again.target, again.yaw) == (first.target, first.yaw)
     meets(steps)
-    measured = report(bake(chart(), steps, pad()))
+    measured = report(bake(chart().timing, steps, pad()))
     assert measured["plant slide"].met
 
 
@@ -190,7 +190,7 @@ def test_the_first_step_after_a_walk_goes_around_the_other_foot() -> None:
 @pytest.mark.parametrize("gap", [0.3, 0.4, 0.5])
 def test_ankles_stand_a_jump_with_half_a_turn(gap: float) -> None:
     rows: list[Event] = [(1.0, {0: L, 3: R}), (2.0, {0: L, 3: R}), (2.0 + gap, {3: L, 0: R}), (4.0, {0: L, 3: R})]
-    measured = report(bake(chart(), play(rows), pad()))
+    measured = report(bake(chart().timing, play(rows), pad()))
     assert measured["frames past joint limits"].value == 0, measured.notes
 
 
@@ -231,7 +231,7 @@ def test_a_heel_stays_as_it_is_between_a_landing_and_the_next_moment() -> None:
 @pytest.mark.parametrize("gap", [0.25, 0.31])
 def test_ankles_stand_a_step_with_half_a_turn(gap: float) -> None:
     events: list[Event] = [(1.0, {5: L}), (1.5, {7: R}), (1.66, {4: R}), (1.66 + gap, {6: L}), (3.0, {7: R})]
-    measured = report(bake(chart(), play(events, double=True), pad(True)))
+    measured = report(bake(chart().timing, play(events, double=True), pad(True)))
     assert measured["frames past joint limits"].value == 0, measured.notes
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +11,8 @@ from bake_plays import MEDLEY, chart, pad, play, stream
 from dancetutor_cli.bake import bake, pieces, plan_of, report
 from dancetutor_cli.bake.pieces import piece_ends, trimmed
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.dance.performance import pooled
 from dancetutor_cli.formats.glb import write_glb
-from dancetutor_cli.jobs.bake import _shared
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.settings import default_settings
 from dancetutor_cli.motion.swing.foot_path import foot_path
@@ -32,7 +31,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def whole() -> Motion:
-    return bake(chart(), play(EVENTS), pad())
+    return bake(chart().timing, play(EVENTS), pad())
 
 
 def places(motion: Motion) -> np.ndarray:
@@ -40,9 +39,9 @@ def places(motion: Motion) -> np.ndarray:
 
 
 def test_pieces_join_to_what_is_baked_whole(whole: Motion, short: None) -> None:
-    plan = plan_of(chart(), play(EVENTS), pad())
+    plan = plan_of(chart().timing, play(EVENTS), pad())
     assert len(piece_ends(plan, whole.times[0], whole.times[-1])) > 2
-    parts = bake(chart(), play(EVENTS), pad())
+    parts = bake(chart().timing, play(EVENTS), pad())
     np.testing.assert_array_equal(parts.times, whole.times)
     away = np.linalg.norm(places(parts) - places(whole), axis=2)
     braid = np.array([name.startswith("braid") for name in whole.skeleton.names])
@@ -55,7 +54,7 @@ def test_pieces_join_to_what_is_baked_whole(whole: Motion, short: None) -> None:
 
 
 def test_pieces_end_where_nobody_moves(short: None) -> None:
-    plan = plan_of(chart(), play(EVENTS), pad())
+    plan = plan_of(chart().timing, play(EVENTS), pad())
     for end in piece_ends(plan, 0.0, 50.0)[1:-1]:
         swings = [s for track in plan.feet for s in track.moves]
         assert not any(s.lift < end < s.land for s in swings)
@@ -63,13 +62,13 @@ def test_pieces_end_where_nobody_moves(short: None) -> None:
 
 
 def test_any_number_of_processes_gives_the_same_bytes(short: None) -> None:
-    alone, shared = (bake(chart(), play(EVENTS), pad(), each=partial(_shared, jobs)) for jobs in (1, 2))
+    alone, shared = (bake(chart().timing, play(EVENTS), pad(), each=pooled(jobs)) for jobs in (1, 2))
     assert alone.rotations.tobytes() == shared.rotations.tobytes()
     assert alone.root.tobytes() == shared.root.tobytes() and alone.times.tobytes() == shared.times.tobytes()
 
 
 def test_a_trimmed_plan_says_the_same() -> None:
-    plan = plan_of(chart(), play(EVENTS), pad())
+    plan = plan_of(chart().timing, play(EVENTS), pad())
     part = trimmed(plan, 20.0, 30.0)
     times = np.linspace(20.0, 30.0, 500)
     assert len(part.feet[0].moves) < len(plan.feet[0].moves) / 2
@@ -81,7 +80,7 @@ def test_a_trimmed_plan_says_the_same() -> None:
 
 
 def test_two_minutes_of_twelve_steps_a_second_make_a_small_glb(tmp_path: Path) -> None:
-    motion = bake(chart(), play(stream(2.0, 1416, 1 / 12)), pad(), section=(0.0, 120.0))
+    motion = bake(chart().timing, play(stream(2.0, 1416, 1 / 12)), pad(), section=(0.0, 120.0))
     write_glb(tmp_path / "still.glb", load_dancer())
     write_glb(tmp_path / "dances.glb", load_dancer(), motion)
     assert (tmp_path / "dances.glb").stat().st_size - (tmp_path / "still.glb").stat().st_size < 5_000_000

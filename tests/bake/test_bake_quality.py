@@ -23,7 +23,7 @@ GOALS = (
 
 @pytest.fixture(scope="module")
 def steps() -> Motion:
-    return bake(chart(), play([*MEDLEY[:14], *stream(8.0, 20, 0.15)]), pad())
+    return bake(chart().timing, play([*MEDLEY[:14], *stream(8.0, 20, 0.15)]), pad())
 
 
 @pytest.fixture(scope="module")
@@ -96,16 +96,18 @@ def test_a_broken_knee_is_past_its_limit(steps: Motion) -> None:
 def test_a_foot_that_stays_on_a_mine_is_counted() -> None:
     events = [(1.0, {0: L}), (1.5, {3: R}), (2.5, {}), (3.5, {0: L})]
     away = play(events, mines={2: [0]})
-    motion = bake(chart(), away, pad())
+    motion = bake(chart().timing, away, pad())
     assert report(motion, mines_of(away, pad()))["feet on mines"].value == 0
-    stays = bake(chart(), play([e for e in events if e[1]]), pad())
+    stays = bake(chart().timing, play([e for e in events if e[1]]), pad())
     bad = report(stays, mines_of(away, pad()))
     assert bad["feet on mines"].value == 1
     assert any(note.startswith("a foot is on a mine as it passes, or less than 3 cm over: ") for note in bad.notes)
 
 
 def test_hands_hit(steps: Motion) -> None:
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {0: L, 3: R, 2: RH}), (4.5, {0: L})]), pad())
+    motion = bake(
+        chart().timing, play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {0: L, 3: R, 2: RH}), (4.5, {0: L})]), pad()
+    )
     measured = report(motion)
     assert measured["contact error"].met and measured["contacts missed"].value == 0
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +26,8 @@ def at_rate(rate: float) -> tuple[Motion, Play]:
     """As `animate --rate` does: the rows' seconds are those of the music as it is played."""
     fast = play(JUMPS)
     fast = replace(fast, rows=replace(fast.rows, second=fast.rows.second / rate))
-    return bake(chart(), fast, pad(), rate=rate), fast
+    timing: Any = SimpleNamespace(seconds=lambda ticks: chart().timing.seconds(ticks) / rate)
+    return bake(timing, fast, pad()), fast
 
 
 @pytest.mark.parametrize("rate", [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0])

@@ -12,7 +12,7 @@ from dancetutor_cli.motion.swing.foot_path import both_feet
 
 
 def settled(events: list, until: float) -> Settled:  # type: ignore[type-arg]
-    plan, context = planned(chart(), play(events), pad())
+    plan, context = planned(chart().timing, play(events), pad())
     grid = np.arange(240.0, 240.0 * until) / 240.0
     return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)
 

@@ -33,7 +33,7 @@ BOTH = [f"{side}_{joint}" for side in "lr" for joint in ("radiocarpal", "talocru
 
 @pytest.fixture(scope="module")
 def walked() -> Motion:
-    return bake(chart(), play(EVENTS), pad())
+    return bake(chart().timing, play(EVENTS), pad())
 
 
 def soles(motion: Motion, times: np.ndarray) -> np.ndarray:
@@ -74,12 +74,12 @@ def _turning(points: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("gait", ["flat", "heels"])
 def test_every_goal_is_met(gait: str) -> None:
-    measured = report(bake(chart(), play(EVENTS), pad(), gait=gait))
+    measured = report(bake(chart().timing, play(EVENTS), pad(), gait=gait))
     assert [f for f in measured.figures if f.met is False] == [], measured.notes
 
 
 def test_without_time_she_stands_there() -> None:
-    plan = plan_of(chart(), play(stream(1.5, 8, 0.4)), pad())
+    plan = plan_of(chart().timing, play(stream(1.5, 8, 0.4)), pad())
     assert all(walk.start > plan.last for walk in plan.walks)
     assert np.abs(plan.feet[0].start).max() < 0.2
 
@@ -96,7 +96,7 @@ def test_both_gaits_are_blended_at_one_normalised_time() -> None:
 
 
 def test_steps_last_half_a_blended_cycle() -> None:
-    plan = plan_of(chart(), play(EVENTS), pad())
+    plan = plan_of(chart().timing, play(EVENTS), pad())
     for walk in plan.walks:
         period = blended(*load_gait("flat"), walk.share).period
         np.testing.assert_allclose(np.diff(walk.landings), period / 2)
@@ -104,7 +104,7 @@ def test_steps_last_half_a_blended_cycle() -> None:
 
 def test_a_walk_goes_through_its_cycle_at_an_even_pace() -> None:
     """Each foot lands at its normalised time, and what is between has the blended length of the cycle."""
-    plan = plan_of(chart(), play(EVENTS), pad())
+    plan = plan_of(chart().timing, play(EVENTS), pad())
     walk = plan.walks[0]
     period = blended(*load_gait("flat"), walk.share).period
     at = np.arange(walk.start + WALK.fade, walk.end - WALK.fade, 0.01)
@@ -131,8 +131,8 @@ def test_on_her_way_she_looks_where_she_goes(walked: Motion) -> None:
     assert (np.abs(coming[:, 1] - coming[:, 0]) < 15.0).all() and (coming[:, 0] < -75.0).all()
     assert (coming[:, 2] < -55.0).all() and (coming[:, 2] > -85.0).all()
     assert (np.abs(facings(walked, [2.7])) < 12.0).all(), "and then at the screen"
-    over = bake(chart(), play(OVER, double=True), pad(double=True))
-    walk = next(w for w in plan_of(chart(), play(OVER, double=True), pad(double=True)).walks if w.start > 5.0)
+    over = bake(chart().timing, play(OVER, double=True), pad(double=True))
+    walk = next(w for w in plan_of(chart().timing, play(OVER, double=True), pad(double=True)).walks if w.start > 5.0)
     between = facings(over, [float(np.mean(walk.landings[:2]))])[0]
     assert abs(between[0]) > 25.0 and abs(between[2]) < 15.0, "between the pads she keeps to the screen"
 
@@ -150,8 +150,8 @@ def test_hands_swing_before_and_behind_against_the_feet(walked: Motion) -> None:
 
 
 def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
-    flat, heels = (bake(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels"))
-    plans = [plan_of(chart(), play(EVENTS), pad(), gait=g) for g in ("flat", "heels")]
+    flat, heels = (bake(chart().timing, play(EVENTS), pad(), gait=g) for g in ("flat", "heels"))
+    plans = [plan_of(chart().timing, play(EVENTS), pad(), gait=g) for g in ("flat", "heels")]
     steps = [[s.target for s in plan.feet[0].moves if isinstance(s, Walk)] for plan in plans]
     np.testing.assert_allclose(steps[0], steps[1])
     at = np.arange(0.6, 1.9, 0.02)
@@ -170,8 +170,8 @@ def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
 
 
 def test_she_walks_over_to_the_other_pad() -> None:
-    motion = bake(chart(), play(OVER, double=True), pad(double=True))
-    plan = plan_of(chart(), play(OVER, double=True), pad(double=True))
+    motion = bake(chart().timing, play(OVER, double=True), pad(double=True))
+    plan = plan_of(chart().timing, play(OVER, double=True), pad(double=True))
     between = [w for w in plan.walks if w.start > 5.0 and w.end < 9.0]
     assert len(between) == 1
     measured = report(motion)
@@ -185,7 +185,7 @@ def test_she_walks_over_to_the_other_pad() -> None:
 
 def test_she_stays_while_a_foot_holds_or_a_mine_passes() -> None:
     def between(**more) -> int:  # type: ignore[no-untyped-def]
-        plan = plan_of(chart(), play(sorted([*OVER, (6.5, {})]), double=True, **more), pad(double=True))
+        plan = plan_of(chart().timing, play(sorted([*OVER, (6.5, {})]), double=True, **more), pad(double=True))
         return sum(w.start > 5.0 and w.end < 9.0 for w in plan.walks)
 
     assert between() == 1
@@ -200,7 +200,7 @@ def test_she_walks_on_in_the_demo_song(gait: str) -> None:
     for wanted in song.charts:
         real, own = solve_chart(wanted, load_preset("itg")), load_pad(wanted.steps_type)
         assert real is not None and own is not None
-        walks = plan_of(wanted, real, own, gait=gait).walks
+        walks = plan_of(wanted.timing, real, own, gait=gait).walks
         assert [w.end < 2.0 for w in walks] == [True, False], wanted.label
 
 
@@ -210,10 +210,10 @@ def test_she_comes_from_either_side_and_from_the_same_one_for_the_same_notes() -
     for first in np.arange(3.0, 4.0, 0.1):
         events = stream(float(first), 6, 0.4)
         swapped = [(time, {(3, 1, 2, 0)[c]: {L: R, R: L}[limb] for c, limb in row.items()}) for time, row in events]
-        plan, image = plan_of(chart(), play(events), pad()), plan_of(chart(), play(swapped), pad())
+        plan, image = plan_of(chart().timing, play(events), pad()), plan_of(chart().timing, play(swapped), pad())
         assert (
             side_of(plan, context())
-            == side_of(plan_of(chart(), play(events), pad()), context())
+            == side_of(plan_of(chart().timing, play(events), pad()), context())
             == 1 - side_of(image, context())
         )
         came = [float(np.sign(p.feet[0].start[0])) for p in (plan, image)]

@@ -46,7 +46,7 @@ def share_in_hull(body: Body, start: float, end: float) -> float:
 @pytest.mark.parametrize("gap", [0.125, 0.16, 0.25])
 def test_the_weight_is_over_the_soles_in_streams(gap: float) -> None:
     events = stream(1.0, round(6.0 / gap), gap)
-    assert share_in_hull(body_of(bake(chart(), play(events), pad())), 1.0, events[-1][0]) > 0.98
+    assert share_in_hull(body_of(bake(chart().timing, play(events), pad())), 1.0, events[-1][0]) > 0.98
 
 
 def across_both_pads(gap: float) -> list[Event]:
@@ -57,14 +57,14 @@ def across_both_pads(gap: float) -> list[Event]:
 def test_the_weight_does_not_leave_feet_that_stand_aslant() -> None:
     """A box around both soles would allow much that no sole does: 98.2 % with limits along the two axes only."""
     events = across_both_pads(0.2)
-    assert share_in_hull(body_of(bake(chart(), play(events, True), pad(True))), 1.0, events[-1][0]) > 0.986
+    assert share_in_hull(body_of(bake(chart().timing, play(events, True), pad(True))), 1.0, events[-1][0]) > 0.986
 
 
 def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pytest.MonkeyPatch) -> None:
     danced = play(across_both_pads(0.2), True)
 
     def balance() -> float:
-        return report(bake(chart(), danced, pad(True)))["balance below 10 Hz"].value
+        return report(bake(chart().timing, danced, pad(True)))["balance below 10 Hz"].value
 
     with_it = balance()
     monkeypatch.setattr(importlib.import_module("dancetutor_cli.bake.settle"), "TIGHTENED", 0)
@@ -74,7 +74,7 @@ def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pyte
 def travelled(danced: list[tuple[float, dict[int, int]]], on_the_way: float) -> float:
     """How far both feet go in a plan, metres."""
     settings = replace(SETTINGS, step=replace(SETTINGS.step, on_the_way=on_the_way))
-    plan = plan_of(chart(), play(danced), pad(), settings=settings)
+    plan = plan_of(chart().timing, play(danced), pad(), settings=settings)
     first, last = danced[0][0] + 0.01, danced[-1][0] + 0.01
     total = 0.0
     for track in plan.feet:
@@ -99,7 +99,7 @@ def test_slow_feet_stand_on_the_middle_of_their_panels() -> None:
 def test_a_foot_that_has_turned_leaves_as_early_as_one_that_has_not() -> None:
     """Crossing to and fro in a stream: standing feet turn on their balls, and still swing as long as they can."""
     danced = [(1.0 + 0.15 * k, {(0, 2, 3, 1, 0, 3)[k % 6]: (L, R)[k % 2]}) for k in range(36)]
-    plan = plan_of(chart(), play(danced), pad())
+    plan = plan_of(chart().timing, play(danced), pad())
     turned = quick = 0
     for track in plan.feet:
         for before, swing in zip(track.moves, track.moves[1:], strict=False):
@@ -113,7 +113,7 @@ def test_a_foot_that_has_turned_leaves_as_early_as_one_that_has_not() -> None:
 @pytest.mark.parametrize("gap", [0.5, 0.2, 0.125])
 def test_she_stands_tall_at_any_pace(gap: float) -> None:
     """As stamina players do: knees a little bent, and in streams a little lean."""
-    motion = bake(chart(), play(stream(1.0, 36, gap)), pad(), section=(1.5, 1.0 + 35 * gap))
+    motion = bake(chart().timing, play(stream(1.0, 36, gap)), pad(), section=(1.5, 1.0 + 35 * gap))
     body = body_of(motion)
     assert 18.0 < np.median(180.0 - knee_angles(body, motion.skeleton)) < 36.0
     assert 3.0 < np.median(trunk_lean(body, motion.skeleton)) < 12.0
@@ -121,7 +121,7 @@ def test_she_stands_tall_at_any_pace(gap: float) -> None:
 
 def test_legs_drive_a_jump_and_give_after_it() -> None:
     """Knees open as the toes leave, fold in the air, and give on landing; a quick one stays small."""
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {1: L, 2: R}), (4.5, {0: L, 3: R})]), pad())
+    motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {1: L, 2: R}), (4.5, {0: L, 3: R})]), pad())
     body = body_of(motion)
     jumps = jump_knees(body, 180.0 - knee_angles(body, motion.skeleton))
     assert len(jumps) == 2
@@ -136,7 +136,7 @@ def test_legs_drive_a_jump_and_give_after_it() -> None:
 
 def test_both_legs_push_where_she_stands_nearer_to_one_foot() -> None:
     """Aside of the middle as she takes off for a jump to the side: no knee stays bent, and she falls as things fall."""
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {2: R}), (3.0, {2: L, 3: R}), (4.5, {0: L, 2: R})]), pad())
+    motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {2: R}), (3.0, {2: L, 3: R}), (4.5, {0: L, 2: R})]), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
     off = [knees[first - 1] for first, end in intervals(~body.standing.any(axis=1)) if end - first > 6]
@@ -146,7 +146,7 @@ def test_both_legs_push_where_she_stands_nearer_to_one_foot() -> None:
 
 
 def test_she_crouches_before_a_jump_and_after_it() -> None:
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {1: L, 2: R}), (4.5, {0: L})]), pad())
+    motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {1: L, 2: R}), (4.5, {0: L})]), pad())
     body = body_of(motion)
     height, times = body.joints[:, 0, 1], body.times
     stands = np.median(height[(times > 1.8) & (times < 2.2)])
@@ -162,7 +162,7 @@ def test_close_jumps_leave_no_time_to_crouch() -> None:
 
     def dip(gap: float) -> float:
         events = [(1.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
-        body = body_of(bake(chart(), play(events), pad()))
+        body = body_of(bake(chart().timing, play(events), pad()))
         inside = (body.times > 1.0 + gap) & (body.times < 1.0 + 6 * gap) & body.standing.any(axis=1)
         return float(SETTINGS.body.leg + 0.09 - np.percentile(body.joints[inside, 0, 1], 5))
 
@@ -174,7 +174,7 @@ def test_a_spine_is_not_wrung_in_a_spin() -> None:
     events = [(1.0 + 0.25 * k, {(0, 1, 3, 2)[k % 4]: (L, R)[k % 2]}) for k in range(12)]
     turning = play(events)
     turning.facing[:] = -90.0 * np.arange(12)  # once round in a second, three times, as those feet go round each other
-    body = body_of(bake(chart(), turning, pad()))
+    body = body_of(bake(chart().timing, turning, pad()))
 
     skeleton = dancer_skeleton()
 
@@ -190,7 +190,7 @@ def test_in_quick_jumps_the_foot_with_the_longer_way_leaves_first() -> None:
     """Jumps between steps at six rows a second: right stays on its panel, left has a way to go; slow ones do not."""
     for gap, staggered in ((0.17, True), (0.6, False)):
         pressed = ({0: L, 3: R}, {2: L}, {1: L, 3: R}, {0: L})
-        plan = plan_of(chart(), play([(1.0 + gap * k, pressed[k % 4]) for k in range(16)]), pad())
+        plan = plan_of(chart().timing, play([(1.0 + gap * k, pressed[k % 4]) for k in range(16)]), pad())
         jumps = [[s for s in track.moves if isinstance(s, Jump) and s.land > 1.5] for track in plan.feet]
         pairs = [(a, b) for a in jumps[0] for b in jumps[1] if a.land == b.land]
         assert len(pairs) >= 6
@@ -201,7 +201,7 @@ def test_a_foot_that_steps_on_its_own_panel_again_hardly_moves() -> None:
     """It lands near the edge in a stream, and taps there again at leisure."""
     danced = [*stream(1.0, 13, 0.125), (2.9, {0: L}), (3.3, {0: L})]
     assert danced[12][1] == {0: L}
-    swings = [s for s in plan_of(chart(), play(danced), pad()).feet[0].moves if 2.45 < s.land < 3.0]
+    swings = [s for s in plan_of(chart().timing, play(danced), pad()).feet[0].moves if 2.45 < s.land < 3.0]
     before, again = swings[0], swings[-1]
     assert before.land < again.land == pytest.approx(2.9)
     assert np.hypot(*(np.array(again.target) - np.array(before.target))) < 0.05
@@ -210,4 +210,4 @@ def test_a_foot_that_steps_on_its_own_panel_again_hardly_moves() -> None:
 def test_nobody_sinks_into_the_pad_for_a_palm_out_of_reach() -> None:
     """Feet on the left pad's left side, a hand on the right pad's right panel: 1.4 metres away."""
     danced = play([(2.0, {0: L}), (2.5, {1: R}), (4.5, {0: L, 1: R, 7: RH}), (6.5, {0: L})], True)
-    assert body_of(bake(chart(), danced, pad(True))).joints[:, 0, 1].min() > 0.2
+    assert body_of(bake(chart().timing, danced, pad(True))).joints[:, 0, 1].min() > 0.2

@@ -26,7 +26,9 @@ def check(motion: Motion) -> None:
 
 def test_a_step_across_both_pads_is_a_leap() -> None:
     """From the left pad's left panel and middle to the right pad's right one: 1.4 metres in one step."""
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {1: R}), (2.5, {7: R}), (3.5, {6: L})], double=True), pad(True))
+    motion = bake(
+        chart().timing, play([(1.0, {0: L}), (1.5, {1: R}), (2.5, {7: R}), (3.5, {6: L})], double=True), pad(True)
+    )
     check(motion)
     body = body_of(motion)
     before = (body.times > 2.1) & (body.times < 2.5)
@@ -40,7 +42,7 @@ def test_a_step_across_both_pads_is_a_leap() -> None:
 def test_a_foot_that_taps_three_panels_away_steps_inward() -> None:
     """The other one holds; stepped on in the middle she squats between the two, on ankles bent too far aside."""
     events = [(1.0, {3: L}), *((1.5 + 0.18 * k, {7: R}) for k in range(9))]
-    motion = bake(chart(), play(events, double=True, holds={(0, 3): 4.0}), pad(True))
+    motion = bake(chart().timing, play(events, double=True, holds={(0, 3): 4.0}), pad(True))
     check(motion)
     body = body_of(motion)
     assert body.joints[(body.times > 1.5) & (body.times < 3.0), 0, 1].min() > 0.66  # 0.55 on the panel's middle
@@ -50,10 +52,10 @@ def test_a_bracket_across_her_lies_askew() -> None:
     """Heel to the right and toes to the left while she faces the screen: as far as hips and ankles turn."""
     parts = {(1, 3): Part.TOE, (1, 4): Part.HEEL}
     danced = play([(1.0, {5: R}), (1.6, {3: L, 4: L}), (2.2, {5: R})], double=True, brackets=parts)
-    plan = plan_of(chart(), danced, pad(True))
+    plan = plan_of(chart().timing, danced, pad(True))
     toes = [move.yaw for move in plan.feet[0].moves if move.land == pytest.approx(1.6)]
     assert np.degrees(toes) == pytest.approx([90.0 - SETTINGS.step.bracket_askew])
-    measured = report(bake(chart(), danced, pad(True)))
+    measured = report(bake(chart().timing, danced, pad(True)))
     assert np.abs(measured.contact_errors).max() < 1.0 and measured["frames past joint limits"].value == 0.0
 
 
@@ -61,13 +63,13 @@ def test_a_bracket_across_her_lies_askew() -> None:
 def test_a_footswitch_finds_room_on_its_panel(column: int) -> None:
     other = {1: 0, 2: 0, 3: 0}[column]
     events = [(1.0, {other: L}), (1.5, {column: R}), (2.0, {column: L}), (2.5, {other: R}), (3.0, {column: L})]
-    check(bake(chart(), play(events), pad()))
+    check(bake(chart().timing, play(events), pad()))
 
 
 def test_a_heel_taps_beside_the_hold_of_its_toes() -> None:
     events = [(1.0, {3: R}), (1.5, {0: L}), (2.0, {1: L}), (2.5, {3: R})]
     danced = play(events, holds={(1, 0): 2.25}, brackets={(2, 1): Part.HEEL})
-    motion = bake(chart(), danced, pad())
+    motion = bake(chart().timing, danced, pad())
     assert np.abs(report(motion).contact_errors).max() < 1.0  # nan, a miss, fails too
 
 
@@ -86,7 +88,7 @@ def test_only_runs_of_fast_jumps_are_exempt_from_the_jerk() -> None:
 
 def test_exempt_frames_are_left_out_and_noted() -> None:
     run = [(3.0 + 0.18 * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(10)]
-    motion = bake(chart(), play([(1.0, {0: L}), (1.5, {3: R}), *run, (7.0, {0: L}), (8.0, {3: R})]), pad())
+    motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {3: R}), *run, (7.0, {0: L}), (8.0, {3: R})]), pad())
     measured, body = report(motion), body_of(motion)
     assert any("exempt" in note for note in measured.notes)
     assert measured["jerk of the root"].value < jerk(body.joints[:, 0], body.rate).mean()
@@ -95,11 +97,11 @@ def test_exempt_frames_are_left_out_and_noted() -> None:
 def test_a_heel_taps_beside_its_hold_while_the_other_foot_jumps_too() -> None:
     events = [(1.0, {3: R}), (1.5, {0: L}), (2.0, {1: L, 2: R}), (2.5, {3: R})]
     danced = play(events, holds={(1, 0): 2.0}, brackets={(2, 1): Part.HEEL})
-    assert np.abs(report(bake(chart(), danced, pad())).contact_errors).max() < 1.0
+    assert np.abs(report(bake(chart().timing, danced, pad())).contact_errors).max() < 1.0
 
 
 def test_heel_and_toes_tap_two_rolls_by_turns() -> None:
     """Taps of two rolls under one foot, heel and toes alone each time: the foot stays over both panels."""
     events = [(1.0, {0: L}), *((1.5 + 0.125 * k, {(2, 3)[k % 2]: R}) for k in range(8)), (3.0, {0: L})]
     parts = {(1 + k, (2, 3)[k % 2]): (Part.TOE, Part.HEEL)[k % 2] for k in range(8)}
-    check(bake(chart(), play(events, brackets=parts), pad()))
+    check(bake(chart().timing, play(events, brackets=parts), pad()))

@@ -12,13 +12,14 @@ import module_file
 import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
+from dance_requests import animated
 
 from dancetutor_cli.bake import MotionReport, bake, report
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.formats.glb import write_glb
-from dancetutor_cli.jobs.bake import BakeTask, ask
-from dancetutor_cli.jobs.baked_dance import BakedDance
+from dancetutor_cli.jobs.animation import AnimatedDancer
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.resources import charts_path
@@ -54,25 +55,24 @@ def tool() -> SimpleNamespace:
 
 
 @pytest.fixture(scope="module")
-def dance() -> BakedDance:
+def dance() -> AnimatedDancer:
     song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
-    task = BakeTask(song, Selection(index=2), section=SECTION, fps=FPS)
-    return BakedDance(ask(task), task, load_dancer())
+    return AnimatedDancer(animated(DanceRequest(song, Selection(index=2), fps=FPS), SECTION), 0, load_dancer())
 
 
 @pytest.fixture(scope="module")
-def told(dance: BakedDance) -> MotionReport:
-    return report(dance.own_motion)
+def told(dance: AnimatedDancer) -> MotionReport:
+    return report(dance.baked.motion)
 
 
-def judged(tool: SimpleNamespace, dance: BakedDance, motion: Motion, folder: Path) -> Rows:
+def judged(tool: SimpleNamespace, dance: AnimatedDancer, motion: Motion, folder: Path) -> Rows:
     path = folder / "dance.glb"
     write_glb(path, dance.character, motion)
     return {row.name.strip(): row for row in tool.figures.figures(tool.files.read_dance(path))}
 
 
 @pytest.fixture(scope="module")
-def good(tool: SimpleNamespace, dance: BakedDance, tmp_path_factory: pytest.TempPathFactory) -> Rows:
+def good(tool: SimpleNamespace, dance: AnimatedDancer, tmp_path_factory: pytest.TempPathFactory) -> Rows:
     return judged(tool, dance, dance.motion, tmp_path_factory.mktemp("good"))
 
 
@@ -96,7 +96,7 @@ def test_it_imports_nothing_of_the_package() -> None:
 
 
 def test_the_file_for_motion_capture_says_the_same(
-    tool: SimpleNamespace, dance: BakedDance, good: Rows, tmp_path: Path
+    tool: SimpleNamespace, dance: AnimatedDancer, good: Rows, tmp_path: Path
 ) -> None:
     write_bvh(tmp_path / "dance.bvh", dance.motion)
     rows = {row.name.strip(): row for row in tool.figures.figures(tool.files.read_dance(tmp_path / "dance.bvh"))}
@@ -153,18 +153,18 @@ def a_wrung_neck(motion: Motion) -> Motion:
     ],
 )
 def test_it_sees_what_was_spoilt(
-    tool: SimpleNamespace, dance: BakedDance, good: Rows, tmp_path: Path,
+    tool: SimpleNamespace, dance: AnimatedDancer, good: Rows, tmp_path: Path,
     spoilt: Callable[[Motion], Motion], name: str, least: float, row: str,
 ) -> None:  # fmt: skip
     rows = judged(tool, dance, spoilt(dance.motion), tmp_path)
     assert rows[name].value > least and rows[name].value != pytest.approx(good[name].value, rel=0.1)
     assert rows[name].met is not True and good[name].met is not False
-    said = report(spoilt(dance.own_motion))[row]
+    said = report(spoilt(dance.baked.motion))[row]
     assert said.met is False or (said.goal is None and said.value > least), said
 
 
 def test_a_wait_has_weight_in_it_and_a_frozen_one_none(tool: SimpleNamespace, tmp_path: Path) -> None:
-    waiting = bake(chart(), play([*stream(2.0, 8, 0.5), (9.9, {0: L}), (10.4, {3: R})]), pad())
+    waiting = bake(chart().timing, play([*stream(2.0, 8, 0.5), (9.9, {0: L}), (10.4, {3: R})]), pad())
     still = (waiting.times > 7.5) & (waiting.times < 9.4)  # between the step home and the next note's
     rotations, root = waiting.rotations.copy(), waiting.root.copy()
     rotations[still], root[still] = rotations[still][0], root[still][0]

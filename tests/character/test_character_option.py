@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 from glb_edit import edited
 from PIL import Image
 
@@ -19,7 +20,7 @@ from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.pads import load_pad
 from dancetutor_cli.rig.skeleton import Skeleton
@@ -135,7 +136,7 @@ def test_a_bad_character_is_one_line_before_the_work(
         raise AssertionError("work began")
 
     monkeypatch.setattr("dancetutor_cli.play.solver.solve", work)
-    monkeypatch.setattr("dancetutor_cli.bake.bake", work)
+    monkeypatch.setattr("dancetutor_cli.dance.performance.planned", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())
     for character, said in ((bad, "raylib_robot.glb"), ("nobody", "mannequin")):
@@ -153,7 +154,7 @@ def test_moves_have_no_character(song: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_the_key_of_a_film_knows_who_dances(song: Path, tmp_path: Path) -> None:
-    request = FilmRequest(song, Selection(), FilmLook(load_layout("highway"), (64, 64)), fps=12)
+    request = film_request(song, Selection(), FilmLook(load_layout("highway"), (64, 64)), fps=12)
     subject, encoding = look_up(request), Encoding("mp4", (64, 64), 12)
     files = [tmp_path / "a.glb", tmp_path / "b.glb", tmp_path / "c.glb"]
     for path, content in zip(files, (b"one", b"two", b"one"), strict=True):

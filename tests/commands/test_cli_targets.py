@@ -96,8 +96,7 @@ def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
     def bake(*_: object) -> None:
         raise AssertionError("the work was begun, and there is no place for it")
 
-    for module in ("page", "page_two"):
-        monkeypatch.setattr(f"dancetutor_cli.jobs.{module}.bake_asked", bake)
+    monkeypatch.setattr("dancetutor_cli.jobs.page.perform", bake)
     name = "two_left_feet-dance-single_hard_8.html"
     if players == 2:
         demo, name = Path("two.sm"), "two-dance-couple_hard_9.html"

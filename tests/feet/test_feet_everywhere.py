@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 
 import pytest
+from dance_requests import film_request, solved_one
 
 from dancetutor_cli.chart import load
 from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.played import Limb, Play
@@ -43,15 +43,15 @@ def test_analyze(song: Path) -> None:
 
 
 def test_animate(song: Path) -> None:
-    assert limbs(ask(BakeTask(song, Selection(), "thesis")).play) == MIRRORED
+    assert limbs(solved_one(song, Selection(), "thesis").play) == MIRRORED
 
 
 def test_render(song: Path) -> None:
     from dancetutor_cli.jobs import film_plan
-    from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+    from dancetutor_cli.jobs.film_request import look_up
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
 
-    request = FilmRequest(song, Selection(), FilmLook(load_layout("highway"), (64, 48)), fps=12, mute=True)
+    request = film_request(song, Selection(), FilmLook(load_layout("highway"), (64, 48)), fps=12, mute=True)
     prepared = film_plan.prepare(request, look_up(request))
     assert [int(limb) for limb in prepared.plan.notes.limb] == MIRRORED

@@ -11,6 +11,7 @@ import pytest
 
 from dancetutor_cli.bake import bake, plan_of
 from dancetutor_cli.chart import load
+from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.moves_json import moves_data, write_moves
 from dancetutor_cli.formats.npz import read_npz, write_npz
@@ -30,7 +31,7 @@ def demo():  # type: ignore[no-untyped-def]
 
 
 def test_npz_gives_back_the_motion(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    motion = bake(*demo, section=(2.0, 6.0))
+    motion = bake(demo[0].timing, *demo[1:], section=(2.0, 6.0))
     write_npz(tmp_path / "a.npz", motion)
     back = read_npz(tmp_path / "a.npz")
     np.testing.assert_array_equal(back.rotations, motion.rotations)
@@ -49,7 +50,7 @@ def test_other_files_are_no_motion(tmp_path: Path) -> None:
 
 
 def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    plan = plan_of(*demo)
+    plan = plan_of(demo[0].timing, *demo[1:])
     write_moves(tmp_path / "m.json", moves_data(plan, "Two Left Feet", "x", (-1e9, 1e9)))
     data = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
     assert len(data["contacts"]) == int((demo[1].limb >= 0).sum())
@@ -63,7 +64,7 @@ def test_moves_name_every_step_and_join_up(demo, tmp_path: Path) -> None:  # typ
 
 
 def test_moves_of_a_section_begin_where_she_stands(demo) -> None:  # type: ignore[no-untyped-def]
-    plan = plan_of(*demo)
+    plan = plan_of(demo[0].timing, *demo[1:])
     for begin in (10.0, 17.3, 24.9):
         data = moves_data(plan, "", "", (begin, begin + 8.0))
         for limb in ("left_foot", "right_foot"):
@@ -79,7 +80,7 @@ def test_hands_reach_from_panel_to_panel(demo) -> None:  # type: ignore[no-untyp
         Press(10.5, 11.5, 1, (0.0, 0.28), lead=0.4),
         Press(14.0, 14.1, 0, (-0.28, 0.0), lead=0.7),
     )
-    data = moves_data(replace(plan_of(*demo), presses=presses), "", "", (-1e9, 1e9))
+    data = moves_data(replace(plan_of(demo[0].timing, *demo[1:]), presses=presses), "", "", (-1e9, 1e9))
     moves = [m for m in data["moves"] if m["limb"].endswith("hand")]
     right = [m for m in moves if m["limb"] == "right_hand"]
     assert [m["kind"] for m in right] == ["reach", "press", "reach", "press"]
@@ -114,7 +115,7 @@ def test_a_play_from_json_dances_the_same(demo, tmp_path: Path) -> None:  # type
     np.testing.assert_array_equal(back.limb, play.limb)
     np.testing.assert_array_equal(back.feet, play.feet)
     section = (24.0, 30.0)  # mines and rolls
-    first, second = (bake(chart, p, pad, section=section) for p in (play, back))
+    first, second = (bake(chart.timing, p, pad, section=section) for p in (play, back))
     np.testing.assert_array_equal(first.rotations, second.rotations)
 
 
@@ -145,8 +146,8 @@ def test_half_speed_keeps_gravity(demo) -> None:  # type: ignore[no-untyped-def]
     from dancetutor_cli.bake import report
 
     chart, play, pad = demo
-    slow = replace(play, rows=replace(play.rows, second=play.rows.second * 2))
-    motion = bake(chart, slow, pad, section=(10.0, 40.0), rate=0.5)
+    slow = chart.timing.at_rate(0.5)
+    motion = bake(slow, as_heard(play, slow), pad, section=(10.0, 40.0))
     measured = report(motion)
     assert measured["flights"].value > 0 and measured["flight gravity off by"].met
     assert measured["contact error"].met and measured["contacts missed"].value == 0

@@ -12,6 +12,7 @@ from glb_channels import channels_of
 from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.chart import load
+from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.pads import load_pad
@@ -51,8 +52,8 @@ def fast(faster: float = FASTER, **more: object) -> Motion:
     chart = next(c for c in song.charts if c.difficulty == "Challenge")
     play, pad = solve_chart(chart, load_preset("itg")), load_pad(chart.steps_type)
     assert play is not None and pad is not None
-    quick = replace(play, rows=replace(play.rows, second=play.rows.second / faster))
-    return bake(chart, quick, pad, rate=faster, **more)  # type: ignore[arg-type]
+    timing = chart.timing.at_rate(faster)
+    return bake(timing, as_heard(play, timing), pad, **more)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module", params=["free", "bar"])

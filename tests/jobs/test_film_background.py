@@ -7,11 +7,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.chart import load
 from dancetutor_cli.commands import render
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.video.film_look import FilmLook
@@ -44,7 +45,7 @@ def test_the_clock_is_the_music(song: Path) -> None:
     assert seconds_of(song / "m.wav") == pytest.approx(7.5, abs=0.01)
     assert seconds_of(DEMO / "two_left_feet.ogg") == pytest.approx(41.07, abs=0.02)
     look = FilmLook(load_layout("background"), (64, 36))
-    request = FilmRequest(song / "s.sm", Selection(), look, background=True)
+    request = film_request(song / "s.sm", Selection(), look, background=True)
     clock = look_up(request).clock
     assert clock.passes[0].start == 0.0 and clock.passes[-1].end == pytest.approx(7.5, abs=0.01)
     (song / "m.wav").unlink()

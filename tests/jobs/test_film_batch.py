@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs import film_segments, film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
-from dancetutor_cli.jobs.film_request import FilmRequest
 from dancetutor_cli.jobs.film_work import STATE, FilmJob, FilmOutcome
 from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.library.selection import Selection
@@ -39,7 +39,7 @@ def write_song(folder: Path, charts: list[tuple[str, int]], notes: str = NOTES) 
 
 def batch_request(paths: tuple[Path, ...], folder: Path, **other: object) -> BatchRequest:
     look = FilmLook(load_layout("highway"), SIZE)
-    request = FilmRequest(Path(), Selection(), look, fps=12)
+    request = film_request(Path(), Selection(), look, fps=12)
     return BatchRequest(paths, request, Encoding("mp4", SIZE, 12), folder, **other)  # type: ignore[arg-type]
 
 

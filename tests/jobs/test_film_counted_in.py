@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.jobs.counted_in import notes_without, quiet_in
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
@@ -27,8 +28,8 @@ def prepared(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRe
         steps, notes = "dance-couple", "\n".join(2 * line if len(line) == 4 else line for line in notes.split("\n"))
     path.write_text(f"#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n {steps}:\n :\n Hard:\n 8:\n :\n{notes};\n")
     look = FilmLook(load_layout("practice"), (320, 180), "draft", "cpu")
-    practice = Practice((0.5, 1.0), count_in=4)
-    wanted = FilmRequest(path, Selection(), look, fps=30, section="8:10", mute=True, practice=practice)
+    how = {"rates": (0.5, 1.0), "practice": Practice(count_in=4)}
+    wanted = film_request(path, Selection(), look, fps=30, section="8:10", mute=True, **how)
     return prepare(wanted, look_up(wanted))
 
 
@@ -40,8 +41,8 @@ def test_nothing_is_stepped_or_shown_while_it_counts(prepared: Prepared) -> None
     for seconds in (plan.notes.second, plan.presses.start, plan.rows.second):
         assert not ((seconds >= one.start) & (seconds < one.sound_from)).any()
         assert (seconds == 8.0).any(), "the first step that it counts to"
-    for motions in (plan.motions, plan.partners):
-        for rate, motion in motions.items():
+    for rate, motions in plan.motions.items():
+        for motion in motions:
             starts = np.array([contact.start for contact in motion.contacts]) * rate
             assert not ((starts >= one.start) & (starts < one.sound_from - 1e-3)).any()
             assert (np.abs(starts - 8.0) < 0.02).any()

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_key import film_key
@@ -40,7 +41,7 @@ def song(tmp_path: Path) -> Path:
 
 
 def request_of(song: Path) -> FilmRequest:
-    return FilmRequest(song, Selection(index=0), FilmLook(load_layout("highway"), (64, 64)), fps=12)
+    return FilmRequest(DanceRequest(song, Selection(index=0)), FilmLook(load_layout("highway"), (64, 64)), fps=12)
 
 
 def key(request: FilmRequest) -> str:
@@ -60,7 +61,8 @@ def other_values(song: Path) -> dict[str, list[Any]]:
     (folder / "motion.yaml").write_text("jump: {far: 0.5}")
     (folder / "sway.yaml").write_text("limits: false")
     (folder / "her.glb").write_bytes(b"a character")
-    look = request_of(song).look
+    (folder / "her.npz").write_bytes(b"a motion")
+    request = request_of(song)
     looks = {
         "layout": load_layout("vertical"),
         "size": (96, 64),
@@ -73,29 +75,35 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "ahead": parse_ahead("b2"),
         "findings": True,
     }
-    practices = {"rates": (0.5,), "loop": 2, "count_in": 4, "rest": 1.5, "claps": True, "metronome": True}
-    assert set(looks) == {f.name for f in fields(FilmLook)}
-    assert set(practices) == {f.name for f in fields(Practice)}
-    return {
+    practices = {"loop": 2, "count_in": 4, "rest": 1.5, "claps": True, "metronome": True}
+    dances = {
         "path": [other],
         "selection": [Selection(index=1)],
-        "look": [replace(look, **{name: value}) for name, value in looks.items()],
-        "fps": [24],
         "preset": ["thesis", str(folder / "mine.yaml")],
-        "section": ["0:1"],
-        "sync": [0.009],
-        "mute": [True],
-        "practice": [replace(Practice(), **{name: value}) for name, value in practices.items()],
         "play": [folder / "play.json"],
-        "character": ["mannequin", str(folder / "her.glb")],
+        "rates": [(0.5,), (0.5, 1.0)],
+        "fps": [30.0],
         "bar": [True],
         "gait": ["heels", str(folder / "strut.yaml")],
+        "form": ["edge", str(folder / "strut.yaml")],
         "motion": [folder / "motion.yaml"],
         "style": ["neutral", str(folder / "sway.yaml")],
         "push": [("1:300:left",)],
         "trip": [(1.0,)],
+    }
+    for kind, others in ((FilmLook, looks), (Practice, practices), (DanceRequest, dances)):
+        assert set(others) == {f.name for f in fields(kind)}, "a field that this test does not know"
+    return {
+        "dance": [replace(request.dance, **{name: one}) for name, some in dances.items() for one in some],
+        "look": [replace(request.look, **{name: value}) for name, value in looks.items()],
+        "fps": [24],
+        "section": ["0:1"],
+        "sync": [0.009],
+        "mute": [True],
+        "practice": [replace(Practice(), **{name: value}) for name, value in practices.items()],
+        "character": ["mannequin", str(folder / "her.glb")],
         "background": [True],
-        "form": ["edge", str(folder / "strut.yaml")],
+        "motions": [(folder / "her.npz",)],
     }
 
 
@@ -110,13 +118,18 @@ def test_every_field_of_a_request_counts(song: Path) -> None:
 
 def test_files_count_by_their_content(song: Path) -> None:
     others, folder = other_values(song), song.parent.parent.parent
+    request = request_of(song)
     request = replace(
-        request_of(song), play=folder / "play.json", preset=others["preset"][1], character=others["character"][1]
+        request,
+        dance=replace(request.dance, play=folder / "play.json", preset=str(folder / "mine.yaml")),
+        look=replace(request.look, font=folder / "font.ttf"),
+        character=others["character"][1],
+        motions=(folder / "her.npz",),
     )
-    request = replace(request, look=replace(request.look, font=folder / "font.ttf"))
     keys = [key(request)]
     for name, text in (
-        ("play.json", "{ }"), ("font.ttf", "other"), ("base.yaml", "extends: itg\nroll-window: 0.3\n"), ("her.glb", "x")
+        ("play.json", "{ }"), ("font.ttf", "other"), ("base.yaml", "extends: itg\nroll-window: 0.3\n"),
+        ("her.glb", "x"), ("her.npz", "another motion"),
     ):  # fmt: skip
         (folder / name).write_text(text)
         keys.append(key(request))

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.played import Limb
 from dancetutor_cli.video.film import Film
@@ -18,7 +19,6 @@ from dancetutor_cli.video.lights import PanelLights
 from dancetutor_cli.video.overlay import sprites
 from dancetutor_cli.video.overlay.diagram import NextRows, PadView
 from dancetutor_cli.video.overlay.text import Typeface
-from dancetutor_cli.video.practice import Practice
 
 # the left foot holds, and the right one is asked for up and down 75 ms apart
 TRILL = "2000\n0000\n0000\n0000\n0000\n0000\n0000\n0000\n0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"
@@ -28,7 +28,7 @@ def prepared(folder: Path, **more: object) -> Prepared:
     path = folder / "trill.sm"
     path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{TRILL};\n")
     look = FilmLook(load_layout("practice"), (320, 180), quality="draft", renderer="cpu")
-    request = FilmRequest(path, Selection(), look, fps=10, mute=True, **more)  # type: ignore[arg-type]
+    request = film_request(path, Selection(), look, fps=10, mute=True, **more)
     return prepare(request, look_up(request))
 
 
@@ -71,12 +71,12 @@ def test_a_small_pad_has_a_cross_where_no_foot_comes(film: Prepared) -> None:
 
 def test_runs_at_all_rates_let_the_same_notes_go(tmp_path: Path) -> None:
     """At half speed she could play them; but the picture marks one play."""
-    two = prepared(tmp_path, practice=Practice(rates=(0.5, 1.0)))
+    two = prepared(tmp_path, rates=(0.5, 1.0))
     assert sorted(two.plan.motions) == [0.5, 1.0]
-    for motion in two.plan.motions.values():
+    for (motion,) in two.plan.motions.values():
         assert len(motion.let_go) == 2 and len({one.why for one in motion.let_go}) == 1
-    slow = prepared(tmp_path, practice=Practice(rates=(0.5,)))
-    assert not slow.plan.motions[0.5].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
+    slow = prepared(tmp_path, rates=(0.5,))
+    assert not slow.plan.motions[0.5][0].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
 
 
 def test_a_roll_that_no_hand_keeps_goes_dark_where_it_is_let_go(tmp_path: Path) -> None:
@@ -85,7 +85,7 @@ def test_a_roll_that_no_hand_keeps_goes_dark_where_it_is_let_go(tmp_path: Path) 
     rows = "44044\n" + "00000\n" * 7 + "33033\n" + "00000\n" * 7
     path.write_text(f"#TITLE:R;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:pump-single::Hard:99::\n{rows};\n")
     look = FilmLook(load_layout("highway"), (160, 180), quality="draft", renderer="cpu")
-    request = FilmRequest(path, Selection(), look, fps=10, mute=True)
+    request = film_request(path, Selection(), look, fps=10, mute=True)
     plan = prepare(request, look_up(request)).plan
     hands = plan.notes.limb >= Limb.LEFT_HAND
     assert hands.sum() == 2 and np.isinf(plan.notes.gone_second[~hands]).all()

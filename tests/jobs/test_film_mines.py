@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
@@ -18,8 +19,8 @@ from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.lights import PanelLights, lighting
 from dancetutor_cli.video.overlay import sprites
 
-# the right foot holds, the left one steps, and 25 ms later mines pass on its panel and on another one
-ROWS = ["0001", *["0000"] * 11, "0002", *["0000"] * 11, "1000", "M0M0", *["0000"] * 18, "0003", *["0000"] * 3]
+# the right foot holds, the left one steps, and 12 ms later mines pass on its panel and on another one
+ROWS = ["0001", *["0000"] * 23, "0002", *["0000"] * 23, "1000", "M0M0", *["0000"] * 38, "0003", *["0000"] * 7]
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def film(tmp_path_factory: pytest.TempPathFactory) -> Prepared:
     rows = "\n".join(ROWS)
     path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{rows}\n;\n")
     look = FilmLook(load_layout("practice"), (320, 180), quality="draft", renderer="cpu")
-    request = FilmRequest(path, Selection(), look, fps=10, mute=True)
+    request = film_request(path, Selection(), look, fps=10, mute=True)
     return prepare(request, look_up(request))
 
 
@@ -54,7 +55,7 @@ def test_of_two_who_dance_it_says_whose_foot_it_is(whose: int, tmp_path: Path) -
     path = tmp_path / "two.sm"
     path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-couple::Hard:9::\n{rows}\n;\n")
     look = FilmLook(load_layout("side-by-side"), (320, 180), quality="draft", renderer="cpu")
-    request = FilmRequest(path, Selection(), look, fps=10, mute=True)
+    request = film_request(path, Selection(), look, fps=10, mute=True)
     plan = prepare(request, look_up(request)).plan
     (one,) = (one for one in plan.callouts if "mine" in one.text)
     assert one.text == f"player {whose}: mine not cleared (DT303 mine under hold)" and one.tag == "not cleared"

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import baked, film_request
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
-from dancetutor_cli.jobs.baked_dance import BakedDance
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.sampling import sample
 from dancetutor_cli.rig.kinematics import joint_matrices, world_transforms
@@ -19,7 +19,6 @@ from dancetutor_cli.rig.mass import centre_of_mass
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.practice import Practice
 
 RATES = (0.5, 1.0)
 JUMPS = "1001\n0000\n0110\n0000\n1001\n0000\n0110\n0000\n"
@@ -38,15 +37,14 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def prepared(song: Path) -> Prepared:
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
-    request = FilmRequest(song, Selection(), look, fps=FPS, section="3:7", mute=True, practice=Practice(RATES))
+    request = film_request(song, Selection(), look, fps=FPS, section="3:7", mute=True, rates=RATES)
     return prepare(request, look_up(request))
 
 
 def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -> None:
     film, clock = Film(prepared.plan), prepared.plan.clock
     for run, rate in enumerate(RATES):
-        task = BakeTask(song, Selection(), "thesis", fps=FPS, section="3:7", rate=rate)
-        motion = bake_asked(ask(task), task)
+        motion = baked(DanceRequest(song, Selection(), "thesis", rates=(rate,)), "3:7", rate)
         frames = [k for k in range(clock.frames) if clock.at(k)[1] == run]
         heard = np.array([clock.at(k)[0] for k in frames]) / rate
         expected = joint_matrices(load_dancer().skeleton, *sample(motion, heard))
@@ -57,7 +55,7 @@ def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -
 def test_she_falls_in_the_film_as_everybody_does(prepared: Prepared) -> None:
     clock = prepared.plan.clock
     for run, rate in enumerate(RATES):
-        motion = prepared.plan.motions[rate]
+        (motion,) = prepared.plan.motions[rate]
         moments = [clock.moment(k) for k in range(clock.frames) if clock.at(k)[1] == run]
         heard = np.array([moment.heard for moment in moments])
         rotations, root = sample(motion, heard)
@@ -67,12 +65,10 @@ def test_she_falls_in_the_film_as_everybody_does(prepared: Prepared) -> None:
 
 
 def test_a_push_comes_at_its_second_of_the_song_as_in_animate(song: Path) -> None:
-    befalls = {"style": "neutral", "push": ("5:300:left",)}
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
-    practice = Practice((0.5,))
-    request = FilmRequest(song, Selection(), look, fps=FPS, section="4:6", mute=True, practice=practice, **befalls)
+    how = {"rates": (0.5,), "style": "neutral", "push": ("5:300:left",)}
+    request = film_request(song, Selection(), look, fps=FPS, section="4:6", mute=True, **how)
     film = prepare(request, look_up(request))
     assert any(note.startswith("at rate 0.5, pushed at 10.000 s with 300 N") for note in film.warnings)
-    task = BakeTask(song, Selection(), "thesis", fps=FPS, section="4:6", rate=0.5, **befalls)
-    animated = BakedDance(ask(task), task, load_dancer()).own_motion
-    np.testing.assert_array_equal(film.plan.motions[0.5].root, animated.root)
+    animated = baked(DanceRequest(song, Selection(), "thesis", **how), "4:6", 0.5)
+    np.testing.assert_array_equal(film.plan.motions[0.5][0].root, animated.root)

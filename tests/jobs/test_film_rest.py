@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.jobs.counted_in import quiet_after
 from dancetutor_cli.jobs.film_plan import Prepared, prepare
@@ -31,14 +32,15 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def asked(song: Path, section: str | None, practice: Practice) -> FilmRequest:
+def asked(song: Path, section: str | None, practice: Practice, *rates: float) -> FilmRequest:
     look = FilmLook(load_layout("dancer"), (320, 180), "draft", "cpu")
-    return FilmRequest(song, Selection(), look, fps=30, section=section, mute=True, practice=practice)
+    how = {"rates": rates or (1.0,), "practice": practice}
+    return film_request(song, Selection(), look, fps=30, section=section, mute=True, **how)
 
 
 @pytest.fixture(scope="module")
 def prepared(song: Path) -> Prepared:
-    wanted = asked(song, "6:8", Practice(RATES, rest=REST))
+    wanted = asked(song, "6:8", Practice(rest=REST), *RATES)
     return prepare(wanted, look_up(wanted))
 
 
@@ -54,13 +56,13 @@ def test_what_follows_the_passage_is_neither_danced_nor_shown(prepared: Prepared
     for seconds in (plan.notes.second, plan.presses.start):
         assert (seconds == 7.75).any() and not (seconds >= 8.0).any()
     assert (plan.song.steps > 8.0).any(), "the strip shows the whole song"
-    for rate, motion in plan.motions.items():
+    for rate, (motion,) in plan.motions.items():
         starts = np.array([contact.start for contact in motion.contacts]) * rate
         assert (np.abs(starts - 7.75) < 0.02).any() and not (starts > 7.99).any()
 
 
 def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
-    motion = prepared.plan.motions[1.25]
+    (motion,) = prepared.plan.motions[1.25]
     places, _ = world_transforms(motion.skeleton, motion.rotations, motion.root)
     end = prepared.plan.clock.passes[-1].end / 1.25
     late = (motion.times > end - 0.7) & (motion.times <= end)
@@ -74,7 +76,7 @@ def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
 
 def test_at_the_end_of_a_song_she_stays_on_the_pad(song: Path) -> None:
     wanted = asked(song, "14:19", Practice(rest=REST))
-    motion = prepare(wanted, look_up(wanted)).plan.motions[1.0]
+    (motion,) = prepare(wanted, look_up(wanted)).plan.motions[1.0]
     assert motion.times[-1] > 18.5
     after = motion.root[motion.times > 16.5][:, [0, 2]]
     assert np.ptp(after, axis=0).max() < 0.2
@@ -100,5 +102,5 @@ def test_the_picture_goes_dark_at_the_end_of_a_film_and_not_of_poses(song: Path,
     assert (film.frame(last // 2) == whole.frame(last // 2)).all()
     half = film.frame(last - round(plan.fade * 15)).astype(int) - np.array(BACKGROUND)
     np.testing.assert_allclose(half, (whole.frame(last - round(plan.fade * 15)).astype(int) - BACKGROUND) / 2, atol=1.5)
-    alone = asked(song, "6:8", Practice((1.0,)))
+    alone = asked(song, "6:8", Practice())
     assert prepare(alone, look_up(alone)).plan.fade == 0.0

@@ -8,13 +8,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.partner import PREFIX, turned, with_partner
 from dancetutor_cli.colours import partner_colours
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs import film_plan
-from dancetutor_cli.jobs.danced import Danced, danced
+from dancetutor_cli.jobs.film_dance import FilmDance, film_dance
 from dancetutor_cli.jobs.film_plan import _dancers, prepare
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.library.selection import Selection
@@ -39,20 +40,20 @@ def request_for(folder: Path, kind: str, **more: object) -> FilmRequest:
     path = folder / "two.sm"
     path.write_text(HEAD + f"#NOTES:{kind}::Hard:9::\n{CHARTS[kind]};\n")
     look = FilmLook(load_layout("side-by-side"), (320, 180), quality="draft", renderer="cpu")
-    return FilmRequest(path, Selection(), look, fps=10, section="0:1.6", mute=True, **more)  # type: ignore[arg-type]
+    return film_request(path, Selection(), look, fps=10, section="0:1.6", mute=True, **more)
 
 
 @pytest.fixture(scope="module", params=list(CHARTS))
-def dance(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Danced:
+def dance(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> FilmDance:
     wanted = request_for(tmp_path_factory.mktemp("two"), request.param)
-    return danced(wanted, look_up(wanted))
+    return film_dance(wanted, look_up(wanted))
 
 
-def test_each_foot_stands_on_the_panel_of_its_note(dance: Danced) -> None:
+def test_each_foot_stands_on_the_panel_of_its_note(dance: FilmDance) -> None:
     """On the pad of both: a contact's panel, moved as the body is, is where the picture has the note's panel."""
     whole = dance.pad
-    for one, motions in zip(dance.solved, (dance.motions, dance.partners), strict=True):
-        motion, chart, pad = motions[1.0], one.chart, one.pad
+    for one, motion in zip(dance.solved, dance.motions[1.0], strict=True):
+        chart, pad = one.chart, one.pad
         assert pad is not None and len(motion.contacts) >= 4
         for contact in motion.contacts:
             place = (np.array(whole.centre) - whole.panels[chart.first_column + contact.column])[0] * PANEL
@@ -64,7 +65,7 @@ def test_each_foot_stands_on_the_panel_of_its_note(dance: Danced) -> None:
         assert min(sides) - PANEL < end < max(sides) + PANEL  # she is where her panels are
 
 
-def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: Danced) -> None:
+def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: FilmDance) -> None:
     for one in dance.solved:
         assert one.play is not None
         for row, column in zip(*np.nonzero(one.play.rows.steps), strict=True):
@@ -75,7 +76,7 @@ def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: Da
     assert int((dance.play.limb >= 0).sum()) == steps
 
 
-def test_the_small_pads_know_where_all_four_feet_stand(dance: Danced) -> None:
+def test_the_small_pads_know_where_all_four_feet_stand(dance: FilmDance) -> None:
     rows = step_rows(dance.play, _dancers(dance))
     assert rows.feet.shape == (len(rows.second), 4)
     for limbs, feet in zip(rows.limb, rows.feet.tolist(), strict=True):
@@ -117,16 +118,16 @@ def test_the_colour_of_a_note_says_whose_it_is(tmp_path: Path, kind: str) -> Non
     highway = Film(plan).highway
     assert highway is not None
     assert [highway.colours[i] for i in highway.colour] == [highway.style.players[n - 1] for n in plan.notes.player]
-    alone = replace(wanted, selection=Selection(player=2))
+    alone = replace(wanted, dance=replace(wanted.dance, selection=Selection(player=2)))
     assert not prepare(alone, look_up(alone)).plan.notes.player.any()
 
 
 def test_what_both_do_is_called_out_and_what_one_does_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     one, two, both = (Callout(at, at, "crossover", "move", at - 0.9, at, "crossover") for at in (1.0, 2.0, 3.0))
     told = {"first": (one, both), "second": (two, both)}
-    monkeypatch.setattr(film_plan, "callouts_of", lambda solved, *_: told[solved.name])
+    monkeypatch.setattr(film_plan, "callouts_of", lambda about, *_: told[about.chart])
     monkeypatch.setattr(film_plan, "_mines_of_each", lambda *_: ())
-    dance = SimpleNamespace(solved=[SimpleNamespace(name=name, play=None) for name in told])
+    dance = SimpleNamespace(solved=[SimpleNamespace(chart=name, pad=None) for name in told], plays=[None, None])
     assert film_plan._callouts(dance, None, None) == (both,)  # type: ignore[arg-type]
 
 
@@ -178,11 +179,11 @@ def test_who_has_no_such_colours_is_tinted() -> None:
 def test_what_is_for_one_dancer_is_told(tmp_path: Path, option: dict[str, object]) -> None:
     wanted = request_for(tmp_path, "dance-couple", **option)
     with pytest.raises(UsageError, match="for two: choose with --player 1 or 2"):
-        danced(wanted, look_up(wanted))
+        film_dance(wanted, look_up(wanted))
 
 
 def test_one_of_them_is_filmed_alone(tmp_path: Path) -> None:
     wanted = request_for(tmp_path, "dance-couple")
-    wanted = FilmRequest(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
-    dance = danced(wanted, look_up(wanted))
-    assert len(dance.solved) == 1 and dance.partners == {} and dance.pad.steps_type == "dance-single"
+    wanted = film_request(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
+    dance = film_dance(wanted, look_up(wanted))
+    assert len(dance.solved) == 1 == len(dance.motions[1.0]) and dance.pad.steps_type == "dance-single"

@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dancetutor_cli.bake import bake
 from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.jobs.bake import Asked, BakeTask, ask, bake_asked, plan_asked, tasks_of
-from dancetutor_cli.jobs.baked_dance import BakedDance
-from dancetutor_cli.jobs.two import pad_of_both, place_on, sides_of
+from dancetutor_cli.character.partner import partner_of
+from dancetutor_cli.dance.performance import Performance, perform, solve
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.jobs.animation import AnimatedDancer, Animation
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion, shifted
 from dancetutor_cli.rig.capsules import Capsule, depth
@@ -31,11 +33,11 @@ CHAINS = [("l_hip", "l_knee", "l_talocrural"), ("l_shoulder", "l_elbow", "l_radi
 TRUNK, HAND = 0.12, 0.10  # metres: radius of the trunk; of the hand beyond the wrist
 
 
-def both_of(folder: Path, kind: str, notes: str) -> tuple[list[Asked], tuple[BakeTask, ...]]:
+def danced(folder: Path, kind: str, notes: str, player: int | None = None) -> Performance:
     path = folder / "two.sm"
     path.write_text(HEAD + f"#NOTES:{kind}::Hard:9::\n{notes};\n")
-    tasks = tasks_of(BakeTask(path, Selection()))
-    return [ask(task) for task in tasks], tasks
+    request = DanceRequest(path, Selection(player=player))
+    return perform(solve(request), request)
 
 
 def capsules(motion: Motion, times: Array) -> list[list[Capsule]]:
@@ -62,23 +64,19 @@ def nearest(motions: Sequence[Motion]) -> Array:
 
 
 @pytest.fixture(scope="module")
-def couple(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Asked], tuple[BakeTask, ...]]:
-    return both_of(tmp_path_factory.mktemp("couple"), "dance-couple", COUPLE)
+def couple(tmp_path_factory: pytest.TempPathFactory) -> Performance:
+    return danced(tmp_path_factory.mktemp("couple"), "dance-couple", COUPLE)
 
 
-def baked(couple: tuple[list[Asked], tuple[BakeTask, ...]], sides: Sequence[tuple[int, int]]) -> list[Motion]:
-    whole = pad_of_both("dance-couple")
-    return [
-        shifted(bake_asked(asked, task, side), *place_on(whole, asked.chart, asked.pad))
-        for asked, task, side in zip(*couple, sides, strict=True)
-    ]
+def sides(performance: Performance) -> tuple[tuple[int, int] | None, ...]:
+    return tuple(one.context.sides for one in performance.dancers)
 
 
-def test_no_limb_of_one_is_ever_in_the_other(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
+def test_no_limb_of_one_is_ever_in_the_other(couple: Performance) -> None:
     """From the walk on to the walk off, and while both stand on their inner panels."""
-    sides = sides_of([one.chart for one in couple[0]])
-    assert sides == ((0, 0), (1, 1))
-    motions = baked(couple, sides)
+    assert sides(couple) == ((0, 0), (1, 1))
+    pairs = zip(couple.motions(), couple.dancers, strict=True)
+    motions = [shifted(one.motion, *dancer.place) for one, dancer in pairs]
     assert nearest(motions).max() < 0.0
     for motion, outward in zip(motions, (1.0, -1.0), strict=True):  # the first player's pad is on the left, +x
         assert motion.ground is not None
@@ -86,23 +84,27 @@ def test_no_limb_of_one_is_ever_in_the_other(couple: tuple[list[Asked], tuple[Ba
             assert outward * x > 0.84 + 0.1, "beside the pad, on her own side"
 
 
-def test_who_goes_through_the_other_is_seen(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
-    motions = baked(couple, ((0, 1), (1, 0)))
+def test_who_goes_through_the_other_is_seen(couple: Performance) -> None:
+    pairs = zip(couple.dancers, ((0, 1), (1, 0)), strict=True)
+    motions = [shifted(bake(couple.timing, one.play, one.pad, sides=side), *one.place) for one, side in pairs]
     assert nearest(motions).max() > 0.05
 
 
 def test_who_changes_places_goes_to_the_other_side(tmp_path: Path) -> None:
-    asked, tasks = both_of(tmp_path, "dance-routine", EMPTY + ROUTINE + "&\n" + EMPTY + BACK)
-    sides = sides_of([one.chart for one in asked])
-    assert sides == ((0, 1), (1, 0))
-    for one, task, (came, goes) in zip(asked, tasks, sides, strict=True):
-        plan, _ = plan_asked(one, task, (came, goes))
-        assert np.sign(plan.feet[0].start[0]) == 1.0 - 2.0 * came
-        assert np.sign(plan.feet[0].moves[-1].target[0]) == 1.0 - 2.0 * goes
+    both = danced(tmp_path, "dance-routine", EMPTY + ROUTINE + "&\n" + EMPTY + BACK)
+    assert sides(both) == ((0, 1), (1, 0))
+    for one in both.dancers:
+        assert one.context.sides is not None
+        came, goes = one.context.sides
+        assert np.sign(one.plan.feet[0].start[0]) == 1.0 - 2.0 * came
+        assert np.sign(one.plan.feet[0].moves[-1].target[0]) == 1.0 - 2.0 * goes
 
 
-def test_both_files_of_animate_have_the_same_ways(couple: tuple[list[Asked], tuple[BakeTask, ...]]) -> None:
-    first, second = (BakedDance(asked, task, load_dancer()) for asked, task in zip(*couple, strict=True))
-    assert first.sides is None, "alone she comes as her notes say"
-    first.other, second.other = second, first
-    assert (first.sides, second.sides) == ((0, 0), (1, 1))
+def test_both_files_of_animate_have_the_same_ways(couple: Performance, tmp_path: Path) -> None:
+    for player in (1, 2):
+        assert sides(danced(tmp_path, "dance-couple", COUPLE, player)) == (None,), "alone she comes as her notes say"
+    animation, who = Animation(couple), load_dancer()
+    files = [AnimatedDancer(animation, k, one) for k, one in enumerate((who, partner_of(who)))]
+    for file, one in zip(files, couple.dancers, strict=True):
+        assert file.moves == (one.plan, one.context.bar) and file.place == one.place
+    assert files[0].motion.times[0] == files[1].motion.times[0]

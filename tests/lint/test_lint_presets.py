@@ -13,16 +13,17 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from dance_requests import film_request, solved_one
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.commands.analyze import command as analyze
+from dancetutor_cli.dance.request import DanceRequest, read_chart
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import solved
 from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
-from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.lint import alternatives, causes, suggest
@@ -69,13 +70,14 @@ def annotated(song: Path, given: str | None = None) -> list[str]:
 
 
 def animated(song: Path, given: str | None = None) -> list[str]:
-    return [ask(BakeTask(song, Selection(index=n), given)).play.preset for n in range(4)]
+    plays = [solved_one(song, Selection(index=n), given).play for n in range(4)]
+    return [play.preset for play in plays if play is not None]
 
 
 def filmed(song: Path, given: str | None = None) -> list[str]:
     look = FilmLook(load_layout("highway"), (64, 48))
-    wanted = [FilmRequest(song, Selection(index=n), look, mute=True, preset=given) for n in range(4)]
-    return [look_up(request).preset.name for request in wanted]
+    wanted = [film_request(song, Selection(index=n), look, mute=True, preset=given) for n in range(4)]
+    return [look_up(request).choice.presets[0].name for request in wanted]
 
 
 EVERYWHERE = pytest.mark.parametrize("found", [analyzed, annotated, animated, filmed])
@@ -149,10 +151,15 @@ def test_the_configurations_that_come_along_name_presets(name: str, expected: li
 
 def test_a_batch_of_films_gives_each_chart_its_own(song: Path) -> None:
     (song.parent.parent / "dancetutor.yaml").write_text(BY_DIFFICULTY.replace("presets/mine.yaml", "ddr"))
-    request = FilmRequest(Path(), Selection(), FilmLook(load_layout("highway"), (64, 48)), mute=True)
+    request = film_request(Path(), Selection(), FilmLook(load_layout("highway"), (64, 48)), mute=True)
     batch = BatchRequest((song.parent,), request, Encoding("mp4", (64, 48), 12), song.parent / "films")
     films = film_list(batch).films
-    assert [look_up(film.request).preset.name for film in films] == ["beginner", "stamina", "beginner", "ddr"]
+    assert [look_up(film.request).choice.presets[0].name for film in films] == [
+        "beginner",
+        "stamina",
+        "beginner",
+        "ddr",
+    ]
 
 
 def test_suggestions_and_alternatives_are_of_the_charts_own(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,9 +185,11 @@ def test_a_preset_for_other_pads_works_and_says_so(song: Path) -> None:
     itg, pump = load_preset("itg"), load_preset("pump")
     assert mismatch(itg, "dance-double") is None and mismatch(pump, "pump-single") is None
     assert mismatch(pump, "dance-single") == "preset 'pump' was made for pump pads, not for dance-single"
-    asked = ask(BakeTask(song, Selection(index=0), "pump"))
-    assert asked.notes == ("dance-single Easy 3: preset 'pump' was made for pump pads, not for dance-single",)
-    request = FilmRequest(song, Selection(index=2), FilmLook(load_layout("highway"), (64, 48)), mute=True, preset="ddr")
+    choice = read_chart(DanceRequest(song, Selection(index=0), "pump"))
+    assert choice.warnings == ("dance-single Easy 3: preset 'pump' was made for pump pads, not for dance-single",)
+    request = film_request(
+        song, Selection(index=2), FilmLook(load_layout("highway"), (64, 48)), mute=True, preset="ddr"
+    )
     assert look_up(request).warnings == (
         "pump-single Easy 3: preset 'ddr' was made for dance pads, not for pump-single",
     )

@@ -23,7 +23,7 @@ SINGLE = np.array([3, 1, 2, 0])
 
 @pytest.fixture(scope="module")
 def slow() -> Plan:
-    return plan_of(chart(), play(SLOW), pad())
+    return plan_of(chart().timing, play(SLOW), pad())
 
 
 def test_slow_parts_have_each_hand_alone_and_both(slow: Plan) -> None:
@@ -37,7 +37,7 @@ def test_slow_parts_have_each_hand_alone_and_both(slow: Plan) -> None:
 
 
 def test_quick_parts_have_both_hands_more_often(slow: Plan) -> None:
-    quick = replace(slow, touches=plan_of(chart(), play(QUICK), pad()).touches)
+    quick = replace(slow, touches=plan_of(chart().timing, play(QUICK), pad()).touches)
     both = [grip_phrases(plan, TIMES, STILL, BAR)[0].all(axis=1).mean() for plan in (slow, quick)]
     assert both[1] > both[0]
 
@@ -49,7 +49,7 @@ def test_turned_she_holds_with_the_hand_on_the_rails_side(slow: Plan, yaw: float
 
 
 def test_a_mirrored_plan_is_held_mirrored(slow: Plan) -> None:
-    image = plan_of(chart(), mirrored_play(play(SLOW), SINGLE), pad())
+    image = plan_of(chart().timing, mirrored_play(play(SLOW), SINGLE), pad())
     yaw = 0.4 * np.sin(TIMES / 9.0)
     holds, apart = grip_phrases(slow, TIMES, yaw, BAR)
     other, also = grip_phrases(image, TIMES, -yaw, BAR)

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import baked
 
 from dancetutor_cli.bake.quality import report
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.marked_yaml import read
 from dancetutor_cli.motion.baked import Motion
@@ -28,8 +29,7 @@ FORMS = ("usual", "middle", "edge", "heels-in", "heels-out", "screen", "turning"
 
 
 def danced(form: str) -> Motion:
-    task = BakeTask(DEMO, Selection(index=3), section="16:21.3", form=form)
-    return bake_asked(ask(task), task)
+    return baked(DanceRequest(DEMO, Selection(index=3), form=form), "16:21.3")
 
 
 @pytest.fixture(scope="module")
@@ -151,8 +151,7 @@ def test_a_form_chooses_the_side_on_which_a_foot_passes_the_other(tmp_path: Path
     path.write_text(CROSSWISE)
     motions = {}
     for form in ("usual", "screen", "turning"):
-        task = BakeTask(path, Selection(), form=form)
-        motions[form] = bake_asked(ask(task), task)
+        motions[form] = baked(DanceRequest(path, Selection(), form=form))
     assert passings(motions["screen"]) == ["in front"] * 7
     assert passings(motions["turning"]) == ["behind"] * 7
     assert set(passings(motions["usual"])) == {"in front", "behind"}

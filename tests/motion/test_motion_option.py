@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dance_requests import film_request
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.jobs.film_plan import prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
+from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.resources import charts_path
@@ -36,9 +36,8 @@ def animated(tmp_path: Path, *options: str) -> Motion:
 
 def film(path: Path | None) -> Motion:
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
-    request = FilmRequest(Path(DEMO), Selection(index=3), look, section="8:12", mute=True)
-    request = replace(request, motion=path)
-    return prepare(request, look_up(request)).plan.motions[1.0]
+    request = film_request(Path(DEMO), Selection(index=3), look, section="8:12", mute=True, motion=path)
+    return prepare(request, look_up(request)).plan.motions[1.0][0]
 
 
 def test_a_file_makes_her_stand_lower(tmp_path: Path) -> None:

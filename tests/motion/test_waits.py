@@ -36,7 +36,7 @@ def beaten(every: float = 0.5) -> Context:
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return plan_of(chart(), danced(), pad(), settings=STANDING)
+    return plan_of(chart().timing, danced(), pad(), settings=STANDING)
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,9 @@ def test_nothing_repeats(waiting: Waiting) -> None:
 
 
 def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
-    image = waiting_at(plan_of(chart(), mirrored_play(danced(), SINGLE), pad(), settings=STANDING), TIMES, beaten())
+    image = waiting_at(
+        plan_of(chart().timing, mirrored_play(danced(), SINGLE), pad(), settings=STANDING), TIMES, beaten()
+    )
     np.testing.assert_allclose(image.shift, -waiting.shift, atol=1e-12)
     np.testing.assert_allclose(image.turn, -waiting.turn, atol=1e-12)
     np.testing.assert_allclose(image.tilt, -waiting.tilt, atol=1e-12)
@@ -96,7 +98,7 @@ def test_another_song_waits_otherwise(plan: Plan, waiting: Waiting) -> None:
 
 def test_a_body_that_waits_keeps_its_balance_and_its_feet() -> None:
     """Also before the first note; hips go at least 3 cm. After the last one she walks off."""
-    motion = bake(chart(), danced(), pad(), section=(2.5, 38.0))
+    motion = bake(chart().timing, danced(), pad(), section=(2.5, 38.0))
     figures = {f.name: f for f in report(motion).figures}
     for name in ("balance", "plant slide", "jerk of the root", "jerk of the left hand", "frames past joint limits",
                  "limb in torso", "penetration", "contacts missed"):  # fmt: skip

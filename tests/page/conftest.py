@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from page_chromium import Browser
 
-from dancetutor_cli.jobs.bake import BakeTask
-from dancetutor_cli.jobs.page import Page, PageTask, make_page
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.jobs.page import Page, PageRequest, make_page
 from dancetutor_cli.library.selection import Selection
 
 # Hostile on purpose: all that people write is text. A measure of rest, then steps, a crossover, a jump and a hold, and
@@ -36,7 +36,7 @@ def write_song(folder: Path, title: str = TITLE) -> Path:
 def page(tmp_path_factory: pytest.TempPathFactory) -> Page:
     """The page of the hostile song, with the next best play beside."""
     path = write_song(tmp_path_factory.mktemp("song"))
-    return make_page(PageTask(BakeTask(path, Selection(), "thesis", fps=30.0), beside="next"))
+    return make_page(PageRequest(DanceRequest(path, Selection(), "thesis", fps=30.0), beside="next"))
 
 
 @pytest.fixture(scope="session")

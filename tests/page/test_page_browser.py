@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import write_song
+from dance_requests import solved_one
 from page_chromium import NOW, Browser, pad_script, said, text
 from PIL import Image
 
-from dancetutor_cli.jobs.bake import BakeTask, ask
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.play.played import Limb
 
@@ -248,19 +248,24 @@ def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser, 
     check_files_are_taken(tmp_path, saved["measure-comments.txt"])
 
 
+def first_limb(song_file: Path, **more: Path) -> int:
+    """Whose the first row is as `animate` finds it."""
+    play = solved_one(song_file, Selection(), "itg", **more).play
+    assert play is not None
+    return int(play.limb[0, 0])
+
+
 def check_files_are_taken(folder: Path, comment: str) -> None:
     """What the page saved does what it says: the first row is the right foot's, by each of the three."""
     song_file = write_song(folder)
-    asked = ask(BakeTask(song_file, Selection(), "itg"))
-    assert asked.play.limb[0, 0] == Limb.RIGHT_FOOT  # dancetutor.yaml beside the song
+    assert first_limb(song_file) == Limb.RIGHT_FOOT  # dancetutor.yaml beside the song
     (folder / "dancetutor.yaml").unlink()
-    assert ask(BakeTask(song_file, Selection(), "itg")).play.limb[0, 0] == Limb.LEFT_FOOT
-    play = ask(BakeTask(song_file, Selection(), "itg", play_file=folder / "play.json")).play
-    assert play.limb[0, 0] == Limb.RIGHT_FOOT
+    assert first_limb(song_file) == Limb.LEFT_FOOT
+    assert first_limb(song_file, play=folder / "play.json") == Limb.RIGHT_FOOT
     lines = song_file.read_text("utf-8").split("\n,\n", 1)
     pinned = f"{lines[0]}\n,  {comment.strip()}\n{lines[1]}"
     song_file.write_text(pinned, "utf-8")
-    assert ask(BakeTask(song_file, Selection(), "itg")).play.limb[0, 0] == Limb.RIGHT_FOOT
+    assert first_limb(song_file) == Limb.RIGHT_FOOT
 
 
 def test_help_lists_every_key_and_closes(browser: Browser) -> None:

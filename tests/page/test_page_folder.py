@@ -9,8 +9,8 @@ import pytest
 from conftest import TITLE, write_song
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.jobs.bake import BakeTask
-from dancetutor_cli.jobs.page import PageTask
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.jobs.page import PageRequest
 from dancetutor_cli.jobs.page_batch import page_jobs
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.page.index import IndexEntry, index_page
@@ -18,11 +18,10 @@ from dancetutor_cli.resources import charts_path
 
 
 def test_every_chart_of_a_folder_gets_a_file_of_its_own(tmp_path: Path) -> None:
-    task = PageTask(BakeTask(charts_path(), Selection()))
-    jobs, bad = page_jobs(task, tmp_path)
+    jobs, bad = page_jobs(PageRequest(DanceRequest(charts_path(), Selection())), tmp_path)
     assert bad == [] and len(jobs) == 6
     assert len({job.target for job in jobs}) == 6
-    assert [job.task.bake.selection.index for job in jobs] == list(range(6))
+    assert [job.request.dance.selection.index for job in jobs] == list(range(6))
 
 
 def test_a_folder_becomes_pages_and_an_index(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,9 +11,9 @@ from page_chromium import Browser
 from PIL import Image
 from test_page_document import unpacked
 
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.bake import BakeTask
-from dancetutor_cli.jobs.page import Page, PageTask, make_page
+from dancetutor_cli.jobs.page import Page, PageRequest, make_page
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.overlay.sprites import highway_style
 
@@ -21,15 +21,15 @@ ROWS = ["10000001", "01000010", "00010100", "00101000", "10010001", "01000010", 
 SONG = "#TITLE:Two;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-couple::Hard:9::\n" + "\n".join(ROWS) + "\n;\n"
 
 
-def task_for(folder: Path, **more: Any) -> PageTask:
+def request_for(folder: Path, **more: Any) -> PageRequest:
     path = folder / "two.sm"
     path.write_text(SONG)
-    return PageTask(BakeTask(path, Selection(**more), fps=30.0))
+    return PageRequest(DanceRequest(path, Selection(**more), fps=30.0))
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> Page:
-    return make_page(task_for(tmp_path_factory.mktemp("two")))
+    return make_page(request_for(tmp_path_factory.mktemp("two")))
 
 
 def test_it_holds_both_dancers_and_whose_each_note_is(pair: Page) -> None:
@@ -43,14 +43,14 @@ def test_it_holds_both_dancers_and_whose_each_note_is(pair: Page) -> None:
 
 
 def test_of_one_player_there_is_one_dancer(tmp_path: Path) -> None:
-    doc = unpacked(make_page(task_for(tmp_path, player=2)).html)
+    doc = unpacked(make_page(request_for(tmp_path, player=2)).html)
     assert not doc["pair"] and len(doc["motions"]) == 1 and len(doc["pad"]["panels"]) == 4
 
 
 def test_what_is_for_one_dancer_says_so(tmp_path: Path) -> None:
-    task = task_for(tmp_path)
+    request = request_for(tmp_path)
     with pytest.raises(UsageError, match="--player"):
-        make_page(PageTask(task.bake, beside="next"))
+        make_page(PageRequest(request.dance, beside="next"))
 
 
 def test_both_are_drawn_and_notes_have_their_colours(pair: Page, browser: Browser, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ WHEN = 1.72
 def plain() -> Motion:
     turns = (0, 3, 1, 2, 0, 3, 2, 1)
     events = [(1.0 + 0.3 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
-    return bake(plays.chart(), plays.play(events), plays.pad(), section=(0.6, 3.6))
+    return bake(plays.chart().timing, plays.play(events), plays.pad(), section=(0.6, 3.6))
 
 
 @pytest.fixture(scope="module")

@@ -168,7 +168,7 @@ def test_a_second_of_motion_takes_at_most_a_quarter_of_a_second(given: Motion) -
 
 def test_plain_work_does_not_import_the_engine() -> None:
     code = (
-        "import sys, dancetutor_cli.bake.styled, dancetutor_cli.jobs.bake, dancetutor_cli.commands.animate;"
+        "import sys, dancetutor_cli.bake, dancetutor_cli.dance.performance, dancetutor_cli.commands.animate;"
         "sys.exit('mujoco' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

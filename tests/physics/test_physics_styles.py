@@ -1,6 +1,6 @@
 """The styles on a baked dance: apart from each other, and as exact as neutral where a dance game looks."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import bake_plays as plays
@@ -8,13 +8,16 @@ import numpy as np
 import pytest
 from bake_mirror import mirrored_motion
 
-from dancetutor_cli.bake import MotionReport, bake, report
-from dancetutor_cli.bake.styled import styled
-from dancetutor_cli.jobs.bake import BakeTask, ask, bake_asked
+from dancetutor_cli.bake import MotionReport, report
+from dancetutor_cli.bake.bake import bake_piece, planned
+from dancetutor_cli.bake.pieces import MARGIN, Ragdoll, Span, piece_of
+from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.motion.settings import default_settings
-from dancetutor_cli.physics.pipeline import through_ragdoll
+from dancetutor_cli.motion.context import Context
+from dancetutor_cli.motion.plan import Plan
+from dancetutor_cli.physics.pipeline import Wishes, through_ragdoll
 from dancetutor_cli.physics.style import load_style, style_names
 from dancetutor_cli.resources import charts_path
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -29,20 +32,43 @@ FACE = (
 )  # and fingers
 
 
+@dataclass(frozen=True)
+class Passage:
+    """Some seconds of a dance, which can be danced in any style."""
+
+    plan: Plan
+    context: Context
+    span: Span
+
+    def motion(self, style: str | None = None) -> Motion:
+        """Baked as a piece of its own: the ragdoll need not follow her through the whole song."""
+        ragdoll = None if style is None else Ragdoll(load_style(style), Wishes())
+        return bake_piece(piece_of(self.plan, self.context, 60.0, (self.span, self.span, MARGIN), ragdoll)).motion
+
+
+def by_hand(events: list[plays.Event]) -> Passage:
+    plan, context = planned(plays.chart().timing, plays.play(events), plays.pad())
+    return Passage(plan, context, (0.6, 4.0))
+
+
+def of_the_demo(difficulty: str, start: float, end: float, bar: bool = False) -> Passage:
+    path = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+    request = DanceRequest(path, Selection("dance-single", difficulty), bar=bar)
+    (dancer,) = perform(solve(request), request).dancers
+    return Passage(dancer.plan, dancer.context, (start, end))
+
+
 @pytest.fixture(scope="module")
 def danced() -> dict[str, Motion]:
     turns = (0, 3, 1, 2, 0, 3, 2, 1, 0, 3)
     events = [(1.0 + 0.3 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
-    plain = bake(plays.chart(), plays.play(events), plays.pad(), section=(0.6, 4.0))
-    return {name: styled(plain, name, default_settings()).motion for name in style_names()}
+    return {name: by_hand(events).motion(name) for name in style_names()}
 
 
 @pytest.fixture(scope="module")
-def hard() -> Motion:
+def hard() -> Passage:
     """Two and a half of the demo's hardest seconds: a step every eighth of a second, with half turns."""
-    task = BakeTask(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection("dance-single", "challenge"))
-    task = replace(task, section="17:19.5")
-    return bake_asked(ask(task), task)
+    return of_the_demo("challenge", 17.0, 19.5)
 
 
 @pytest.fixture(scope="module")
@@ -79,8 +105,8 @@ def test_she_neither_falls_nor_jerks_nor_floats_in_any_style(reports: dict[str, 
 
 
 @pytest.mark.parametrize("name", style_names())
-def test_in_the_hardest_passage_arms_neither_whip_nor_go_through_her(hard: Motion, name: str) -> None:
-    plain, made = report(hard), report(styled(hard, name, default_settings()).motion)
+def test_in_the_hardest_passage_arms_neither_whip_nor_go_through_her(hard: Passage, name: str) -> None:
+    plain, made = report(hard.motion()), report(hard.motion(name))
     for figure in ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits"):
         assert made[figure].met, made[figure]
     for figure in ("limb in torso", "arm in arm", "arm in leg", "leg in leg"):
@@ -90,21 +116,19 @@ def test_in_the_hardest_passage_arms_neither_whip_nor_go_through_her(hard: Motio
     assert made["wrist speed"].value < 1.4 * plain["wrist speed"].value
 
 
-def test_arms_that_a_style_sends_through_her_go_back(hard: Motion) -> None:
+def test_arms_that_a_style_sends_through_her_go_back(hard: Passage) -> None:
     """A style whose forces press both arms into the trunk."""
     style = load_style("lazy")
     pressing = replace(style, force={**style.force, "arms": (-120.0, 0.0, -60.0), "hands": (-60.0, 0.0, -30.0)})
-    made = report(through_ragdoll(hard, pressing).motion)
+    made = report(through_ragdoll(hard.motion(), pressing).motion)
     assert made["limb in torso"].met and made["arm in arm"].met and made["arm in leg"].met
 
 
 @pytest.mark.parametrize("name", ["fierce", "lazy"])
 def test_hands_stay_on_the_bar(name: str) -> None:
-    task = BakeTask(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection("dance-single", "hard"))
-    task = replace(task, section="8:11", bar=True)
-    plain = bake_asked(ask(task), task)
+    passage = of_the_demo("hard", 8.0, 11.0, bar=True)
+    plain, motion = passage.motion(), passage.motion(name)
     assert plain.grips and max(g.end for g in plain.grips) > 9.0
-    motion = styled(plain, name, default_settings()).motion
     made, head = report(motion), motion.skeleton.index("skullbase")
     for figure in ("palm off the bar", "frames past joint limits", "limb in torso", "contact error", "plant slide"):
         assert made[figure].met, made[figure]
@@ -119,17 +143,16 @@ def test_palms_press_their_panels_on_time_in_every_style() -> None:
         (2.5, {0: plays.L, 3: plays.R, 1: plays.LH}),
         (3.5, {0: plays.L}),
     ]
-    plain = bake(plays.chart(), plays.play(events), plays.pad(), section=(0.6, 4.0))
     for name in style_names():
-        measured = report(styled(plain, name, default_settings()).motion)
+        measured = report(by_hand(events).motion(name))
         assert measured["contact error"].met and measured["contacts missed"].met, name
 
 
 @pytest.mark.parametrize("name", ["fierce", "feminine"])
 def test_the_mirror_image_of_a_motion_is_styled_to_the_mirror_image(danced: dict[str, Motion], name: str) -> None:
     """Forces outward, springs and limits have no side."""
-    plain = danced["neutral"]
-    here, there = (styled(m, name, default_settings()).motion for m in (plain, mirrored_motion(plain)))
+    plain, style = danced["neutral"], load_style(name)
+    here, there = (through_ragdoll(m, style).motion for m in (plain, mirrored_motion(plain)))
     shown = [k for k, n in enumerate(plain.skeleton.names) if not n.startswith(FACE)]
     a, b = (world_transforms(m.skeleton, m.rotations, m.root)[0] for m in (here, mirrored_motion(there)))
     assert 1000 * np.abs(a - b)[:, shown].max() < 1.0, "millimetres"

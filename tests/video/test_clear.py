@@ -82,7 +82,7 @@ def jumping(layout: str, camera: str | None) -> Film:
     look = FilmLook(part, part.size, quality="draft", renderer="cpu", camera=camera)
     motion = Motion(skeleton, 20.0, times, rotations, root, ())
     said = callout(0.0, 1.0, 8.0, "right foot: heel on right, toe on up ×3, footswitch")
-    return Film(replace(plan, look=look, motions={1.0: motion}, pad=load_pad("dance-single"), callouts=(said,)))
+    return Film(replace(plan, look=look, motions={1.0: (motion,)}, pad=load_pad("dance-single"), callouts=(said,)))
 
 
 CAMERAS = (None, "front", "front-high", "three-quarter", "side")
@@ -116,9 +116,9 @@ def test_the_songs_words_end_before_her_head(layout: str, camera: str | None, wo
     told = replace(
         film.plan.words, title=title, subtitle=subtitle, artist="Somebody & Others", detail="pump-single · 90 BPM"
     )
-    motion = film.plan.motions[1.0]
+    (motion,) = film.plan.motions[1.0]
     root = motion.root * [1.4, 1.0, 1.0] - [0.0, 0.06, 0.0]
-    film = Film(replace(film.plan, words=told, motions={1.0: replace(motion, root=root)}))
+    film = Film(replace(film.plan, words=told, motions={1.0: (replace(motion, root=root),)}))
     left, top, _, _ = film._box("dancer")
     seen = film._dancer.heads_and_feet([film.plan.clock.moment(k) for k in range(6, 42)]) + np.array([left, top] * 2)
     assert film._header is not None

@@ -76,7 +76,7 @@ def walked(layout: str, start: float, away: bool) -> Film:
     plan = film_plan(np.array([5.0, 7.0]), Clock((Pass(0.0, 11.0),), 4))
     motion = Motion(skeleton, 10.0, times, rotations, root, ())
     look = FilmLook(load_layout(layout), SIZE, quality="draft", renderer="cpu")
-    return Film(replace(plan, look=look, motions={1.0: motion}, pad=load_pad("dance-single")))
+    return Film(replace(plan, look=look, motions={1.0: (motion,)}, pad=load_pad("dance-single")))
 
 
 @pytest.mark.parametrize(("layout", "start"), [("side-by-side", 1.1), ("dancer", 1.7)])

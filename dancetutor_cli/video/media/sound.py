@@ -148,12 +148,12 @@ def _pass(plan: SoundPlan, one: Pass) -> Samples:
         edge = min(round(FADE * RATE), len(music))
         if begin > plan.shift:  # cut in the middle of the music
             music[:edge] *= np.linspace(0, 1, edge, dtype=np.float32)[:, None]
-        at = round((begin - one.start) / one.rate * RATE)
+        at = round(one.shown(begin) * RATE)
         music = music[: count - at]
         track[at : at + len(music)] += music * (0.8 if plan.clicks else 1.0)
     for click in plan.clicks:
         if one.start <= click.second < one.end:
-            _add(track, click_sound(click.pitch) * click.gain, (click.second - one.start) / one.rate)
+            _add(track, click_sound(click.pitch) * click.gain, one.shown(click.second))
     return track
 
 

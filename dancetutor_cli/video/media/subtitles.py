@@ -100,7 +100,7 @@ def _together(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle
     for cue in cues:
         if not max(one.start, one.sound_from) <= cue.second < one.end:
             continue
-        first, last = (begin + (min(s, one.end) - one.start) / one.rate for s in (cue.second, cue.end))
+        first, last = (begin + one.shown(min(s, one.end)) for s in (cue.second, cue.end))
         first = max(begin, min(first, begin + one.seconds - style.stays))  # what comes last can be read, too
         if not lines or first >= lines[-1].first + style.shortest:
             lines.append(_Line(first, first, last))

@@ -19,9 +19,10 @@ from dancetutor_cli.video.move_words import MINE, SAID_BY_A_BRACKET, filled, sho
 from dancetutor_cli.video.notes import Callout
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from dancetutor_cli.lint.subject import ChartSubject
+    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.lint.finding import Finding
     from dancetutor_cli.pads import Pad
     from dancetutor_cli.play.played import Play
     from dancetutor_cli.video.ahead import Ahead
@@ -106,8 +107,16 @@ class _Told(NamedTuple):
         return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
 
 
+class Called(NamedTuple):
+    """What calls are about: a chart, the pad, and what the linter finds there, looked for when it is needed."""
+
+    chart: Chart
+    pad: Pad | None
+    findings: Callable[[], Iterable[Finding]]
+
+
 def callouts_of(
-    subject: ChartSubject,
+    about: Called,
     play: Play | None,
     style: CallStyle,
     scrolls: ScrollSegments,
@@ -117,18 +126,18 @@ def callouts_of(
 
     Moves in a row, such as one crossover after the other, are one passage with a count.
 
-    subject : for the linter; play : what the picture shows of it. Of a row with a note that nobody
+    about : the chart; play : what the picture shows of it. Of a row with a note that nobody
     plays, or a mine that a foot is on, it is always said what the linter finds there.
     on_mines : those mines
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
     mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
-    findings = list(_findings(subject, codes=not style.findings)) if style.findings or ticks or mined else []
+    findings = list(_findings(about.findings(), codes=not style.findings)) if style.findings or ticks or mined else []
     why = {} if style.findings else dict(_reasons(ticks, findings))
     under = {} if style.findings else {tick: said for tick, _, said, _ in findings if _OF_MINES in said}
-    found = [*_moves(subject.pad, play, style, why), *(findings if style.findings else ())]
+    found = [*_moves(about.pad, play, style, why), *(findings if style.findings else ())]
     found += ((tick, tick, style.words[MINE] + (f" ({under[tick]})" if tick in under else ""), 0) for tick in mined)
-    timing = subject.chart.timing
+    timing = about.chart.timing
     asked = sorted({tick for first, last, *_ in found for tick in (first, last)})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
     told = _Told(seconds, [] if play is None else _jumps(play))
@@ -213,10 +222,8 @@ def _jumps(play: Play) -> list[int]:
     return [tick for tick, names in rows if "jump" in names and not {*_CROSSED}.intersection(names)]
 
 
-def _findings(subject: ChartSubject, codes: bool) -> Iterator[tuple[int, int, str, int]]:
-    from dancetutor_cli.lint.check import findings_of
-
-    for finding in findings_of(subject):
+def _findings(findings: Iterable[Finding], codes: bool) -> Iterator[tuple[int, int, str, int]]:
+    for finding in findings:
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
             tick = round(finding.beat * TICKS_PER_BEAT)
             said = finding.name.replace("-", " ")

@@ -56,26 +56,25 @@ class Shot:
 class Dancer:
     """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
 
-    motions : hers at each rate, in seconds of the music as it is heard at that rate
+    motions : at each rate those of one or two who dance, in seconds of the music as it is heard at that rate
     character : who dances; None: the project's own dancer
-    partners : of a chart for two the second one's motions, likewise; empty: she dances alone
     """
 
     def __init__(
         self,
-        motions: Mapping[float, Motion],
+        motions: Mapping[float, tuple[Motion, ...]],
         pad: PadLike,
         lights: PanelLights,
         shot: Shot,
         character: Character | None = None,
-        partners: Mapping[float, Motion] | None = None,
     ) -> None:
-        self.motions, self.partners, self.lights = motions, partners or {}, lights
+        self.motions, self.lights = motions, lights
+        self._count = max(map(len, motions.values()))
         self._size = shot.size
-        bar, joints = next((motion.bar, motion.skeleton.names) for motion in motions.values())
+        bar, joints = next((some[0].bar, some[0].skeleton.names) for some in motions.values())
         floor = -default_look().stage.pad_height
         self.alone = character or load_dancer()
-        seen = with_partner(self.alone) if self.partners else self.alone
+        seen = with_partner(self.alone) if self._count > 1 else self.alone
         self.scene = Scene(seen, pad)
         self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
         glass = bar is not None and stands_before(bar, self.camera)
@@ -118,7 +117,10 @@ class Dancer:
         usual = look.cameras[camera].region if region == WHOLE else region
         for back in (*np.arange(1.0, look.follow.back - 0.01, 0.04), look.follow.back):
             box = farther(usual, float(back)) if back > 1 else region
-            found = {r: Follow(self.scene, camera, size, m.times, self._roots(r), box) for r, m in self.motions.items()}
+            found = {
+                rate: Follow(self.scene, camera, size, some[0].times, self._roots(rate), box)
+                for rate, some in self.motions.items()
+            }
             if max(follow.cut for follow in found.values()) * size[0] < 1:
                 break
         low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
@@ -128,11 +130,11 @@ class Dancer:
 
     def _roots(self, rate: float) -> NDArray[np.float64]:
         """Where her root is, (f, 3) metres, at the times of her motion; of two who dance (2, f, 3)."""
-        hers, theirs = self.motions[rate], self.partners.get(rate)
-        if theirs is None:
+        hers, *others = self.motions[rate]
+        if not others:
             return hers.root
-        other = np.column_stack([np.interp(hers.times, theirs.times, x) for x in theirs.root.T])
-        return np.stack([hers.root, other])
+        roots = [np.column_stack([np.interp(hers.times, one.times, x) for x in one.root.T]) for one in others]
+        return np.stack([hers.root, *roots])
 
     def walks_behind(
         self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float
@@ -169,7 +171,7 @@ class Dancer:
 
     def feet(self, joints: NDArray[np.float64]) -> list[FootFromAbove | None]:
         """Both feet from above, in panel widths of the pad; of two who dance all four."""
-        whose = ("", PREFIX) if self.partners else ("",)
+        whose = ("", PREFIX)[: self._count]
         return [self._foot(mark) for one in whose for mark in foot_marks(self.scene, joints, one)]
 
     def _foot(self, mark: FootMark | None) -> FootFromAbove | None:
@@ -184,21 +186,19 @@ class Dancer:
 
         Joints go by name: a character's file may order them its own way.
         """
-        parts = [self._joints_of(self.motions, moments)]
-        if self.partners:
-            parts.append(self._joints_of(self.partners, moments))
+        parts = [self._joints_of(number, moments) for number in range(self._count)]
         if self._bar is not None:
             parts.append(np.broadcast_to(bar_matrix(self._bar), (len(moments), 1, 4, 4)))
         return np.concatenate(parts, axis=1)
 
-    def _joints_of(self, motions: Mapping[float, Motion], moments: Sequence[Moment]) -> NDArray[np.float64]:
+    def _joints_of(self, number: int, moments: Sequence[Moment]) -> NDArray[np.float64]:
         skeleton = self.alone.skeleton
         rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
         rotations[..., 0] = 1.0
         rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
         for one in np.unique(rate):
             here = np.flatnonzero(rate == one)
-            sampled, root[here] = sample(motions[float(one)], heard[here])
+            sampled, root[here] = sample(self.motions[float(one)][number], heard[here])
             rotations[here[:, None], self._ours] = sampled[:, self._theirs]
         return joint_matrices(skeleton, rotations, root)
 

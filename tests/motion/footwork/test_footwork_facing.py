@@ -125,7 +125,7 @@ def test_who_spins_goes_round_evenly() -> None:
     """Round the pad at 6.7 steps a second: the slowest way for 280 degrees a second would catch up in jerks of 736."""
     ring = (0, 1, 3, 2)
     steps = [(2.0 + 0.15 * k, {ring[k % 4]: (L, R)[k % 2]}) for k in range(24)]
-    found = report(bake(chart(), play(steps), pad()))
+    found = report(bake(chart().timing, play(steps), pad()))
     assert found["pelvis turns at"].value < 650.0
     assert found["wrist speed"].value < 4.0
     assert found["frames past joint limits"].value == 0.0 and found["limb in torso"].value == 0.0

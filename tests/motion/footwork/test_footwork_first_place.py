@@ -45,7 +45,7 @@ def switched(start: float, column: int, first: Limb, away: int) -> Play:
 def test_a_footswitch_on_the_panel_where_she_waits_leaves_both_shoes_room(
     start: float, column: int, first: Limb, away: int, pump_double: Pad
 ) -> None:
-    plan = plan_of(chart(), switched(start, column, first, away), pump_double)
+    plan = plan_of(chart().timing, switched(start, column, first, away), pump_double)
     assert any(isinstance(move, Walk) for move in plan.feet[0].moves if move.land < start) == (start > 2.0)
     times = np.arange(start - 0.6, start + 1.5, 0.005)
     left, right = (foot_path(track, times, SETTINGS) for track in plan.feet)

@@ -34,7 +34,7 @@ def shakes(plan: Plan) -> list[tuple[int, Shake]]:
 
 @pytest.fixture(scope="module")
 def long() -> Plan:
-    return plan_of(chart(), danced(60.0), pad())
+    return plan_of(chart().timing, danced(60.0), pad())
 
 
 def test_both_legs_are_shaken_in_a_long_wait_and_no_two_alike(long: Plan) -> None:
@@ -75,23 +75,23 @@ def test_a_loose_foot_goes_to_and_fro_and_flaps(long: Plan) -> None:
 
 @pytest.mark.parametrize("wait", [1.0, 3.0, LOOSE.least])
 def test_in_short_waits_nothing_is_shaken(wait: float) -> None:
-    assert shakes(plan_of(chart(), danced(wait), pad())) == []
+    assert shakes(plan_of(chart().timing, danced(wait), pad())) == []
 
 
 def test_a_mirrored_plan_shakes_the_other_leg(long: Plan) -> None:
-    image = plan_of(chart(), mirrored_play(danced(60.0), SINGLE), pad())
+    image = plan_of(chart().timing, mirrored_play(danced(60.0), SINGLE), pad())
     key = [(1 - side, m.lift, m.land, m.rate, m.flap) for side, m in shakes(image)]
     assert sorted(key) == sorted((side, m.lift, m.land, m.rate, m.flap) for side, m in shakes(long))
 
 
 def test_another_song_shakes_otherwise(long: Plan) -> None:
-    other = shakes(plan_of(chart(), danced(60.5), pad()))
+    other = shakes(plan_of(chart().timing, danced(60.5), pad()))
     assert [m.lift for _, m in other] != [m.lift for _, m in shakes(long)]
 
 
 def test_she_keeps_her_balance_over_the_other_leg(long: Plan) -> None:
     side, shake = max(shakes(long), key=lambda one: one[1].land - one[1].lift)
-    motion = bake(chart(), danced(60.0), pad(), section=(shake.lift - 2.0, shake.land + 2.0))
+    motion = bake(chart().timing, danced(60.0), pad(), section=(shake.lift - 2.0, shake.land + 2.0))
     figures = report(motion)
     assert [f.name for f in figures.figures if f.met is False] == [], figures.notes
     body = body_of(motion)
@@ -103,4 +103,4 @@ def test_she_keeps_her_balance_over_the_other_leg(long: Plan) -> None:
 def test_numbers_that_make_no_sense_do_not_hang() -> None:
     nothing = replace(LOOSE, every=0.0, between=0.0, up=0.0, shortest=0.0, longest=0.0, pause=0.0, ready=0.0)
     settings = replace(SETTINGS, loose=nothing)
-    assert shakes(plan_of(chart(), danced(8.0), pad(), settings=settings))
+    assert shakes(plan_of(chart().timing, danced(8.0), pad(), settings=settings))

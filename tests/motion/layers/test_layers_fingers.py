@@ -69,7 +69,7 @@ def test_a_dance_has_fists_in_streams_and_flat_hands_on_the_floor() -> None:
         (11.5, {0: L, 3: R, 1: LH}),
         (14.0, {0: L}),
     ]
-    motion = bake(chart(), play(events), pad())
+    motion = bake(chart().timing, play(events), pad())
     joint = motion.skeleton.index(f"l_{KNUCKLES}")
 
     along = motion.rotations[:, joint, 1:]

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bake_plays import chart, pad, play
+from dance_requests import baked
 
 from dancetutor_cli.bake import bake, report
-from dancetutor_cli.jobs.bake import BakeTask, ask
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.layers.additive import eyelids
@@ -27,7 +28,7 @@ TURNS = [(2.0 + 0.5 * k, {(0, 1, 3, 2)[k % 4]: (L, R)[k % 2]}) for k in range(16
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return bake(chart(), play(TURNS), pad())
+    return bake(chart().timing, play(TURNS), pad())
 
 
 def test_eyes_turn_within_their_limits_and_move(motion: Motion) -> None:
@@ -64,8 +65,7 @@ def test_where_head_and_eyes_can_they_look_at_the_screen(motion: Motion) -> None
 def test_a_chest_that_both_hands_pull_askew_wrings_no_neck(corpus: Path) -> None:
     """Both palms on the rear corners at once, from the chart of meter 99 in which the head was 176 degrees from it."""
     path = sorted(corpus.glob("*/g0148_*.ssc"))[0]
-    asked = ask(BakeTask(path, Selection(index=6)))
-    measured = report(bake(asked.chart, asked.play, asked.pad, section=(70.8, 72.4)))
+    measured = report(baked(DanceRequest(path, Selection(index=6)), "70.8:72.4"))
     assert measured["head from the chest"].met
     assert measured["head turns on the chest at"].value < 500.0
 

@@ -20,7 +20,7 @@ SLOW: list[Event] = [(2.0 + 1.2 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in ra
 
 def glanced(danced: Play) -> Glances:
     where = context()
-    plan = plan_of(chart(), danced, pad())
+    plan = plan_of(chart().timing, danced, pad())
     body = body_trajectory(plan, GRID, both_feet(plan.feet, GRID, where.settings), where)
     return glances_at(plan, body, GRID, where)
 
@@ -60,5 +60,5 @@ def test_a_mirrored_play_glances_mirrored(slow: Glances) -> None:
 
 
 def test_neck_and_eyes_stay_within_their_limits() -> None:
-    measured = report(bake(chart(), play(SLOW[:8]), pad()))
+    measured = report(bake(chart().timing, play(SLOW[:8]), pad()))
     assert measured["frames past joint limits"].value == 0.0

@@ -35,7 +35,7 @@ SCENES: dict[str, tuple[list[Event], bool]] = {
 @pytest.mark.parametrize("scene", SCENES)
 def test_no_leg_is_deeper_than_a_centimetre_in_the_other(scene: str) -> None:
     events, double = SCENES[scene]
-    motion = bake(chart(), play(events, double), pad(double))
+    motion = bake(chart().timing, play(events, double), pad(double))
     deep = limb_depths(body_of(motion), motion.skeleton)["leg in leg"]
     assert deep.max() < 0.010, f"{100 * deep.max():.1f} cm at {body_of(motion).times[deep.argmax()]:.2f} s"
 

@@ -39,12 +39,12 @@ def heard(groove: bool = True) -> Context:
 
 def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
     engaged = Engaged(STILL + tempo, STILL + busy, STILL + waits)
-    return groove_of(plan_of(chart(), play(events), pad()), TIMES, engaged, heard())
+    return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, engaged, heard())
 
 
 def test_what_is_tapped_again_is_found() -> None:
     settings = context().settings
-    jacks, steps = (plan_of(chart(), play(events), pad()) for events in (jack(0.25), stream(0.25)))
+    jacks, steps = (plan_of(chart().timing, play(events), pad()) for events in (jack(0.25), stream(0.25)))
     inside = (TIMES > 3.0) & (TIMES < 7.0)
     assert repeated(jacks, TIMES, settings)[inside].min() > 0.99
     assert repeated(steps, TIMES, settings).max() < 0.01
@@ -53,10 +53,10 @@ def test_what_is_tapped_again_is_found() -> None:
 def test_jumps_are_no_jacks_and_one_tap_in_a_stream_is_nothing() -> None:
     settings = context().settings
     jumps = [(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)]
-    assert repeated(plan_of(chart(), play(jumps), pad()), TIMES, settings).max() < 0.01
+    assert repeated(plan_of(chart().timing, play(jumps), pad()), TIMES, settings).max() < 0.01
     assert np.abs(groove(jumps).sway[(TIMES > 3.0) & (TIMES < 7.0)]).max() < 0.1, "straight up"
     one = [*stream(0.25, 8), (4.0, {3: R}), *[(4.25 + 0.25 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(8)]]
-    assert repeated(plan_of(chart(), play(one), pad()), TIMES, settings).max() < 0.5
+    assert repeated(plan_of(chart().timing, play(one), pad()), TIMES, settings).max() < 0.5
 
 
 def test_she_sways_from_side_to_side_on_beats_and_never_alike() -> None:
@@ -75,14 +75,14 @@ def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, f
 
 def test_the_mirror_image_sways_the_other_way() -> None:
     events = jack(0.25)
-    image = plan_of(chart(), mirrored_play(play(events), SINGLE), pad())
+    image = plan_of(chart().timing, mirrored_play(play(events), SINGLE), pad())
     other = groove_of(image, TIMES, Engaged(STILL, STILL, STILL), heard())
     np.testing.assert_allclose(other.sway, -groove(events).sway, atol=1e-12)
     np.testing.assert_allclose(other.sink, groove(events).sink, atol=1e-12)
 
 
 def danced(events: list[Event], groove: bool) -> Motion:
-    return bake_plan(plan_of(chart(), play(events), pad()), heard(groove), 60.0, (3.0, 7.0))
+    return bake_plan(plan_of(chart().timing, play(events), pad()), heard(groove), 60.0, (3.0, 7.0))
 
 
 def moves(body: Body, joint: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +14,7 @@ from dancetutor_cli.pads import load_pad
 from dancetutor_cli.play.turned import half_turned
 from dancetutor_cli.video.ahead import Ahead, parse_ahead
 from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay.callouts import CallStyle, _reasons, callouts_of
+from dancetutor_cli.video.overlay.callouts import Called, CallStyle, _reasons, callouts_of
 from dancetutor_cli.video.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.video.scroll import parse_segments
 
@@ -44,8 +45,10 @@ def subject(*rows: tuple[float, tuple[str, ...], dict[int, int], dict[int, int]]
     return SimpleNamespace(play=play, pad=pad, chart=SimpleNamespace(timing=timing))
 
 
-def called(what: Any, **how: Any) -> tuple[Callout, ...]:
-    return callouts_of(what, what.play, CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how), parse_segments(""))
+def called(what: Any, found: Iterable[Any] = (), **how: Any) -> tuple[Callout, ...]:
+    """found : by the linter"""
+    style = CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how)
+    return callouts_of(Called(what.chart, what.pad, lambda: found), what.play, style, parse_segments(""))
 
 
 def moves(*beats_and_names: tuple[float, str]) -> Any:
@@ -210,12 +213,11 @@ def test_other_words_for_a_time_are_refused_in_one_line(text: str) -> None:
         parse_ahead(text)
 
 
-def test_findings_are_for_authors_who_ask_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_findings_are_for_authors_who_ask_for_them() -> None:
     finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", name="fast-step")
-    monkeypatch.setattr("dancetutor_cli.lint.check.findings_of", lambda _: [finding])
     what = moves((8.0, "footswitch"))
-    assert [one.text for one in called(what)] == ["footswitch: swap feet"]
-    assert [(one.text, one.severity) for one in called(what, findings=True)] == [
+    assert [one.text for one in called(what, [finding])] == ["footswitch: swap feet"]
+    assert [(one.text, one.severity) for one in called(what, [finding], findings=True)] == [
         ("fast step", "warning"),
         ("footswitch: swap feet", "move"),
     ]

@@ -10,7 +10,9 @@ import pytest
 from film_plans import DIRECTIONS, film_plan
 
 from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.pads import load_pad
+from dancetutor_cli.rig.skeleton import dancer_skeleton
 from dancetutor_cli.video.film import Film
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
@@ -112,16 +114,24 @@ def test_only_pads_of_more_than_a_square_have_the_wide_boxes(steps: str, wide: b
     assert film._box("dancer") == layout.box("dancer", layout.size, 8 if wide else 4)
 
 
+def standing() -> Motion:
+    """She stands in the middle of the pad for ten seconds."""
+    skeleton, times = dancer_skeleton(), np.array([0.0, 10.0])
+    rotations = np.zeros((2, len(skeleton.names), 4))
+    rotations[..., 0] = 1.0
+    return Motion(skeleton, 1.0, times, rotations, np.tile([0.0, 0.94, 0.0], (2, 1)), ())
+
+
 @pytest.mark.parametrize("two", [False, True])
 def test_on_a_phone_the_feet_are_seen_from_above_on_doubles_too(two: bool) -> None:
     """Beside her head, below the song's words however many; where two dance there is no room for them."""
     pad, layout = load_pad("dance-double"), load_layout("vertical")
     plan = film_plan(np.arange(1.0, 9.0), columns=np.arange(8))
-    partners = {1.0: plan.motions} if two else {}
+    motions = {1.0: (standing(), standing())} if two else {}
     for title in ("Title", "A Title of Very Many Words That Never Ends, Not Even Here " * 2):
         words = replace(plan.words, title=title)
-        look = FilmLook(layout, layout.size)
-        film = Film(replace(plan, look=look, pad=pad, directions=pad.directions, partners=partners, words=words))  # type: ignore[union-attr, arg-type]
+        look = FilmLook(layout, layout.size, quality="draft", renderer="cpu")
+        film = Film(replace(plan, look=look, pad=pad, directions=pad.directions, motions=motions, words=words))  # type: ignore[union-attr, arg-type]
         box = film._feet_box
         assert (box is None) == two
         assert film._legend is not None and film._header is not None

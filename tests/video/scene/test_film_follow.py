@@ -45,7 +45,7 @@ def dancer(
     pad = load_pad(pad_name)
     assert pad is not None
     lights = PanelLights(Presses(*(np.zeros(0) for _ in range(4))), len(pad.panels), 0.3)
-    motions = {rate: Motion(skeleton, 10.0, times / rate, rotations, root, ()) for rate in (0.5, 1.0)}
+    motions = {rate: (Motion(skeleton, 10.0, times / rate, rotations, root, ()),) for rate in (0.5, 1.0)}
     return Dancer(motions, pad, lights, Shot(size, camera, "draft", "cpu", stands=stands))
 
 

@@ -38,7 +38,7 @@ def dancer(camera: str, bar: bool, size: tuple[int, int] = (96, 96)) -> Dancer:
     motion = Motion(skeleton, 10.0, times, rotations, root, ())
     if bar:
         motion = replace(motion, bar=bar_of(pad, load_settings().bar))
-    return Dancer({1.0: motion}, pad, lights, Shot(size, camera, "draft", "cpu"))
+    return Dancer({1.0: (motion,)}, pad, lights, Shot(size, camera, "draft", "cpu"))
 
 
 def with_and_without(camera: str) -> tuple[Frame, Frame]:

@@ -9,10 +9,14 @@ import numpy as np
 
 from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
 from dancetutor_cli.errors import UsageError
+from dancetutor_cli.motion.swing.panels import PANEL
 from dancetutor_cli.pads import load_pad
+from dancetutor_cli.play.played import Limb, Play
+from dancetutor_cli.play.rows import prepare
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.pads import Pad
 
 SEEN = 8  # notes at either end that say where somebody stands
@@ -20,12 +24,19 @@ SEEN = 8  # notes at either end that say where somebody stands
 _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
 
 
-def check_for_two(chart: Chart) -> None:
-    """UsageError of a chart for more than two: no picture has a third dancer, though each of them can dance alone."""
+def check_alone(request: DanceRequest, chart: Chart) -> None:
+    """UsageError of a request that cannot be met for all who dance a chart: each of them can dance alone.
+
+    No picture has a third dancer, and what a request lays down for one is not for two.
+    """
     count = len(chart.players)
     if count > 2:
         choice = f"at most two dance in one picture: choose with --player 1 to {count}"
         raise UsageError(f"{chart.label} is for {count} players, and {choice}")
+    alone = {"--bar": request.bar, "--play": request.play, "--push": request.push, "--trip": request.trip}
+    option = next((name for name, given in alone.items() if given), None)
+    if option is not None:
+        raise UsageError(f"{option} is for one dancer, and {chart.label} is for two: choose with --player 1 or 2")
 
 
 def pad_of_both(steps_type: str) -> Pad:
@@ -40,8 +51,6 @@ def place_on(whole: Pad, part: Chart, pad: Pad) -> tuple[float, float]:
 
     Panels' x goes to her right, the world's to her left.
     """
-    from dancetutor_cli.video.scene.stage import PANEL
-
     away = whole.panels[part.first_column] - pad.panels[0] + np.array(pad.centre) - np.array(whole.centre)
     return float(-away[0] * PANEL), float(away[1] * PANEL)
 
@@ -62,3 +71,30 @@ def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
     places = [float(whole.panels[own, 0].mean()) if len(own) else 0.0 for own in columns]
     ranks = np.argsort(np.argsort(places, kind="stable"))
     return [int(2 * rank >= len(parts)) for rank in ranks]
+
+
+def together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
+    """What both step as one play of the chart as it is written: who steps what, and what happens; no costs."""
+    rows = prepare(chart, whole)
+    limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
+    part = np.zeros(rows.steps.shape, dtype=np.uint8)
+    moves: list[set[str]] = [set() for _ in range(len(rows))]
+    for player, play in zip(chart.players, plays, strict=True):
+        here = np.minimum(np.searchsorted(rows.tick, play.rows.tick), len(rows) - 1)
+        at, column = np.nonzero((play.rows.steps > 0) & (rows.tick[here] == play.rows.tick)[:, None])
+        limb[here[at], column + player.first_column] = play.limb[at, column]
+        part[here[at], column + player.first_column] = play.part[at, column]
+        for row, names in zip(here.tolist(), play.moves, strict=True):
+            moves[row] |= set(names)
+    return Play(
+        rows=rows,
+        limb=limb,
+        part=part,
+        feet=np.full((len(rows), 2), -1, dtype=np.int16),
+        facing=np.zeros(len(rows)),
+        terms=(),
+        cost=np.zeros((len(rows), 0), dtype=np.int32),
+        margin=None,
+        moves=tuple(tuple(sorted(names)) for names in moves),
+        preset=plays[0].preset,
+    )

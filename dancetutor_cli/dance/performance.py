@@ -1,0 +1,210 @@
+"""The performance of a chart: who dances it, and how; every section, film, page and file is cut out of the same one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.bake.bake import bake_piece, cut, planned
+from dancetutor_cli.bake.ends import entered, entrance_of, entrance_piece, exit_of, exit_piece, left, rest_from
+from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, Ragdoll, in_turn, pieces_of, whole_span
+from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
+from dancetutor_cli.dance.two import pad_of_both, place_on, sides_of, together
+from dancetutor_cli.errors import DancetutorError, UsageError
+from dancetutor_cli.motion.baked import Cut, Motion
+from dancetutor_cli.motion.settings import load_settings
+from dancetutor_cli.play.let_go import without_unplayable
+from dancetutor_cli.play.solved import Solved, solve_song
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.motion.context import Context
+    from dancetutor_cli.motion.plan import Plan
+    from dancetutor_cli.pads import Pad
+    from dancetutor_cli.play.played import Play
+
+
+@dataclass(frozen=True, slots=True)
+class Dancer:
+    """One of those who dance: whose part she plays, and what she does on her own pad.
+
+    play, plan : at seconds of the music as it is heard, without notes that nobody plays
+    place : where the middle of her pad is from that of all, (x, z) in metres
+    """
+
+    solved: Solved
+    pad: Pad
+    play: Play
+    plan: Plan
+    context: Context
+    place: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Performance:
+    """How a chart is danced at one rate of its music. One dancer is a tuple of length one.
+
+    pad : under all; timing : of the music as it is heard
+    """
+
+    request: DanceRequest
+    rate: float
+    timing: Timing
+    pad: Pad
+    dancers: tuple[Dancer, ...]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last second, of the music as it is heard."""
+        spans = [whole_span(one.plan, one.context) for one in self.dancers]
+        return min(start for start, _ in spans), max(end for _, end in spans)
+
+    def motions(self, wanted: Cut | None = None, each: Each = in_turn, walks_off: bool = True) -> list[BakedPiece]:
+        """What each dancer does on her own pad; `place` says where that is.
+
+        Parameters
+        ----------
+        wanted : the part that is wanted, None: all of it
+        each : does pieces of work, in turn or in several processes
+        walks_off : whether a dancer may be seen to leave after the last note; else she stays
+        """
+        wanted = wanted or Cut(*self.span)
+        ragdoll = self._ragdoll(wanted)
+        return [self._motion(one, wanted, ragdoll, (each, walks_off)) for one in self.dancers]
+
+    def _motion(self, dancer: Dancer, wanted: Cut, ragdoll: Ragdoll | None, how: tuple[Each, bool]) -> BakedPiece:
+        (each, walks_off), fps = how, self.request.fps
+        plan, context = dancer.plan, dancer.context
+        done = cut(pieces_of(plan, context, fps, ragdoll), (wanted.start, wanted.end), each)
+        motion = done.motion
+        if (entrance := entrance_of(plan, wanted)) is not None:
+            piece = entrance_piece(entrance, context, fps, wanted, ragdoll)
+            motion = entered(motion, _one(each, piece), wanted)
+        if (until := rest_from(plan, wanted, walks_off)) is not None:
+            piece = exit_piece(exit_of(plan, until), context, fps, (until, wanted.end), ragdoll)
+            motion = left(motion, _one(each, piece), until, wanted)
+        return replace(done, motion=motion)
+
+    def _ragdoll(self, wanted: Cut) -> Ragdoll | None:
+        if self.request.style is None:
+            return None
+        from dancetutor_cli.physics.pipeline import wishes_of
+        from dancetutor_cli.physics.style import load_style
+
+        wishes = wishes_of(self.request.push, self.request.trip, self.rate)
+        befalls = [("--push", push.second) for push in wishes.pushes] + [("--trip", t.second) for t in wishes.trips]
+        for name, second in befalls:
+            if not wanted.start <= second <= wanted.end:
+                raise UsageError(f"{name} {second:g}: the motion lasts from {wanted.start:.3f} s to {wanted.end:.3f} s")
+        return Ragdoll(load_style(self.request.style), wishes)
+
+
+def _one(each: Each, piece: Piece) -> Motion:
+    return next(iter(each(bake_piece, [piece]))).motion
+
+
+def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solved, ...]:
+    """The feet of each who dances. Raises a DancetutorError of one line for all that is wrong with the request.
+
+    chart : of the request, where it has been read
+    """
+    if chart is None:
+        check_request(request)
+        chart = read_chart(request)
+    presets = {part.player: preset for part, preset in zip(chart.parts, chart.presets, strict=True)}
+    solved = tuple(solve_song(chart.song, chart.parts, lambda part: presets[part.player]))
+    for one in solved:
+        if one.play is None or one.pad is None:
+            raise no_pad(request, one.chart)
+    if request.play is None:
+        return solved
+    from dancetutor_cli.formats.play_json import read_play
+
+    one = solved[0]
+    assert one.play is not None and one.pad is not None
+    return (replace(one, play=read_play(request.play, one.chart, one.play.rows, one.pad)),)
+
+
+def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) -> Performance:
+    """How all who dance do so at one of the request's rates. DancetutorError if a chart has no steps."""
+    timing = solved[0].chart.timing.at_rate(rate)
+    parts = [one.chart for one in solved]
+    pad = pad_of(solved)
+    sides = sides_of(parts) if len(parts) > 1 else (None,)
+    dancers = []
+    for one, side in zip(solved, sides, strict=True):
+        play, own = one.play, one.pad
+        assert play is not None and own is not None
+        if not (play.limb >= 0).any():
+            raise DancetutorError(
+                f"{request.path}: {one.chart.label}: the chart has no steps, so there is nothing to dance"
+            )
+        fastest, gone = without_unplayable(as_heard(play, one.chart.timing.at_rate(max(request.rates))), own)
+        play = as_heard(fastest, timing)
+        settings = load_settings(request.motion, request.form)
+        plan, context = planned(
+            timing, play, own, settings=settings, bar=request.bar, gait=request.gait, sides=side, let_go=gone
+        )
+        place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
+        dancers.append(Dancer(one, own, play, plan, context, place))
+    return Performance(request, rate, timing, pad, tuple(dancers))
+
+
+def pad_of(solved: Sequence[Solved]) -> Pad:
+    """The pad under all who dance."""
+    pad = solved[0].pad if len(solved) == 1 else pad_of_both(solved[0].chart.written_type)
+    assert pad is not None
+    return pad
+
+
+def play_of_all(solved: Sequence[Solved], plays: Sequence[Play]) -> Play:
+    """What all step as one play, on the pad under all. plays : of each"""
+    if len(solved) == 1:
+        return plays[0]
+    return together(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
+
+
+def playable(one: Solved, rates: Iterable[float]) -> Play:
+    """A play without the notes that nobody plays at the fastest of some rates; its seconds are those of the song."""
+    assert one.play is not None and one.pad is not None
+    fastest, _ = without_unplayable(as_heard(one.play, one.chart.timing.at_rate(max(rates))), one.pad)
+    return replace(fastest, rows=one.play.rows)
+
+
+def as_heard(play: Play, timing: Timing) -> Play:
+    """A play whose seconds are those of a timing: of the music as it is heard."""
+    return replace(play, rows=replace(play.rows, second=timing.seconds(play.rows.tick)))
+
+
+def pooled(jobs: int = 1) -> Each:
+    """Does pieces of work in up to so many processes, but those that are kept; results come in the pieces' order."""
+    from dancetutor_cli.dance.store import kept
+
+    return kept(in_turn if jobs <= 1 else partial(_pooled, jobs))
+
+
+def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
+    from dancetutor_cli.jobs.pool import Task, open_workers
+
+    if len(pieces) == 1:
+        yield function(pieces[0])
+        return
+    workers = open_workers(min(jobs, len(pieces)), lambda key, n: None)
+    try:
+        for k, piece in enumerate(pieces):
+            workers.submit(Task(k, _work, (function, piece)))
+        results: dict[int, BakedPiece] = {}
+        for done in workers.done():
+            if done.error is not None:
+                raise done.error
+            results[done.key] = done.result
+    finally:
+        workers.close()
+    for k in range(len(pieces)):
+        yield results.pop(k)
+
+
+def _work(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> BakedPiece:
+    return function(piece)

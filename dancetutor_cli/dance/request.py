@@ -1,0 +1,136 @@
+"""What dance is wanted, and the chart that it is about: read and checked, before anything dear is done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.errors import UsageError
+from dancetutor_cli.fingerprint import NAMED
+from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.motion.forms import USUAL
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.play.preset import Preset
+
+FPS = 60.0  # frames per second that a dance is baked at, unless a file with others is wanted
+
+
+@dataclass(frozen=True, slots=True)
+class DanceRequest:
+    """What dance is wanted. Pickles, so that another process can do it.
+
+    path : the chart file; selection : which chart
+    preset : name or file of the solver's costs, None: what `lint.presets` finds for the chart
+    play : a JSON file of analyze whose feet hold instead of the solver's
+    rates : speeds of the music, 1 is its own; notes that nobody plays at the fastest one are not danced at any
+    fps : regular keys per second
+    bar : the dancer holds the bar behind the pad; gait : name or file of how she walks on and off
+    form : name or file of how she stands and turns
+    motion : file with numbers of the motion that are other than those of configs/motion.yaml
+    style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
+    push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds of the song; only with a style
+    """
+
+    path: Path
+    selection: Selection
+    preset: str | None = None
+    play: Path | None = None
+    rates: tuple[float, ...] = (1.0,)
+    fps: float = FPS
+    bar: bool = False
+    gait: str = field(default="flat", metadata={NAMED: "gaits"})
+    form: str = field(default=USUAL, metadata={NAMED: "forms"})
+    motion: Path | None = None
+    style: str | None = field(default=None, metadata={NAMED: "styles"})
+    push: tuple[str, ...] = ()
+    trip: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ChartChoice:
+    """The chart of a request. chart : as it is written; parts : what each dancer plays, one part for most charts
+
+    presets : the solver's costs, for each part; warnings : lines for people, of other pads than a preset's
+    """
+
+    song: Song
+    chart: Chart
+    parts: tuple[Chart, ...]
+    presets: tuple[Preset, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def shown(self) -> Chart:
+        """The part of the one dancer; of two who dance the chart as it is written."""
+        return self.parts[0] if len(self.parts) == 1 else self.chart
+
+
+def check_request(request: DanceRequest) -> None:
+    """Say what is wrong with the files and names of a request: FileError or UsageError, before the work.
+
+    UnavailableError if a style is wanted and there is no engine for it.
+    """
+    from dancetutor_cli.motion.gait import load_gait
+    from dancetutor_cli.motion.settings import load_settings
+
+    load_settings(request.motion, request.form)
+    load_gait(request.gait)
+    if request.style is not None:
+        from dancetutor_cli.physics.backend import engine
+        from dancetutor_cli.physics.style import load_style
+
+        load_style(request.style)
+        engine()
+    if request.push:
+        from dancetutor_cli.physics.pushes import parse_push
+
+        for push in request.push:
+            parse_push(push)
+
+
+def with_style(request: DanceRequest) -> DanceRequest:
+    """The request with the style neutral where none is named, but something befalls her."""
+    return replace(request, style="neutral") if request.style is None and (request.push or request.trip) else request
+
+
+def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice:
+    """Read the file and choose the chart. A DancetutorError of one line for all that is wrong with the request.
+
+    section : looked at here, so that a slip is told before a chart is read
+    """
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.dance.two import check_alone
+    from dancetutor_cli.lint.part import check_part
+    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
+
+    if section is not None:
+        check_part(section)
+    choice = choice_for(request.path, request.preset)
+    song = charts.load(request.path)
+    first = request.selection.one(song)
+    chart = song.charts[first.index]
+    parts: tuple[Chart, ...] = (first,)
+    if request.selection.player is None and len(chart.players) > 1:
+        check_alone(request, chart)
+        parts = tuple(one for one in chart.players if len(one.notes)) or parts
+    presets = tuple(preset_for(part, request.path, choice) for part in parts)
+    pairs = zip(parts, presets, strict=True)
+    lines = [f"{part.label}: {unfit}" for part, preset in pairs if (unfit := mismatch(preset, part.steps_type))]
+    return ChartChoice(song, chart, parts, presets, tuple(dict.fromkeys(lines)))
+
+
+def section_of(chart: ChartChoice, section: str, end: float) -> tuple[float, float]:
+    """First and last second of the song of a section as the user wrote it; `end` is the last one that there may be."""
+    from dancetutor_cli.lint.part import part_of
+
+    return part_of(section, chart.song, chart.parts[0], chart.presets[0], end)
+
+
+def no_pad(request: DanceRequest, chart: Chart) -> UsageError:
+    """The error of a steps type on whose pad nobody can dance."""
+    return UsageError(
+        f"{request.path}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake"
+    )
