@@ -56,7 +56,9 @@ def read_bytes(path: Path, limit: int) -> bytes:
         data = b""
         if status.st_size <= limit:
             with open(descriptor, "rb", closefd=False) as file:
-                data = file.read(limit + 1)
+                data = file.read(status.st_size + 1)  # not more: a buffer of the whole limit would be made for it
+                if len(data) > status.st_size:
+                    data += file.read(limit + 1 - len(data))
         if max(status.st_size, len(data)) > limit:  # it has grown, or has no size, as files of /proc
             raise FileError(path, f"is larger than {limit / MEGABYTE:.3g} MB; it is not read")
         return data

@@ -14,6 +14,7 @@ import tracemalloc
 from pathlib import Path
 
 import numpy as np
+from unpacking import unpack
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
@@ -44,7 +45,7 @@ def prepared() -> dict[str, list[tuple[Rows, Pad]]]:
     if not CORPUS.exists() and ARCHIVE.exists():
         CORPUS.mkdir(parents=True)
         with tarfile.open(ARCHIVE) as archive:
-            archive.extractall(CORPUS, filter="data")
+            unpack(archive, CORPUS)
     out: dict[str, list[tuple[Rows, Pad]]] = {steps_type: [] for steps_type in TYPES}
     for path in sorted(CORPUS.rglob("*")):
         if path.suffix.lower() not in (".sm", ".ssc"):

@@ -19,6 +19,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from PIL import Image, ImageSequence
+from unpacking import unpack
 
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.motion.baked import Motion
@@ -40,7 +41,7 @@ def checked_out(commit: str) -> Path:
         folder.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder.parent) as new:  # whole or not at all
             with tarfile.open(fileobj=io.BytesIO(_git("archive", name).stdout)) as archive:
-                archive.extractall(Path(new) / "all", filter="data")
+                unpack(archive, Path(new) / "all")
             (Path(new) / "all").rename(folder)
     return folder
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from unpacking import unpack
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli import play
@@ -61,7 +62,7 @@ def load_pump() -> list[Labelled]:
     """The Pump charts that players corrected; those that step at the same moments are one song."""
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(FEET / "pump" / "labels.tar.xz") as archive:
-            archive.extractall(folder, filter="data")
+            unpack(archive, folder)
         labels = load_labels(next(Path(folder).rglob("labels.json")).parent)
     return _grouped(labels)
 
@@ -72,7 +73,7 @@ def load_consensus(every: int = 1) -> list[Labelled]:
         entries = json.load(file)[::every]
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(SHARED / "charts" / "charts.tar.xz") as archive:
-            archive.extractall(folder, filter="data")
+            unpack(archive, folder)
         return [found for entry in entries if (found := one_label(Path(folder) / "dev", entry)) is not None]
 
 

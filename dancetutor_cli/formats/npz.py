@@ -25,13 +25,14 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
 | grip_across | (g,) | 1 where it has crossed over before her |
 
-A reader must survive added arrays.
+A reader must survive added arrays. `FIELDS` is the table by which a file is read.
 """
 
 from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,17 +40,57 @@ import numpy as np
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import write_atomic
+from dancetutor_cli.formats.npz_arrays import Field, read_arrays
 from dancetutor_cli.motion.baked import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.play.let_go import LetGo
 from dancetutor_cli.play.unplayable import Why
 from dancetutor_cli.rig.skeleton import Skeleton
 
 SCHEMA = 1
-_ARRAYS = ("schema", "names", "parents", "offsets", "fps", "times", "rotations", "root")
-_CONTACTS = ("start", "end", "limb", "column", "kind", "part", "row", "panel")
-_GRIPS = {"start": "f8", "end": "f8", "side": "i1", "x": "f8", "across": "i1"}
-_LET_GO = {"second": "f8", "row": "i4", "column": "i4", "why": "i1"}
-_CONTACT_TYPES = {"limb": "i1", "kind": "i1", "part": "i1", "column": "i4", "row": "i4"}
+_FAR = 1e5  # metres and seconds: a day of music
+_MOST_RATE = 1000.0  # frames per second
+_INDEX = 2**31 - 1
+_UNIT = 1e-3  # by how much a rotation's length may differ from 1
+_CONTACTS = {
+    "start": Field("float", ("c",), -_FAR, _FAR),
+    "end": Field("float", ("c",), -_FAR, _FAR),
+    "limb": Field("integer", ("c",), 0, 3),
+    "column": Field("integer", ("c",), 0, 1000),
+    "kind": Field("integer", ("c",), 1, 5),
+    "part": Field("integer", ("c",), 0, 2),
+    "row": Field("integer", ("c",), -1, _INDEX),
+    "panel": Field("float", ("c", 2), -_FAR, _FAR),
+}
+_GRIPS = {
+    "start": Field("float", ("g",), -_FAR, _FAR, required=False),
+    "end": Field("float", ("g",), -_FAR, _FAR, required=False),
+    "side": Field("integer", ("g",), 0, 1, required=False),
+    "x": Field("float", ("g",), -_FAR, _FAR, required=False),
+    "across": Field("integer", ("g",), 0, 1, required=False),
+}
+_LET_GO = {
+    "second": Field("float", ("k",), -_FAR, _FAR, required=False),
+    "row": Field("integer", ("k",), -1, _INDEX, required=False),
+    "column": Field("integer", ("k",), 0, 1000, required=False),
+    "why": Field("integer", ("k",), min(Why), max(Why), required=False),
+}
+FIELDS: Mapping[str, Field] = {
+    "schema": Field("integer", (), 0, _INDEX),
+    "names": Field("string", ("j",)),
+    "parents": Field("integer", ("j",), -1, 10_000),
+    "offsets": Field("float", ("j", 3), -_FAR, _FAR),
+    "fps": Field("float", (), 0.01, _MOST_RATE),
+    "times": Field("float", ("f",), -_FAR, _FAR),
+    "rotations": Field("float", ("f", "j", 4), -2.0, 2.0),
+    "root": Field("float", ("f", 3), -_FAR, _FAR),
+    **{f"contact_{name}": field for name, field in _CONTACTS.items()},
+    **{f"let_go_{name}": field for name, field in _LET_GO.items()},
+    "ground": Field("float", (5,), -_FAR, _FAR, required=False),
+    "bar": Field("float", (3,), -_FAR, _FAR, required=False),
+    "bar_spans": Field("float", ("s", 2), -_FAR, _FAR, required=False),
+    **{f"grip_{name}": field for name, field in _GRIPS.items()},
+}
+_TYPES = {"start": "f8", "end": "f8", "panel": "f8", "x": "f8", "second": "f8", "column": "i4", "row": "i4"}  # else i1
 
 
 def write_npz(path: Path, motion: Motion) -> None:
@@ -65,13 +106,14 @@ def write_npz(path: Path, motion: Motion) -> None:
         "root": motion.root,
     }
     for name in _CONTACTS:
-        values = np.array([getattr(c, name) for c in motion.contacts], dtype=_CONTACT_TYPES.get(name, "f8"))
+        values = np.array([getattr(c, name) for c in motion.contacts], dtype=_TYPES.get(name, "i1"))
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
     if motion.bar is not None:
         arrays |= _bar_arrays(motion.bar, motion.grips)
     if motion.let_go:
-        for name, kind in _LET_GO.items():
-            arrays[f"let_go_{name}"] = np.array([getattr(one, name) for one in motion.let_go], dtype=kind)
+        for name in _LET_GO:
+            column = [getattr(one, name) for one in motion.let_go]
+            arrays[f"let_go_{name}"] = np.array(column, dtype=_TYPES.get(name, "i1"))
     if motion.ground is not None:
         arrays["ground"] = np.array([*motion.ground.low, *motion.ground.high, motion.ground.drop])
     write_atomic(path, _zipped(arrays))
@@ -89,8 +131,8 @@ def _bar_arrays(bar: Bar, grips: tuple[Grip, ...]) -> dict[str, Any]:
         "bar": np.array([bar.height, bar.behind, bar.radius]),
         "bar_spans": np.array(bar.spans, dtype=np.float64).reshape(-1, 2),
     }
-    for name, kind in _GRIPS.items():
-        out[f"grip_{name}"] = np.array([getattr(g, name) for g in grips], dtype=kind)
+    for name in _GRIPS:
+        out[f"grip_{name}"] = np.array([getattr(g, name) for g in grips], dtype=_TYPES.get(name, "i1"))
     return out
 
 
@@ -108,26 +150,18 @@ def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
 
 
 def read_npz(path: Path) -> Motion:
-    """Read a motion. Raises FileError for a file that is not one, or of a newer schema."""
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
-    except OSError as error:
-        raise FileError(path, error.strerror or "not an .npz file") from None
-    except (ValueError, zipfile.BadZipFile, EOFError):
-        raise FileError(path, "not an .npz file of a motion") from None
-    for name in (*_ARRAYS, *(f"contact_{n}" for n in _CONTACTS)):
-        if name not in arrays:
-            raise FileError(path, f"not a motion: array '{name}' is missing")
+    """Read a motion. Raises FileError, one line, for a file that is not one, that is broken, or of a newer schema."""
+    arrays = read_arrays(path, FIELDS)
     if int(arrays["schema"]) != SCHEMA:
         raise FileError(path, f"written in schema {int(arrays['schema'])}; this program reads {SCHEMA}")
-    skeleton = Skeleton(tuple(str(n) for n in arrays["names"]), arrays["parents"], arrays["offsets"])
+    skeleton = _skeleton(path, arrays)
+    _check_motion(path, arrays)
     contacts = [
         Contact(
             start=float(arrays["contact_start"][i]),
             end=float(arrays["contact_end"][i]),
             panel=(float(arrays["contact_panel"][i, 0]), float(arrays["contact_panel"][i, 1])),
-            **{n: int(arrays[f"contact_{n}"][i]) for n in _CONTACT_TYPES},
+            **{n: int(arrays[f"contact_{n}"][i]) for n in ("limb", "kind", "part", "column", "row")},
         )
         for i in range(len(arrays["contact_start"]))
     ]
@@ -136,8 +170,30 @@ def read_npz(path: Path) -> Motion:
     return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays), let_go=_let_go(arrays))
 
 
+def _skeleton(path: Path, arrays: dict[str, Any]) -> Skeleton:
+    names, parents = tuple(str(name) for name in arrays["names"]), arrays["parents"]
+    if not names or len(set(names)) < len(names):
+        raise FileError(path, "array 'names' must name each joint, and none twice")
+    if parents[0] != -1 or (parents[1:] < 0).any() or (parents >= np.arange(len(names))).any():
+        raise FileError(
+            path, "array 'parents' must have -1 for the first joint only, and parents before their children"
+        )
+    return Skeleton(names, parents, arrays["offsets"])
+
+
+def _check_motion(path: Path, arrays: dict[str, Any]) -> None:
+    """Times must go on, rotations must be turns."""
+    if not len(arrays["times"]):
+        raise FileError(path, "has no frame; a motion needs at least two")
+    if (np.diff(arrays["times"]) <= 0).any():
+        raise FileError(path, "array 'times' must grow from frame to frame")
+    if abs(np.linalg.norm(arrays["rotations"], axis=-1) - 1.0).max() > _UNIT:
+        raise FileError(path, "array 'rotations' must hold unit quaternions (w, x, y, z)")
+
+
 def _let_go(arrays: dict[str, Any]) -> tuple[LetGo, ...]:
-    columns = [arrays.get(f"let_go_{name}", np.zeros(0)) for name in _LET_GO]
+    none = np.zeros(len(arrays.get("let_go_second", ())))
+    columns = [arrays.get(f"let_go_{name}", none) for name in _LET_GO]
     return tuple(LetGo(float(s), int(r), int(c), Why(int(w))) for s, r, c, w in zip(*columns, strict=True))
 
 

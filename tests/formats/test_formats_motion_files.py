@@ -44,7 +44,7 @@ def test_npz_gives_back_the_motion(demo, tmp_path: Path) -> None:  # type: ignor
 def test_other_files_are_no_motion(tmp_path: Path) -> None:
     (tmp_path / "a.npz").write_bytes(b"not a zip")
     np.savez(tmp_path / "b.npz", x=np.zeros(3))
-    for name, said in (("a", "not an .npz"), ("b", "is missing"), ("none", "No such file")):
+    for name, said in (("a", "not an .npz"), ("b", "is missing"), ("none", "no such file")):
         with pytest.raises(FileError, match=said):
             read_npz(tmp_path / f"{name}.npz")
 
