@@ -1,5 +1,6 @@
 # `make demo` runs the main job, `make test` passes the tests; both set up everything they need.
-PYTHON ?= python3
+# The distribution's own Python where it will do; PYTHON=python3.X takes another one.
+PYTHON ?= $(shell tools/find_python.sh)
 VENV := .venv
 BIN := $(VENV)/bin
 DANCETUTOR := $(BIN)/dancetutor
@@ -34,6 +35,8 @@ setup: $(VENV)/.runtime
 setup-dev: $(VENV)/.dev
 
 $(BIN)/python:
+	$(eval PYTHON := $(PYTHON))
+	@test -n "$(PYTHON)"
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "dancetutor needs Python 3.11 or newer; set PYTHON=python3.X" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \

@@ -157,12 +157,9 @@ def _local(
 
 def _quaternion(matrix: Array) -> Array:
     """The quaternion (4,) of a rotation matrix."""
-    from scipy.spatial.transform import Rotation
-
     if np.linalg.det(matrix) < 0.5:  # mirrored or flat: there is no turn to find
         return _IDENTITY
-    x, y, z, w = Rotation.from_matrix(matrix).as_quat()
-    return np.array([w, x, y, z])
+    return quat.from_matrix(matrix)
 
 
 def _world(nodes: Nodes, moved: Array, turned: Array, scaled: Array) -> tuple[Array, Array]:

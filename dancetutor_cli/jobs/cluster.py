@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.extras import how_to_add
 from dancetutor_cli.jobs.pool import Finished, Task, WorkFailedError, attempt
 
 TIMEOUT = 10  # seconds to find the scheduler
 RETRIES = 3  # how often a piece of work is begun again when its worker is lost
-_MEND = "install it: pip install 'dancetutor[cluster]'"
+_MEND = f"install it: {how_to_add('cluster')}"
 
 
 def perform(task: Task) -> Finished:

@@ -26,7 +26,8 @@ class Check:
 
 def examine() -> list[Check]:
     """All checks, in the order in which a render needs the things."""
-    checks = [_guarded("cpu renderer", _cpu), _guarded("gl renderer", _gl), _guarded("ffmpeg", _ffmpeg)]
+    checks = [_guarded("cpu renderer", _cpu), _guarded("gl renderer", _gl), _guarded("physics", _physics)]
+    checks.append(_guarded("ffmpeg", _ffmpeg))
     if checks[-1].state == "ok":
         checks += [_guarded(f"encoder {name}", lambda n=name: _encoder(n)) for name in ENCODERS]  # type: ignore[misc]
         checks.append(_guarded("speed change", _rubberband))
@@ -39,7 +40,7 @@ _NEEDED = ("x264", "aac")
 _OPTIONAL = {
     "nvenc": "an NVIDIA GPU and its driver; x264 does without",
     "vaapi": "a GPU with a VA driver; x264 does without",
-    "webp": "write .mp4 or .gif, or pip install --force-reinstall imageio-ffmpeg",
+    "webp": "write .mp4 or .gif, or pip install imageio-ffmpeg",
 }
 # Scripts in which titles come, with letters that tell whether a font has them.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
@@ -75,12 +76,26 @@ def _gl() -> Check:
     return Check("gl renderer", "ok", f"OpenGL on GPU {device} through EGL")
 
 
+def _physics() -> Check:
+    from dancetutor_cli.extras import how_to_add
+    from dancetutor_cli.physics.backend import engine, is_installed
+
+    if not is_installed():
+        return Check("physics", "without", "no engine for styles and retarget", how_to_add("physics"))
+    return Check("physics", "ok", f"MuJoCo {engine().__version__}")
+
+
 def _ffmpeg() -> Check:
     import subprocess
 
+    from dancetutor_cli.errors import UnavailableError
     from dancetutor_cli.video.media.ffmpeg import executable
+    from dancetutor_cli.video.media.ffmpeg_program import MEND
 
-    path = executable()
+    try:
+        path = executable()
+    except UnavailableError:
+        return Check("ffmpeg", "broken", "none found", MEND)
     command = [path, "-version"]
     said = subprocess.run(
         command, capture_output=True, check=True, timeout=20, encoding="utf-8", errors="replace"
@@ -90,6 +105,7 @@ def _ffmpeg() -> Check:
 
 
 def _encoder(name: str) -> Check:
+    from dancetutor_cli.video.media.ffmpeg_program import MEND
     from dancetutor_cli.video.media.probe import works
 
     label = f"encoder {name}"
@@ -97,7 +113,7 @@ def _encoder(name: str) -> Check:
     if failure is None:
         return Check(label, "ok", f"{ENCODERS[name]} encodes a frame")
     if name in _NEEDED:
-        return Check(label, "broken", failure, "pip install --force-reinstall imageio-ffmpeg")
+        return Check(label, "broken", failure, MEND)
     return Check(label, "without", failure.split(";")[0], _OPTIONAL.get(name, ""))
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.extras import how_to_add
 
 
 def engine() -> Any:
@@ -13,10 +15,15 @@ def engine() -> Any:
         import mujoco
     except ImportError as error:
         raise UnavailableError(
-            f"physics needs the engine MuJoCo, which cannot be loaded ({error}); pip install mujoco-core"
+            f"physics needs the engine MuJoCo, which cannot be loaded ({error}); {how_to_add('physics')}"
         ) from error
     mujoco.set_mju_user_warning(_silent)
     return mujoco
+
+
+def is_installed() -> bool:
+    """Whether the engine is there, without loading it."""
+    return find_spec("mujoco") is not None
 
 
 def _silent(_: str) -> None:

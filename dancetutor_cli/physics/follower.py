@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.numerics.recursive import recursive_filter
 from dancetutor_cli.physics.style import Follower, Style
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
@@ -26,15 +27,13 @@ _JOINTS = {
 
 def follow(values: Array, rate: float, follower: Follower) -> Array:
     """What a path (f, d), evenly sampled at `rate`, becomes behind the follower, at rest in the first frame."""
-    from scipy.signal import lfilter
-
     omega = 2 * np.pi * follower.frequency
     k1, k2 = 2 * follower.damping / omega, 1.0 / omega**2
     k3 = follower.response * follower.damping / omega
     s = 2.0 * rate  # bilinear: d/dt becomes s (1 - 1/z) / (1 + 1/z)
     above = np.array([1 + k3 * s, 2.0, 1 - k3 * s])
     below = np.array([1 + k1 * s + k2 * s * s, 2 - 2 * k2 * s * s, 1 - k1 * s + k2 * s * s])
-    return np.asarray(lfilter(above, below, values - values[0], axis=0) + values[0])
+    return np.asarray(recursive_filter(above, below, values - values[0]) + values[0])
 
 
 def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) -> tuple[Array, Array]:

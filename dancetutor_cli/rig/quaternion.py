@@ -13,13 +13,14 @@ Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 UP = np.array([0.0, 1.0, 0.0])
+_NOTHING = 1e-150  # a length whose square loses digits
 
 
 def normalize(q: ArrayLike) -> Array:
-    """Unit quaternions of the same directions; zero becomes the identity."""
+    """Unit quaternions of the same directions; zero, and what is too small for its square, becomes the identity."""
     q = np.asarray(q, dtype=np.float64)
     length = np.linalg.norm(q, axis=-1, keepdims=True)
-    return np.where(length > 0, q / np.where(length > 0, length, 1.0), IDENTITY)
+    return np.where(length > _NOTHING, q / np.where(length > _NOTHING, length, 1.0), IDENTITY)
 
 
 def multiply(a: ArrayLike, b: ArrayLike) -> Array:
@@ -107,6 +108,22 @@ def to_matrix(q: ArrayLike) -> Array:
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def from_matrix(matrix: ArrayLike) -> Array:
+    """The unit quaternion (4,) of a rotation matrix (3, 3); of one that is not quite one, of the nearest that is."""
+    m = np.asarray(matrix, dtype=np.float64)
+    if np.abs(m @ m.T - np.eye(3)).max() > 1e-12:
+        left, _, right = np.linalg.svd(m)
+        m = left @ right
+    most = int(np.argmax([*np.diagonal(m), np.trace(m)]))  # what is divided by is then at least 1
+    if most == 3:
+        return normalize([1 + np.trace(m), m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
+    i, j, k = most, (most + 1) % 3, (most + 2) % 3
+    q = np.zeros(4)
+    q[0], q[1 + i] = m[k, j] - m[j, k], 1 - np.trace(m) + 2 * m[i, i]
+    q[1 + j], q[1 + k] = m[j, i] + m[i, j], m[k, i] + m[i, k]
+    return normalize(q)
 
 
 def angle_between(a: ArrayLike, b: ArrayLike) -> Array:

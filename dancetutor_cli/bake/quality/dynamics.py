@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.figures import Figure
 from dancetutor_cli.bake.quality.resampled import GRAVITY, GROUND, Body
 from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.numerics.nonnegative import nonnegative_least_squares
 from dancetutor_cli.numerics.smoothing import low_pass
 from dancetutor_cli.play.played import Limb
 from dancetutor_cli.rig import quaternion as quat
@@ -49,8 +50,6 @@ def dynamics_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
 
 def residuals(motion: Motion, body: Body) -> Array:
     """Residual force and moment (k, 2) of the frames that are looked at."""
-    from scipy.optimize import nnls
-
     if len(body.times) < 5:
         return np.zeros((0, 2))
     points, masses = dumbbells(motion.skeleton, body)
@@ -71,7 +70,7 @@ def residuals(motion: Motion, body: Body) -> Array:
         left = wanted
         if len(down):
             rays = _rays(down - centre[k])
-            left = wanted - rays @ nnls(rays, wanted)[0]
+            left = wanted - rays @ nonnegative_least_squares(rays, wanted)
         out[row] = np.linalg.norm(left[:3]), np.linalg.norm(left[3:])
     return out
 

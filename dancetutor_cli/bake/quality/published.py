@@ -35,14 +35,13 @@ def skating_ratio(motion: Motion) -> float:
 
     Down: below 5 cm in this frame and the next. Average: over five frames, those beyond the ends count as 0.
     """
-    from scipy.ndimage import uniform_filter1d
-
     feet = _joints(motion, SKATE_RATE, ("l_metatarsal", "r_metatarsal"))
     if len(feet) < 2:
         return float("nan")
     feet[..., 1] -= feet[..., 1].min()  # as in their data, whose lowest joint lies on the ground
     speed = np.linalg.norm(np.diff(feet[..., [0, 2]], axis=0), axis=2) * SKATE_RATE
-    average = uniform_filter1d(speed, size=SKATE_WINDOW, axis=0, mode="constant")
+    padded = np.pad(speed, ((SKATE_WINDOW // 2, SKATE_WINDOW // 2), (0, 0)))
+    average = np.lib.stride_tricks.sliding_window_view(padded, SKATE_WINDOW, axis=0).mean(axis=-1)
     down = (feet[1:, :, 1] < SKATE_HEIGHT) & (feet[:-1, :, 1] < SKATE_HEIGHT)
     skates = down & (speed > SKATE_SPEED) & (average > SKATE_SPEED)
     return float(skates.any(axis=1).mean())

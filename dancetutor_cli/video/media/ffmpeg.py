@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import IO
 
 from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.video.media.ffmpeg_program import ffmpeg_program
 
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
@@ -25,13 +26,8 @@ class EncoderError(UnavailableError):
 
 
 def executable() -> str:
-    """Path of the ffmpeg that imageio-ffmpeg brings (or that IMAGEIO_FFMPEG_EXE names)."""
-    import imageio_ffmpeg
-
-    try:
-        return str(imageio_ffmpeg.get_ffmpeg_exe())
-    except RuntimeError as error:
-        raise UnavailableError("no ffmpeg found; reinstall it: pip install --force-reinstall imageio-ffmpeg") from error
+    """Path of the ffmpeg that is run; UnavailableError if there is none."""
+    return ffmpeg_program()
 
 
 def local(path: Path) -> str:

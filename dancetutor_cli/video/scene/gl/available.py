@@ -5,10 +5,13 @@ from __future__ import annotations
 import ctypes
 import sys
 from functools import cache
+from importlib.util import find_spec
 
 from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.extras import how_to_add
 
 MISSING = "No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1. Or use --renderer cpu."
+NO_PACKAGE = f"The OpenGL renderer is not installed. {how_to_add('gl')}. Or use --renderer cpu."
 _EGL_EXTENSIONS = 0x3055
 _PLATFORM_DEVICE = 0x313F
 _SOFTWARE = b"EGL_MESA_device_software"
@@ -16,15 +19,17 @@ _MOST_DEVICES = 32
 
 
 def require_gl() -> None:
-    """UnavailableError with what to install if the libraries are not there."""
+    """UnavailableError with what to install if pyrender or the system's libraries are not there."""
+    if find_spec("pyrender") is None:
+        raise UnavailableError(NO_PACKAGE)
     if _library("libEGL.so.1") is None or _library("libGL.so.1") is None:
         raise UnavailableError(MISSING)
 
 
 @cache
 def gpu_device() -> int | None:
-    """Number of the first EGL device that is real hardware and starts, or None."""
-    if not sys.platform.startswith("linux") or _library("libGL.so.1") is None:
+    """Number of the first EGL device that is real hardware and starts, or None; also without pyrender, to draw with."""
+    if find_spec("pyrender") is None or not sys.platform.startswith("linux") or _library("libGL.so.1") is None:
         return None
     egl = _library("libEGL.so.1")
     if egl is None:

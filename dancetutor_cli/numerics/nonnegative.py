@@ -1,0 +1,111 @@
+"""Least squares with unknowns that are not negative: what pushes, which cannot pull, can do of a wanted wrench."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.kernels import njit
+
+Array = NDArray[np.float64]
+_SMALL = 1e-12  # of a gradient, of what is new in a column
+
+
+def nonnegative_least_squares(columns: Array, target: Array) -> Array:
+    """The x >= 0 (n,) for which |columns x - target| is least; Lawson and Hanson's active set.
+
+    Parameters
+    ----------
+    columns : (m, n); m is small, since at most m of x are not 0 at a time; target : (m,)
+    """
+    rows = np.ascontiguousarray(columns.T, dtype=np.float64)
+    return np.asarray(_active_set(rows, np.ascontiguousarray(target, dtype=np.float64)))
+
+
+@njit(cache=True)
+def _active_set(rows: Array, target: Array) -> Array:
+    """As above with the columns as rows (n, m)."""
+    n, m = rows.shape
+    x, held = np.zeros(n), np.zeros(n, dtype=np.bool_)
+    chosen, count = np.zeros(m + 1, dtype=np.int64), 0
+    left, tried = target.copy(), np.zeros(n, dtype=np.bool_)
+    for _ in range(10 * (n + m)):
+        best, steepest = -1, _SMALL
+        for j in range(n):
+            if held[j] or tried[j]:
+                continue
+            slope = 0.0
+            for i in range(m):
+                slope += rows[j, i] * left[i]
+            if slope > steepest:
+                best, steepest = j, slope
+        if best < 0 or count == m:
+            break
+        chosen[count], held[best] = best, True
+        count += 1
+        z, sound = _least_squares(rows, chosen, count, target)
+        if not sound or z[count - 1] <= 0.0:  # nothing new in it, but for rounding
+            count -= 1
+            held[best], tried[best] = False, True
+            continue
+        tried[:] = False
+        while True:
+            step = 1.0
+            for k in range(count):
+                if z[k] <= 0.0:
+                    step = min(step, x[chosen[k]] / (x[chosen[k]] - z[k]))
+            kept = 0
+            for k in range(count):
+                j = chosen[k]
+                was_out = z[k] <= 0.0
+                x[j] += step * (z[k] - x[j])
+                if was_out and x[j] <= _SMALL:
+                    x[j], held[j] = 0.0, False
+                else:
+                    chosen[kept] = j
+                    kept += 1
+            if kept == count:
+                break
+            count = kept
+            z, sound = _least_squares(rows, chosen, count, target)
+        for i in range(m):
+            left[i] = target[i]
+            for k in range(count):
+                left[i] -= rows[chosen[k], i] * x[chosen[k]]
+    return x
+
+
+@njit(cache=True)
+def _least_squares(rows: Array, chosen: NDArray[np.int64], count: int, target: Array) -> tuple[Array, bool]:
+    """The unknowns of the chosen columns by QR (Gram-Schmidt, twice); False if one depends on those before it."""
+    m = rows.shape[1]
+    q, r = np.zeros((count, m)), np.zeros((count, count))
+    for k in range(count):
+        length = 0.0
+        for i in range(m):
+            q[k, i] = rows[chosen[k], i]
+            length += q[k, i] * q[k, i]
+        for _ in range(2):
+            for b in range(k):
+                along = 0.0
+                for i in range(m):
+                    along += q[b, i] * q[k, i]
+                r[b, k] += along
+                for i in range(m):
+                    q[k, i] -= along * q[b, i]
+        new = 0.0
+        for i in range(m):
+            new += q[k, i] * q[k, i]
+        if new <= _SMALL * length:
+            return np.zeros(count), False
+        r[k, k] = np.sqrt(new)
+        for i in range(m):
+            q[k, i] /= r[k, k]
+    z = np.zeros(count)
+    for k in range(count - 1, -1, -1):
+        for i in range(m):
+            z[k] += q[k, i] * target[i]
+        for b in range(k + 1, count):
+            z[k] -= r[k, b] * z[b]
+        z[k] /= r[k, k]
+    return z, True

@@ -1,0 +1,101 @@
+"""Extras: what the package names, what a run without them says, and that plain work needs none of them."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.extras import PACKAGES, how_to_add
+from dancetutor_cli.physics import backend
+from dancetutor_cli.video.scene.gl import available
+
+ROOT = Path(__file__).resolve().parent.parent
+PROJECT = ROOT / "pyproject.toml"
+HIDDEN = ("mujoco", "pyrender", "OpenGL", "imageio_ffmpeg", "scipy", "distributed")  # an install without extras
+HIDE = f"""
+from importlib.machinery import PathFinder
+found = PathFinder.find_spec
+def find_spec(cls, name, path=None, target=None):
+    return None if name.partition(".")[0] in {HIDDEN} else found(name, path, target)
+PathFinder.find_spec = classmethod(find_spec)
+"""
+
+
+def plain(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command as it runs where no extra is installed and PATH has no ffmpeg."""
+    site = tmp_path / "site"
+    site.mkdir(exist_ok=True)
+    (site / "sitecustomize.py").write_text(HIDE)  # for worker processes, too
+    environment = {"PATH": str(tmp_path), "HOME": str(tmp_path), "PYTHONPATH": str(site)}
+    return subprocess.run(
+        [sys.executable, "-m", "dancetutor_cli", *arguments],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+
+
+@pytest.mark.skipif(not PROJECT.exists(), reason="not in an installed package")
+def test_the_names_are_those_of_the_package() -> None:
+    extras = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for extra, name in PACKAGES.items():
+        assert [re.split(r"[>;\s]", requirement)[0] for requirement in extras[extra]] == [name]
+    assert extras["all"] == ["dancetutor[ffmpeg,gl,physics]"]
+
+
+def test_without_an_extra_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(available, "find_spec", lambda name: None)
+    with pytest.raises(UnavailableError, match=r"pip install pyrender==0.1.45\. Or use --renderer cpu\.$"):
+        available.require_gl()
+    available.gpu_device.cache_clear()
+    assert available.gpu_device() is None
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    assert not backend.is_installed()
+    with pytest.raises(UnavailableError, match=f"{how_to_add('physics')}$"):
+        backend.engine()
+
+
+def test_plain_work_needs_no_extra(tmp_path: Path) -> None:
+    song = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
+    for arguments in (
+        ("analyze", str(song), "--exit-zero"),
+        ("animate", str(song), "--index", "0", "--section", "0:4", "--report", "-o", str(tmp_path / "a.glb")),
+        ("page", str(song), "--index", "0", "-o", str(tmp_path / "a.html")),
+        ("render", str(song), "--index", "0", "--section", "8:8.1", "--size", "64x64", "--frames", str(tmp_path / "f")),
+    ):
+        done = plain(tmp_path, *arguments)
+        assert done.returncode == 0, (arguments, done.stderr)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (("--style", "lazy", "-o", "a.glb"), "physics"),
+        (("--renderer", "gl", "--frames", "a"), "gl"),
+        (("-o", "a.mp4"), "ffmpeg"),
+    ],
+)
+def test_what_needs_an_extra_says_so(arguments: tuple[str, ...], extra: str, tmp_path: Path) -> None:
+    song = str(ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc")
+    name = "animate" if extra == "physics" else "render"
+    done = plain(
+        tmp_path, name, song, "--index", "0", "--section", "8:9", *arguments[:-1], str(tmp_path / arguments[-1])
+    )
+    assert done.returncode == 2, done.stderr
+    assert how_to_add(extra) in done.stderr.strip().splitlines()[-1]  # type: ignore[arg-type]
+    assert "internal error" not in done.stderr
+
+
+def test_doctor_says_what_is_missing(tmp_path: Path) -> None:
+    done = plain(tmp_path, "doctor")
+    said = " ".join(done.stdout.split())
+    assert done.returncode == 2, "no ffmpeg: no films"
+    for extra in ("physics", "gl", "ffmpeg"):
+        assert how_to_add(extra) in said  # type: ignore[arg-type]
