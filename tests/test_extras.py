@@ -6,9 +6,12 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.extras import PACKAGES, how_to_add
@@ -99,3 +102,28 @@ def test_doctor_says_what_is_missing(tmp_path: Path) -> None:
     assert done.returncode == 2, "no ffmpeg: no films"
     for extra in ("physics", "gl", "ffmpeg"):
         assert how_to_add(extra) in said  # type: ignore[arg-type]
+
+
+def needed(names: list[str]) -> set[str]:
+    """Packages and all that they need without extras, as installed here."""
+    found: set[str] = set()
+    while names:
+        name = canonicalize_name(Requirement(names[0]).name)
+        names = names[1:]
+        if name not in found:
+            found.add(name)
+            wanted = [Requirement(line) for line in metadata.requires(name) or []]
+            names += [str(one) for one in wanted if one.marker is None or one.marker.evaluate({"extra": ""})]
+    return found
+
+
+@pytest.mark.skipif(not PROJECT.exists(), reason="not in an installed package")
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="measured on Linux")
+def test_a_plain_install_is_no_heavier_than_400_megabytes() -> None:
+    plain = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["dependencies"]
+    sizes = {
+        name: sum(Path(file.locate()).stat().st_size for file in metadata.files(name) or () if file.locate().is_file())
+        for name in needed(plain)
+    }
+    assert sum(sizes.values()) < 400e6, sizes
+    assert not {"scipy", "mujoco-core", "pyrender", "imageio-ffmpeg"} & set(sizes)

@@ -1,5 +1,6 @@
 """The metadata's URLs: the checkout's own home, told by the workflow or by git, and nothing made up."""
 
+import re
 import subprocess
 from pathlib import Path
 from types import ModuleType
@@ -60,3 +61,34 @@ def test_a_wheel_from_an_sdist_keeps_its_addresses(tool: ModuleType, tmp_path: P
     )
     (tmp_path / "PKG-INFO").write_text(text, encoding="utf-8")
     assert tool.urls(tmp_path) == {"Source": "https://example.org/a/b"}
+    assert tool.description(tmp_path) == "Project-URL: x, y\n"
+
+
+README = """# x
+![A picture](.github/frame.png) [a page](docs/guide.md#top), [`code`](docs/b.md),
+[out](https://example.com/a), [here](#x)
+"""
+
+
+def test_links_of_the_description_are_absolute(
+    tool: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "README.md").write_text(README, encoding="utf-8")
+    monkeypatch.setattr(tool, "home", lambda root: "https://example.org/ann/x")
+    said = tool.description(tmp_path)
+    assert "![A picture](https://example.org/ann/x/raw/main/.github/frame.png)" in said
+    assert "[a page](https://example.org/ann/x/blob/main/docs/guide.md#top)" in said
+    assert "[out](https://example.com/a), [here](#x)" in said
+    monkeypatch.setattr(tool, "home", lambda root: None)
+    assert tool.description(tmp_path) == "# x\n a page, `code`,\n[out](https://example.com/a), [here](#x)\n"
+
+
+def test_no_relative_link_is_left_in_the_readme(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    root = Path(__file__).parents[1]
+    if (root / "PKG-INFO").exists():
+        pytest.skip("this is an unpacked sdist, whose description is made")
+    for home in (None, "https://example.org/ann/x"):
+        monkeypatch.setattr(tool, "home", lambda root, home=home: home)
+        targets = re.findall(r"\]\(([^)]+)\)", tool.description(root))
+        assert [target for target in targets if not target.startswith(("https://", "#"))] == []
+        assert bool(targets) == (home is not None)

@@ -6,9 +6,10 @@ import subprocess
 import wave
 from pathlib import Path
 
-import imageio_ffmpeg
 import numpy as np
 from numpy.typing import NDArray
+
+from dancetutor_cli.video.media.ffmpeg import executable
 
 BPM = 128.0
 MEASURES = 21
@@ -144,6 +145,6 @@ def write_music(path: Path) -> None:
         out.setsampwidth(2)
         out.setframerate(RATE)
         out.writeframes(music().tobytes())
-    command = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-i", str(raw), "-map_metadata", "-1"]
+    command = [executable(), "-y", "-loglevel", "error", "-i", str(raw), "-map_metadata", "-1"]
     subprocess.run([*command, "-fflags", "+bitexact", "-c:a", "libvorbis", "-q:a", "3", str(path)], check=True)
     raw.unlink()

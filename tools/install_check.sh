@@ -19,7 +19,7 @@ wheel=$(ls "$folder"/dist/*.whl)
 
 unset PYTHONPATH VIRTUAL_ENV XDG_CACHE_HOME XDG_CONFIG_HOME XDG_DATA_HOME
 export HOME="$home"
-"$folder/tools/bin/pipx" install "$wheel"
+"$folder/tools/bin/pipx" install "$wheel[all]"
 command="$home/.local/bin/dancetutor"
 site=$("$home/.local/share/pipx/venvs/dancetutor/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
 chmod -R a-w "$site"

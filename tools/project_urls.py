@@ -1,9 +1,10 @@
-"""The project's URLs for the package's metadata: those of the repository that the wheel or sdist is built from.
+"""The project's URLs and description for the package's metadata: those of the repository that it is built from.
 
 A checkout knows its home: the workflow whose checkout it is says so (`GITHUB_SERVER_URL`, `GITHUB_REPOSITORY`), or its
 git remote `origin` does. A fork's wheel so points to the fork, and never to a project whose workflow installs this one.
 Where neither is known (an archive without git, a clone of a local folder) no address is made up; a wheel built from an
-sdist keeps the sdist's.
+sdist keeps the sdist's. The description is README.md with its links made absolute, since it is read elsewhere; where
+the home is not known, links are plain text and pictures are left out.
 """
 
 import os
@@ -20,6 +21,8 @@ REMOTE = re.compile(
     r"(?:(?:https?|ssh|git)://(?:[^@/]+@)?(?P<host>[\w.-]+\.\w+)(?::\d+)?/|(?:[\w.-]+@)(?P<scp>[\w.-]+\.\w+):)"
     r"(?P<path>[\w.~-]+(?:/[\w.~-]+)+)"
 )
+# [text](target) or ![text](target), of targets inside the repository
+LINK = re.compile(r"(?P<picture>!?)\[(?P<text>[^\]]*)\]\((?P<target>(?![a-z+]+:|#|/)[^)\s]+)\)")
 
 
 def home(root: Path) -> str | None:
@@ -62,9 +65,26 @@ def urls(root: Path) -> dict[str, str]:
     }
 
 
+def description(root: Path) -> str:
+    """README.md as others read it, who have no checkout; of an unpacked sdist, what its metadata say."""
+    built = root / "PKG-INFO"
+    if built.exists():
+        return str(HeaderParser().parsestr(built.read_text(encoding="utf-8")).get_payload())
+    base = home(root)
+
+    def absolute(link: re.Match[str]) -> str:
+        if base is None:
+            return "" if link["picture"] else link["text"]
+        kind = "raw" if link["picture"] else "blob"
+        return f"{link['picture']}[{link['text']}]({base}/{kind}/main/{link['target']})"
+
+    return LINK.sub(absolute, (root / "README.md").read_text(encoding="utf-8"))
+
+
 class ProjectUrls(MetadataHookInterface):
-    """Hatchling's hook: fills the dynamic field `urls`."""
+    """Hatchling's hook: fills the dynamic fields `urls` and `readme`."""
 
     def update(self, metadata: dict[str, Any]) -> None:
         if found := urls(Path(self.root)):
             metadata["urls"] = found
+        metadata["readme"] = {"content-type": "text/markdown", "text": description(Path(self.root))}

@@ -5,7 +5,6 @@ Source: glTF 2.0 specification, Khronos Group.
 
 from __future__ import annotations
 
-import io
 import json
 import struct
 from dataclasses import asdict
@@ -21,6 +20,7 @@ from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.files import write_atomic
 from dancetutor_cli.formats.thinning import clocks
 from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.pictures import picture_bytes
 from dancetutor_cli.rig import quaternion as quat
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
@@ -259,9 +259,5 @@ def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
-    from PIL import Image
-
     opaque = bool((pixels[..., 3] == 255).all())
-    out = io.BytesIO()
-    Image.fromarray(pixels[..., :3] if opaque else pixels).save(out, "PNG", compress_level=7)
-    return out.getvalue()
+    return picture_bytes(pixels[..., :3] if opaque else pixels, compress_level=7)

@@ -35,12 +35,11 @@ def examine() -> list[Check]:
 
 
 # name of --encoder -> ffmpeg's encoder
-ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac", "webp": "libwebp_anim"}
+ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac"}
 _NEEDED = ("x264", "aac")
 _OPTIONAL = {
     "nvenc": "an NVIDIA GPU and its driver; x264 does without",
     "vaapi": "a GPU with a VA driver; x264 does without",
-    "webp": "write .mp4 or .gif, or pip install imageio-ffmpeg",
 }
 # Scripts in which titles come, with letters that tell whether a font has them.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}

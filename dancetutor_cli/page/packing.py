@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.partner import partner_of
 from dancetutor_cli.formats.thinning import clocks
 from dancetutor_cli.page.blob import Blob
+from dancetutor_cli.pictures import picture_bytes
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
 from dancetutor_cli.rig.soles import palm_points
@@ -140,8 +140,4 @@ def _runs(material: NDArray[np.int32], side: NDArray[np.int64]) -> list[tuple[in
 
 
 def _webp(image: NDArray[np.uint8]) -> bytes:
-    from PIL import Image
-
-    out = io.BytesIO()
-    Image.fromarray(image[..., :3]).save(out, "WEBP", quality=QUALITY, method=6)
-    return out.getvalue()
+    return picture_bytes(image[..., :3], ".webp", quality=QUALITY, method=6)

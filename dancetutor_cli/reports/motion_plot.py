@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.bake.quality.figures import MotionReport
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.files import write_atomic
+from dancetutor_cli.pictures import picture_bytes
 
 Array = NDArray[np.float64]
 WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
@@ -76,9 +76,7 @@ def _png(report: MotionReport) -> bytes:
                 draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=LINE)
         else:
             draw.line([(float(x), float(y)) for x, y in points], fill=LINE)
-    out = io.BytesIO()
-    image.save(out, "PNG")
-    return out.getvalue()
+    return picture_bytes(np.asarray(image))
 
 
 def _labels(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -55,7 +54,7 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
 
 def write_poster(path: Path, plan: FilmPlan) -> None:
     """A picture for a title page: the first called-out move, or a note a third into the film."""
-    from PIL import Image
+    from dancetutor_cli.pictures import picture_bytes
 
     one = plan.clock.passes[-1]
     first = max(one.start, one.sound_from) + 1.0
@@ -66,9 +65,7 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     before = sum(other.seconds for other in plan.clock.passes[:-1])
     number = round((before + one.shown(moment)) * plan.clock.fps + 0.5)
     picture = Film(plan).frame(min(number, plan.clock.frames - 1))
-    data = io.BytesIO()
-    Image.fromarray(picture).save(data, "PNG")
-    write_atomic(path, data.getvalue())
+    write_atomic(path, picture_bytes(picture))
 
 
 def write_subtitles(path: Path, plan: FilmPlan) -> str | None:

@@ -96,10 +96,10 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
 
 def save_picture(frame: Frame, path: Path) -> None:
     """Write one frame as PNG."""
-    from PIL import Image
+    from dancetutor_cli.pictures import picture_bytes
 
     try:
-        Image.fromarray(frame).save(path, compress_level=2)
+        path.write_bytes(picture_bytes(frame, compress_level=2))
     except OSError as error:
         raise FileError(path, f"cannot be written: {error.strerror or error}") from error
 
@@ -110,7 +110,9 @@ def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work:
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
     assert encoding.format.join is not None, "pictures are not joined"
-    encoding.format.join(Joining(listing, sound, work, output, encoding.quality == "draft"))
+    encoding.format.join(
+        Joining(listing, sound, work, output, encoding.size, encoding.fps, encoding.quality == "draft")
+    )
 
 
 def _quoted(path: Path) -> str:

@@ -88,9 +88,9 @@ class Process:
         except (BrokenPipeError, OSError) as error:
             raise self._failure() from error
 
-    def read(self) -> bytes:
-        """Everything ffmpeg writes."""
-        data: bytes = self.process.stdout.read()
+    def read(self, size: int = -1) -> bytes:
+        """Everything ffmpeg writes, or the next so many bytes of it; fewer only at its end."""
+        data: bytes = self.process.stdout.read(size)
         return data
 
     def finish(self) -> None:

@@ -21,7 +21,7 @@ from dancetutor_cli.files import write_atomic
 
 VARIABLE = "IMAGEIO_FFMPEG_EXE"
 NAME = "ffmpeg.exe" if os.name == "nt" else "ffmpeg"
-ENCODERS = ("libx264", "libx264rgb", "aac", "libwebp_anim")
+ENCODERS = ("libx264", "libx264rgb", "aac")
 FILTERS = ("rubberband", "palettegen", "paletteuse")
 MEND = f"Debian/Ubuntu: apt-get install ffmpeg; or {how_to_add('ffmpeg')}"
 _PATIENCE = 20.0  # seconds for an answer

@@ -6,26 +6,33 @@ A new format is an entry of `FORMATS` with a function that joins segments; optio
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.outputs import one_of
+from dancetutor_cli.pictures import read_palette, write_gif, write_webp
 from dancetutor_cli.video.media import ffmpeg
 
 
 class Joining(NamedTuple):
     """What a film is joined of. listing : a list of segments for ffmpeg; sound : a WAV file or None
 
-    work : folder for what that needs; output : the film; quick : a little noise in the sound for a third of the time
+    work : folder for what that needs; output : the film, of `size` (width, height) and so many frames a second
+    quick : a little noise in the sound for a third of the time
     """
 
     listing: Path
     sound: Path | None
     work: Path
     output: Path
+    size: tuple[int, int]
+    fps: int
     quick: bool = False
 
     @property
@@ -63,16 +70,33 @@ def _mp4(parts: Joining) -> None:
 
 
 def _gif(parts: Joining) -> None:
-    palette = ffmpeg.local(parts.work / "palette.png")
-    ffmpeg.run(("-y", *parts.source, "-vf", "palettegen=stats_mode=diff", palette), "choosing colours")
+    """ffmpeg chooses the colours and dithers, `pictures` writes."""
+    palette = parts.work / "palette.png"
+    ffmpeg.run(("-y", *parts.source, "-vf", "palettegen=stats_mode=diff", ffmpeg.local(palette)), "choosing colours")
     mix = "[0:v][1:v]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
-    images = ("-i", palette, "-lavfi", mix, "-loop", "0", "-f", "gif")
-    ffmpeg.run(("-y", *parts.source, *images, ffmpeg.local(parts.output)), "writing the GIF")
+    images = (*parts.source, "-i", ffmpeg.local(palette), "-lavfi", mix)
+    colors = read_palette(palette)
+    write_gif(parts.output, _frames(parts, images, "pal8"), colors, parts.fps)
 
 
 def _webp(parts: Joining) -> None:
-    images = ("-c:v", "libwebp_anim", "-q:v", "72", "-compression_level", "4", "-loop", "0", "-f", "webp")
-    ffmpeg.run(("-y", *parts.source, *images, ffmpeg.local(parts.output)), "writing the WebP")
+    listed = ("-map", "0:v", "-c", "copy", "-f", "framecrc", "pipe:1")  # a line for each frame, below lines with a #
+    with ffmpeg.Process((*parts.source, *listed), "counting frames", read=True) as process:
+        count = sum(not line.startswith(b"#") for line in process.read().splitlines())
+        process.finish()
+    write_webp(parts.output, _frames(parts, parts.source, "rgb24"), count, parts.fps)
+
+
+def _frames(parts: Joining, images: tuple[str, ...], pixels: str) -> Iterator[NDArray[np.uint8]]:
+    """What ffmpeg makes of the segments, frame by frame."""
+    width, height = parts.size
+    shape = (height, width) if pixels == "pal8" else (height, width, 3)
+    raw = ("-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", pixels, "pipe:1")
+    with ffmpeg.Process((*images, *raw), "reading the segments", read=True) as process:
+        size = math.prod(shape) + (1024 if pixels == "pal8" else 0)  # the palette follows each frame
+        while len(data := process.read(size)) == size:
+            yield np.frombuffer(data, np.uint8, math.prod(shape)).reshape(shape)
+        process.finish()
 
 
 PICTURES = "png"  # not a file but a folder of them

@@ -7,13 +7,13 @@ import subprocess
 from itertools import pairwise
 from pathlib import Path
 
-import imageio_ffmpeg
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.video.clock import Clock, Pass
+from dancetutor_cli.video.media import ffmpeg
 from dancetutor_cli.video.media import subtitles as module
 from dancetutor_cli.video.media.subtitles import SubtitleStyle, subtitle_style, subtitles
 from dancetutor_cli.video.notes import Cue
@@ -98,7 +98,7 @@ def test_ffmpeg_reads_what_is_written(tmp_path: Path) -> None:
     clock = Clock((Pass(0.0, 4000.0),), 30)
     file = tmp_path / "film.srt"
     file.write_text(subtitles([cue(t, w) for t, w in ((2, "spin"), (5, "jump"), (3700, "jack"))], clock, STYLE))
-    command = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-i", str(file), "-f", "webvtt", "-"]
+    command = [ffmpeg.executable(), "-v", "error", "-i", str(file), "-f", "webvtt", "-"]
     read = subprocess.run(command, capture_output=True, text=True, check=True)
     assert read.stderr == ""
     assert "00:01.000 --> 00:02.250\nspin" in read.stdout
