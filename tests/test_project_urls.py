@@ -65,7 +65,7 @@ def test_a_wheel_from_an_sdist_keeps_its_addresses(tool: ModuleType, tmp_path: P
 
 
 README = """# x
-![A picture](.github/frame.png) [a page](docs/guide.md#top), [`code`](docs/b.md),
+![A picture](.github/frame.png) [a page](docs/guide.md#top), [`code`](docs/meter.md),
 [out](https://example.com/a), [here](#x)
 """
 
