@@ -31,8 +31,10 @@ def render_batch(
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import film_list
+    from dancetutor_cli.jobs.film_records import find_records
     from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.reports.safe import safe
 
     if options["scheduler"]:  # its workers have a working folder of their own
         path, output = path.absolute(), (output or Path("videos")).absolute()
@@ -48,6 +50,9 @@ def render_batch(
         raise DancetutorError(unreadable[0].error)
     if films:
         make_folder(batch.folder)
+    records, fault = find_records((path, batch.folder))
+    if fault and not quiet:
+        click.echo(f"note: nothing is kept for a second run, which makes all films again: {safe(fault)}", err=True)
     outcomes: list[FilmOutcome] = []
     warnings = JoinedWarnings(every=options["verbose"])
     jobs = options["jobs"] or default_jobs()
@@ -61,7 +66,7 @@ def render_batch(
         if not quiet:
             stack.callback(_warn, warnings, progress)
         stack.callback(workers.close)
-        for outcome in Batch(films, workers, progress.add).run():
+        for outcome in Batch(films, workers, progress.add, records=records).run():
             outcomes.append(outcome)
             _write(results, outcome.as_json())
             for warning in outcome.warnings:

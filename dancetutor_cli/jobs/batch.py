@@ -2,7 +2,7 @@
 
 Each chart's film is prepared, drawn in segments and joined by pieces of work of their own, so that all workers stay
 busy to the end of a pack. Finished segments stay when a run is interrupted; finished films are known by a hash of
-everything that they are made of, and are not made again.
+everything that they are made of, and are not made again. What is kept of that (`film_records`) this process writes.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs import film_work
+from dancetutor_cli.jobs.film_records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.jobs.film_segments import render_segment
 from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome, Opened
 from dancetutor_cli.jobs.pool import Finished, Task, Workers
@@ -23,10 +24,12 @@ __all__ = ["Batch", "FilmJob", "FilmOutcome"]
 
 @dataclass
 class _Film:
-    """A film in work. waiting : segments that are not drawn yet."""
+    """A film in work. record : what is kept of it; work : name of its folder; waiting : segments not drawn yet."""
 
     job: FilmJob
     began: float
+    record: FilmRecord
+    work: str
     opened: Opened | None = None
     waiting: int = 0
     error: DancetutorError | None = None
@@ -44,6 +47,7 @@ class Batch:
     workers: Workers
     opened: Callable[[int], None] = lambda frames: None
     ahead: int = 2
+    records: FilmRecords = field(default_factory=lambda: find_records()[0])
     _films: dict[int, _Film] = field(default_factory=dict)
     _queue: deque[int] = field(default_factory=deque)
 
@@ -62,8 +66,16 @@ class Batch:
         enough = self.ahead * self.workers.at_once()
         while self._queue and sum(map(self._left, self._films.values())) < enough:
             number = self._queue.popleft()
-            self._films[number] = _Film(self.jobs[number], time.monotonic())
-            self.workers.submit(Task(("open", number), film_work.open_film, (self.jobs[number],)))
+            job, work = self.jobs[number], new_work_name()
+            record = self.records.read(job.output)
+            film = self._films[number] = _Film(job, time.monotonic(), record, work)
+            if record.size is None:  # else it is probably done
+                self._keep(film, replace(record, folders=(*record.folders, work)))
+            self.workers.submit(Task(("open", number), film_work.open_film, (job, record, work)))
+
+    def _keep(self, film: _Film, record: FilmRecord) -> None:
+        film.record = record
+        self.records.write(film.job.output, record)
 
     @staticmethod
     def _left(film: _Film) -> int:
@@ -78,7 +90,12 @@ class Batch:
             return self._after_open(number, film, done)
         if kind == "segment":
             film.waiting -= 1
+            if done.error is None:
+                digests = {**film.record.digests, done.key[2]: done.result}
+                self._keep(film, replace(film.record, digests=digests))
             return self._after_segments(number, film) if film.waiting == 0 else None
+        if done.error is None:
+            self._keep(film, replace(film.record, folders=(), digests={}, size=done.result))
         return self._outcome(number, film)
 
     def _after_open(self, number: int, film: _Film, done: Finished) -> FilmOutcome | None:
@@ -87,6 +104,8 @@ class Batch:
             return self._outcome(number, film)
         opened: Opened = done.result
         film.opened, film.waiting = opened, len(opened.missing)
+        kept = {number: film.record.digests[number] for number in opened.finished}
+        self._keep(film, FilmRecord(opened.key, (film.work,), kept))
         self.opened(sum(part.last - part.first for part in opened.missing))
         for part in opened.missing:
             arguments = (opened.plan, part, film.job.encoding)
@@ -96,10 +115,14 @@ class Batch:
     def _after_segments(self, number: int, film: _Film) -> FilmOutcome | None:
         if film.error is not None:
             return self._outcome(number, film)
-        self.workers.submit(Task(("close", number), film_work.close_film, (film.job, film.opened)))
+        arguments = (film.job, film.opened, film.record.digests)
+        self.workers.submit(Task(("close", number), film_work.close_film, arguments))
         return None
 
     def _outcome(self, number: int, film: _Film) -> FilmOutcome:
         del self._films[number]
+        if film.error is not None and not film.record.digests:  # nothing of it is worth going on with
+            remove_work(film.job.output.parent / film.work)
+            self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))
         seconds = time.monotonic() - film.began
         return film_work.outcome(film.job, film.opened, film.error, seconds)

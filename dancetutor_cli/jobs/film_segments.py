@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import pickle
 import uuid
 from collections.abc import Callable, Iterator
@@ -9,10 +10,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dancetutor_cli.errors import FileError
+from dancetutor_cli.jobs.film_records import digest_of
 from dancetutor_cli.jobs.pool import Report, Task
 from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.film_formats import PICTURES
@@ -36,6 +39,13 @@ class Segment:
     path: Path
 
 
+class PlanFile(NamedTuple):
+    """A film's plan where every worker can read it, and the SHA-256 by which a worker knows that it is that plan."""
+
+    path: Path
+    digest: str
+
+
 def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
     """Cut a film of `frames` frames into segments, whose files lie in `folder`."""
     step = max(1, round(SEGMENT_SECONDS * encoding.fps))
@@ -46,18 +56,26 @@ def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
     return out
 
 
-def write_plan(plan: FilmPlan, path: Path) -> None:
-    """Put a film's plan where every worker can read it; once, and not once for each segment."""
-    path.write_bytes(pickle.dumps(plan, protocol=pickle.HIGHEST_PROTOCOL))
+def write_plan(plan: FilmPlan, path: Path) -> PlanFile:
+    """Put a film's plan into a new file; once, and not once for each segment."""
+    data = pickle.dumps(plan, protocol=pickle.HIGHEST_PROTOCOL)
+    with path.open("xb") as file:
+        file.write(data)
+    return PlanFile(path, hashlib.sha256(data).hexdigest())
 
 
 @lru_cache(maxsize=1)
-def _film(path: Path) -> Film:
-    """The film of a plan's file; kept while segments of one film follow each other."""
+def _film(plan: PlanFile) -> Film:
+    """The film of a plan's file; kept while segments of one film follow each other.
+
+    A pickle can run anything, so one that this program has not written is never loaded.
+    """
     from dancetutor_cli.video.film import Film
 
-    plan = pickle.loads(path.read_bytes())
-    return Film(plan)
+    data = plan.path.read_bytes()
+    if hashlib.sha256(data).hexdigest() != plan.digest:
+        raise FileError(plan.path, "was changed by somebody else while the film was made")
+    return Film(pickle.loads(data))
 
 
 def forget() -> None:
@@ -102,8 +120,8 @@ def warm_up(report: Report) -> None:
     renderer.create(scene, size, "good", "cpu").frame(state)
 
 
-def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encoding) -> int:
-    """Draw and encode one segment; returns its number. The segment's file appears whole or not at all."""
+def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: Encoding) -> str:
+    """Draw and encode one segment; returns its SHA-256, "" for pictures. Its file appears whole or not at all."""
     from dancetutor_cli.video.media.encoder import encode_segment
 
     film = _film(plan)
@@ -112,12 +130,14 @@ def render_segment(report: Report, plan: Path, segment: Segment, encoding: Encod
         part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.format.segment}")
     try:
         encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
+        digest = ""
         if part != segment.path:
+            digest = digest_of(part)
             part.replace(segment.path)
     except BaseException:  # a full disk, or the end of this worker
         _clear(part, segment)
         raise
-    return segment.number
+    return digest
 
 
 def _clear(part: Path, segment: Segment) -> None:

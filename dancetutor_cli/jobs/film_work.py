@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import DancetutorError, FileError
-from dancetutor_cli.files import encoded, place_of, write_atomic
+from dancetutor_cli.files import place_of
+from dancetutor_cli.jobs.film_records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
-from dancetutor_cli.jobs.film_segments import Segment, segments, write_plan
+from dancetutor_cli.jobs.film_segments import PlanFile, Segment, segments, write_plan
 from dancetutor_cli.jobs.pool import Report
 from dancetutor_cli.video.media.encoder import Encoding, join
 from dancetutor_cli.video.media.film_formats import PICTURES
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.film_plan import Prepared
-
-STATE = ".dancetutor"  # folder beside the films of a batch: what is done, and what is in work
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,25 +29,25 @@ class FilmJob:
     encoding: Encoding
     longest: float | None = None
 
-    @property
-    def record(self) -> Path:
-        """The file that says what the finished film was made of."""
-        return self.output.parent / STATE / f"{self.output.name}.json"
-
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """A film ready to be drawn. missing : segments that no earlier run has finished; skipped : the film is done."""
+    """A film ready to be drawn, in `folder`. finished : numbers of segments of an earlier run; skipped : it is done."""
 
     key: str
     folder: Path
-    plan: Path
+    plan: PlanFile | None
     parts: tuple[Segment, ...]
-    missing: tuple[Segment, ...]
+    finished: tuple[int, ...]
     sound: Path | None
     frames: int
     warnings: tuple[str, ...]
     skipped: bool = False
+
+    @property
+    def missing(self) -> list[Segment]:
+        """The segments that are to be drawn."""
+        return [part for part in self.parts if part.number not in self.finished]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,16 +79,17 @@ class FilmOutcome:
 def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
     """What became of a job."""
     if error is not None:
-        if opened is not None and not any(part.path.is_file() for part in opened.parts):
-            shutil.rmtree(opened.folder, ignore_errors=True)  # nothing in it is worth going on with
         return FilmOutcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
     assert opened is not None
     status = "skipped" if opened.skipped else "done"
     return FilmOutcome(job, status, None, opened.warnings, opened.frames, seconds)
 
 
-def open_film(report: Report, job: FilmJob) -> Opened:
-    """Everything before the first frame. What an earlier run has left of the same film is used."""
+def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> Opened:
+    """Everything before the first frame. What an earlier run has left of the same film is used.
+
+    earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
+    """
     from dancetutor_cli.jobs.film_key import film_key
 
     subject = look_up(job.request)
@@ -100,53 +97,68 @@ def open_film(report: Report, job: FilmJob) -> Opened:
     if job.longest is not None and max(subject.clock.seconds, subject.written) > job.longest:
         raise FileError(job.request.path, f"{job.label}: too long for a batch; render it alone, or say --yes")
     key = film_key(job.request, subject, job.encoding)
-    folder = job.output.parent / STATE / f"{job.output.name}.{key[:12]}"
-    plan = folder / "plan.pickle"
-    if _recorded(job) == key:
-        return Opened(key, folder, plan, (), (), None, frames, subject.warnings, skipped=True)
+    folder = job.output.parent / work
+    if earlier.key == key and earlier.size is not None and earlier.size == size_of(job.output):
+        return Opened(key, folder, None, (), (), None, frames, subject.warnings, skipped=True)
     from dancetutor_cli.jobs.film_plan import prepare
 
-    for old in folder.parent.glob(f"{_escaped(job.output.name)}.????????????"):
-        if old != folder:
-            shutil.rmtree(old, ignore_errors=True)
     prepared = prepare(job.request, subject)
+    parts = tuple(segments(frames, job.encoding, folder))
+    finished: tuple[int, ...] = ()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_plan(prepared.plan, plan)
+        left = [job.output.parent / name for name in earlier.folders if name != work]
+        left += _new_folder(folder)
+        if earlier.key == key and job.encoding.target != PICTURES:
+            finished = tuple(part.number for part in parts if _moved(part, left, earlier.digests.get(part.number)))
+        for old in left:
+            remove_work(old)
+        plan = write_plan(prepared.plan, folder / "plan.pickle")
         sound = write_sound(prepared, job.encoding, folder)
     except OSError as error:
-        if not any(folder.glob("segment_*")):  # of an earlier run: they are worth something
-            shutil.rmtree(folder, ignore_errors=True)
+        if not finished:  # those of an earlier run are worth something
+            remove_work(folder)
         raise FileError(job.output, f"cannot be written: {error.strerror or error}") from error
-    parts = tuple(segments(frames, job.encoding, folder))
-    missing = tuple(part for part in parts if job.encoding.target == PICTURES or not part.path.exists())
-    return Opened(key, folder, plan, parts, missing, sound, frames, (*subject.warnings, *prepared.warnings))
+    warnings = (*subject.warnings, *prepared.warnings)
+    return Opened(key, folder, plan, parts, finished, sound, frames, warnings)
 
 
-def _escaped(name: str) -> str:
-    return "".join(f"[{c}]" if c in "[]*?" else c for c in name)
+def _new_folder(folder: Path) -> list[Path]:
+    """Make a folder that nobody else can write. One that is there is set aside and returned.
 
-
-def _recorded(job: FilmJob) -> str | None:
-    """The key of the finished film that is there, if any."""
+    There is one where a cluster begins this piece of work again, because its worker was lost.
+    """
     try:
-        record = read_json(job.record)
-    except FileError:
+        folder.mkdir(mode=0o700)
+        return []
+    except FileExistsError:
+        aside = folder.with_name(new_work_name())
+        folder.rename(aside)
+        folder.mkdir(mode=0o700)
+        return [aside]
+
+
+def _moved(part: Segment, folders: list[Path], digest: str | None) -> bool:
+    """Whether a segment has been finished by an earlier run, in one of those folders; then it is in its place now."""
+    return digest is not None and any(move_segment(old / part.path.name, part.path, digest) for old in folders)
+
+
+def size_of(output: Path) -> int | None:
+    """Bytes of a finished film, or how many pictures; None if there is none."""
+    try:
+        return sum(1 for _ in output.iterdir()) if output.is_dir() else output.stat().st_size
+    except OSError:
         return None
-    there = job.output.exists() and isinstance(record, dict)
-    return record.get("key") if there and record.get("size") == _size(job.output) else None
 
 
-def _size(output: Path) -> int:
-    return sum(1 for _ in output.iterdir()) if output.is_dir() else output.stat().st_size
-
-
-def close_film(report: Report, job: FilmJob, opened: Opened) -> None:
-    """Join the segments, put the film in its place, and note what it was made of."""
+def close_film(report: Report, job: FilmJob, opened: Opened, digests: dict[int, str]) -> int | None:
+    """Join the segments, if they are as they were written, and put the film in its place; returns its size."""
+    if job.encoding.target != PICTURES:
+        for part in opened.parts:
+            if digest_of(part.path) != digests[part.number]:
+                raise FileError(part.path, "was changed by somebody else while the film was made; run it again")
     finish(list(opened.parts), job.encoding, opened.sound, opened.folder, job.output)
-    record = {"schema": 1, "key": opened.key, "size": _size(job.output), "chart": job.label, "frames": opened.frames}
-    write_atomic(job.record, encoded(json.dumps(record, ensure_ascii=False, indent=1) + "\n"))
-    shutil.rmtree(opened.folder, ignore_errors=True)
+    remove_work(opened.folder)
+    return size_of(job.output)
 
 
 def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | None:

@@ -99,8 +99,7 @@ def make_film(
     with _workers(jobs, progress, renderer) as workers, work_folder(output) as folder:
         prepared = prepare()
         plan = prepared.plan
-        plan_file = folder / "plan.pickle"
-        drawing.write_plan(plan, plan_file)
+        plan_file = drawing.write_plan(plan, folder / "plan.pickle")
         parts = drawing.segments(plan.clock.frames, encoding, folder)
         progress.begin(plan.clock.frames, encoding.fps)
         for part in parts:

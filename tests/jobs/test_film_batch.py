@@ -15,7 +15,8 @@ from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.jobs import film_segments, film_work
 from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
-from dancetutor_cli.jobs.film_work import STATE, FilmJob, FilmOutcome
+from dancetutor_cli.jobs.film_records import WORK
+from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome
 from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.video.film_look import FilmLook
@@ -68,7 +69,7 @@ def test_every_chart_becomes_a_film_once(pack: Path, tmp_path: Path) -> None:
     before = {p: (p.stat().st_mtime_ns, p.read_bytes()) for p in videos.glob("*.mp4")}
     assert {o.status for o in run(jobs).values()} == {"skipped"}
     assert {p: (p.stat().st_mtime_ns, p.read_bytes()) for p in videos.glob("*.mp4")} == before
-    assert not [p for p in (videos / STATE).iterdir() if p.is_dir()]  # nothing in work is left
+    assert sorted(p.name for p in videos.iterdir()) == names  # nothing in work is left
 
 
 def test_a_changed_chart_or_wish_is_made_again(pack: Path, tmp_path: Path) -> None:
@@ -154,7 +155,7 @@ def test_an_interrupted_film_goes_on_with_its_segments(tmp_path: Path) -> None:
     jobs, _, _ = film_list(batch_request((tmp_path / "pack",), videos))
     with pytest.raises(KeyboardInterrupt):
         run(jobs, Stopping(2))
-    (work,) = (p for p in (videos / STATE).iterdir() if p.is_dir())
+    (work,) = videos.glob(f"{WORK}*")
     kept = {p.name: p.stat().st_mtime_ns for p in work.glob("segment_*.mp4")}
     assert len(kept) == 2 and not list(videos.glob("*.mp4"))
 

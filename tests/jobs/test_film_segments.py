@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.jobs import film_segments
-from dancetutor_cli.jobs.film_segments import Segment, render_segment
+from dancetutor_cli.jobs.film_segments import PlanFile, Segment, render_segment
 from dancetutor_cli.video.media import encoder
 from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.film_formats import PICTURES
@@ -44,7 +44,7 @@ def test_half_a_segment_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     whole.write_bytes(b"done before")
     segment = Segment(1, 24, 48, tmp_path / "segment_00001.mp4")
     with pytest.raises(type(error)):
-        render_segment(print, tmp_path / "plan", segment, Encoding("mp4", (64, 36), 30))
+        render_segment(print, PlanFile(tmp_path / "plan", ""), segment, Encoding("mp4", (64, 36), 30))
     assert [path.name for path in tmp_path.iterdir()] == ["segment_00000.mp4"]
 
 
@@ -60,5 +60,6 @@ def test_its_own_pictures_are_removed_and_no_others(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(encoder, "encode_segment", _fails(two, OSError(errno.ENOSPC, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
-        render_segment(print, tmp_path / "plan", Segment(1, 24, 48, frames), Encoding(PICTURES, (64, 36), 30))
+        segment, encoding = Segment(1, 24, 48, frames), Encoding(PICTURES, (64, 36), 30)
+        render_segment(print, PlanFile(tmp_path / "plan", ""), segment, encoding)
     assert sorted(path.name for path in frames.iterdir()) == ["frame_000023.png", "frame_000048.png"]
