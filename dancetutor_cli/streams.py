@@ -8,6 +8,8 @@ import os
 import sys
 from typing import Any
 
+from dancetutor_cli.workflow_commands import GuardedText
+
 OUTPUT = "standard output"
 _FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG)
 
@@ -47,14 +49,14 @@ def open_streams() -> bool:
 
 
 def _written_by(kind: type[io.FileIO], stream: Any) -> Any:
-    """The same stream on a file of this kind. A console of Windows, which is never full, stays as it is."""
+    """The same stream on a file of this kind, with no commands for CI in what others wrote. A console of Windows, which is never full, stays as it is."""
     if not isinstance(stream, io.TextIOWrapper):
         return stream
     has_buffer = type(stream.buffer) is io.BufferedWriter
     if type(stream.buffer.raw if has_buffer else stream.buffer) is not io.FileIO:
         return stream
     raw = kind(stream.fileno(), "wb", closefd=False)
-    return io.TextIOWrapper(
+    return GuardedText(
         io.BufferedWriter(raw) if has_buffer else raw, stream.encoding, stream.errors,
         line_buffering=stream.line_buffering, write_through=stream.write_through,
     )  # fmt: skip

@@ -24,8 +24,11 @@ def command(as_json: bool) -> None:
     if as_json:
         import json
 
+        from dancetutor_cli.workflow_commands import json_without_commands
+
         rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.mend} for c in checks]
-        click.echo(json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1))
+        text = json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1)
+        click.echo(json_without_commands(text))
     else:
         width = max(len(c.name) for c in checks)
         for check in checks:

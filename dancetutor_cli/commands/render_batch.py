@@ -16,6 +16,7 @@ from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.files import encoded
 from dancetutor_cli.outputs import check_file, check_folder, make_folder
 from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.workflow_commands import json_without_commands
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import FilmOutcome
@@ -124,7 +125,8 @@ def _open_results(path: Path | None, stack: ExitStack) -> TextIO | None:
 
 def _write(results: TextIO | None, line: dict[str, Any]) -> None:
     if results is not None:
-        results.write(encoded(json.dumps(line, ensure_ascii=False) + "\n").decode("utf-8"))
+        text = json_without_commands(json.dumps(line, ensure_ascii=False))
+        results.write(encoded(text + "\n").decode("utf-8"))
         results.flush()
 
 

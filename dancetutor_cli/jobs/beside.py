@@ -23,6 +23,7 @@ from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.msd import Tag, plain, scan
 from dancetutor_cli.chart.names import difficulty as named
+from dancetutor_cli.csv_cells import text_of
 from dancetutor_cli.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.jobs.analyze import AnalyzeTask, load_song, solved
 from dancetutor_cli.lint.tech_counts import tech_rows
@@ -134,7 +135,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     """Line and cells of each row of a CSV file."""
     text = io.StringIO(read_bytes(path, CHART_LIMIT).decode("utf-8-sig", "replace"), newline="")
     for number, row in enumerate(csv.DictReader(text), 2):
-        yield number, {name: value or "" for name, value in row.items() if name}
+        yield number, {name: text_of(value or "") for name, value in row.items() if name}
 
 
 def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[tuple[Key, dict[str, int]]]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import io
+from collections.abc import Iterable, Mapping
 from typing import IO, Any
 
+from dancetutor_cli.csv_cells import as_text
 from dancetutor_cli.jobs.result import ChartResult, FileResult
 from dancetutor_cli.lint.chart_figures import TECH_COUNTS
 from dancetutor_cli.reports.safe import safe
@@ -23,30 +25,45 @@ OWN = {
 }
 
 
+_COMMAND = ("::", "##[")  # at the start of a line, for the log of a CI job
+
+
 class CsvReport:
-    """Writes a header and one line a chart; files that could not be read go to `errors`."""
+    """Writes a header and one line a chart; files that could not be read go to `errors`.
+
+    Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay as they are.
+    """
 
     def __init__(self, stream: IO[str], errors: IO[str]) -> None:
         self._stream = stream
         self._errors = errors
-        self._writer: csv.DictWriter[str] | None = None
+        self._names = list(_line("", "", "", None))
 
     def begin(self) -> None:
         """The header needs no chart."""
-        self._writer = csv.DictWriter(self._stream, list(_line("", "", "", None)), lineterminator="\n")
-        self._writer.writeheader()
+        self._stream.write(",".join(self._names) + "\n")
 
     def add(self, result: FileResult) -> None:
         """Write the charts of one file."""
         if result.error is not None:
             self._errors.write(f"dancetutor: {safe(result.error)}\n")
-        assert self._writer is not None
         file = (relative(result.path), safe(result.title), safe(result.artist)) if result.charts else ("", "", "")
         for chart in result.charts:
-            self._writer.writerow(_line(*file, chart))
+            self._stream.write(_written(_line(*file, chart).values()))
 
     def end(self, tally: Tally) -> None:
         """Nothing comes after the last chart."""
+
+
+def _written(cells: Iterable[Any]) -> str:
+    """One line of the file."""
+    line = io.StringIO()
+    csv.writer(line, lineterminator="\n").writerow([as_text(cell) if isinstance(cell, str) else cell for cell in cells])
+    text = line.getvalue()
+    if text.startswith(_COMMAND):  # the first cell, which nothing has made stand in quotes
+        first, comma, rest = text.partition(",")
+        text = f'"{first}"{comma}{rest}'
+    return text
 
 
 def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapping[str, Any]:

@@ -7,6 +7,7 @@ from typing import IO
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.reports.structured import entries
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import write_command
 
 _COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
 
@@ -27,7 +28,7 @@ class GithubReport:
             properties = {"file": entry.path, "line": finding.line, "col": finding.column}
             properties["title"] = f"{finding.rule} {finding.name}"
             told = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items() if value is not None)
-            self._stream.write(f"::{_COMMANDS[finding.severity]} {told}::{_data(entry.message)}\n")
+            write_command(self._stream, f"::{_COMMANDS[finding.severity]} {told}::{_data(entry.message)}\n")
 
     def end(self, tally: Tally) -> None:
         """Write the summary."""

@@ -8,6 +8,7 @@ from typing import IO, Any
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.reports.structured import entries
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import json_without_commands
 
 _SEVERITIES = {"error": "major", "warning": "minor", "info": "info"}
 
@@ -39,4 +40,4 @@ class GitlabReport:
 
     def end(self, tally: Tally) -> None:
         """Write the list."""
-        self._stream.write(json.dumps(self._issues, indent=1) + "\n")
+        self._stream.write(json_without_commands(json.dumps(self._issues, indent=1)) + "\n")

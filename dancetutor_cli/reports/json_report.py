@@ -13,6 +13,7 @@ from dancetutor_cli.lint.chart_figures import Cause
 from dancetutor_cli.lint.finding import Finding
 from dancetutor_cli.meter.bill import Estimate
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import json_without_commands
 
 SCHEMA = 1
 
@@ -51,7 +52,7 @@ class JsonReport:
 
     def _write(self, *texts: str) -> None:
         for text in texts:  # not writelines: a stream that copies what is written, as click's for tests, misses that
-            self._stream.write(text.encode("utf-8", "replace"))
+            self._stream.write(json_without_commands(text).encode("utf-8", "replace"))
 
 
 def file_texts(result: FileResult) -> Iterator[str]:

@@ -9,6 +9,7 @@ from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.reports.json_report import finding_object
 from dancetutor_cli.reports.structured import entries
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import json_without_commands
 
 
 class JsonLinesReport:
@@ -28,7 +29,8 @@ class JsonLinesReport:
                 name: getattr(chart, name, None) for name in ("index", "steps_type", "difficulty", "meter", "preset")
             }
             line = {"path": entry.path, **named, **finding_object(entry.finding), "fingerprint": entry.fingerprint}
-            self._stream.write(json.dumps(line, ensure_ascii=False).encode("utf-8", "replace").decode("utf-8") + "\n")
+            text = json_without_commands(json.dumps(line, ensure_ascii=False))
+            self._stream.write(text.encode("utf-8", "replace").decode("utf-8") + "\n")
 
     def end(self, tally: Tally) -> None:
         """Nothing comes after the last finding."""

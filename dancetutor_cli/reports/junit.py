@@ -10,6 +10,7 @@ from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.structured import Entry, entries, relative
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import xml_without_commands
 
 
 class JunitReport:
@@ -42,7 +43,8 @@ class JunitReport:
         """Write everything."""
         sums = f'tests="{self._tests}" failures="{self._failures}" errors="{self._errors}"'
         self._stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
-        self._stream.write(f'<testsuites name="dancetutor" {sums}>\n{"".join(self._suites)}</testsuites>\n')
+        suites = xml_without_commands("".join(self._suites))
+        self._stream.write(f'<testsuites name="dancetutor" {sums}>\n{suites}</testsuites>\n')
 
     def _case(self, path: str, name: str, found: Iterable[Entry], error: str | None = None) -> str:
         inside = [f'  <error type="unreadable" message={quoteattr(safe(error))}/>\n'] if error else []

@@ -16,6 +16,7 @@ from dancetutor_cli.lint.rule import FAMILIES, Rule
 from dancetutor_cli.reports.safe import safe
 from dancetutor_cli.reports.structured import Entry, entries
 from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.workflow_commands import json_without_commands
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {"error": "error", "warning": "warning", "info": "note"}
@@ -55,7 +56,7 @@ class SarifReport:
             "results": self._results,
         }
         log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
-        self._stream.write(json.dumps(log, indent=1) + "\n")
+        self._stream.write(json_without_commands(json.dumps(log, indent=1)) + "\n")
 
     def _result(self, entry: Entry) -> dict[str, Any]:
         finding = entry.finding
