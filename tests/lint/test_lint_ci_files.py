@@ -52,8 +52,9 @@ def run_step(step: dict[str, Any], folder: Path, path: str = "", **given: str) -
     environment |= {"RUNNER_TEMP": str(folder / "temp"), "GITHUB_OUTPUT": str(folder / "output")}
     environment |= {"PATH": f"{path}{os.pathsep}{SCRIPTS}{os.pathsep}{os.environ['PATH']}"}
     command = [BASH, "--noprofile", "--norc", "-eo", "pipefail", str(script)]
+    working = resolved(step.get("working-directory", str(folder)), inputs, folder)
     return subprocess.run(
-        command, cwd=folder, env=os.environ | environment, capture_output=True, text=True, timeout=300
+        command, cwd=working, env=os.environ | environment, capture_output=True, text=True, timeout=300
     )
 
 
@@ -86,14 +87,54 @@ def test_the_action_writes_sarif_where_its_output_says(charts: Path) -> None:
     assert [r["ruleId"] for r in log["runs"][0]["results"] if r["level"] == "error"] == ["DT301"]
 
 
-def test_the_action_installs_itself(charts: Path, tmp_path: Path) -> None:
+def test_the_action_installs_itself_by_its_locks(charts: Path, tmp_path: Path) -> None:
     fake = tmp_path / "bin" / "python"
     fake.parent.mkdir()
-    fake.write_text('#!/bin/sh\nprintf "%s\\n" "$@" > "$SEEN"\n')
+    fake.write_text('#!/bin/sh\nprintf "%s " "$@" >> "$SEEN"\necho >> "$SEEN"\n')
     fake.chmod(0o755)
     step = {**step_named("Install"), "env": {**step_named("Install")["env"], "SEEN": str(tmp_path / "seen")}}
     assert run_step(step, charts, path=str(fake.parent)).returncode == 0
-    assert (tmp_path / "seen").read_text().split() == ["-m", "pip", "install", "--quiet", str(ROOT)]
+    locks = f"-r {ROOT}/requirements.lock -r {ROOT}/requirements-build.lock"
+    assert (tmp_path / "seen").read_text().splitlines() == [
+        f"-I -m pip install --quiet --require-hashes {locks} ",
+        f"-I -m pip install --quiet --no-deps --no-build-isolation {ROOT} ",
+    ]
+
+
+def test_the_build_lock_is_part_of_the_lock_for_development() -> None:
+    build, dev = ((ROOT / f"requirements-{name}.lock").read_text() for name in ("build", "dev"))
+    packages = re.findall(r"^\S+==.*(?:\n[ \t]+.*)*\n", build, re.MULTILINE)
+    assert "".join(packages) == build and packages[0].startswith("hatchling==")
+    assert all(package in dev for package in packages)
+
+
+def steps_of(document: dict[str, Any]) -> list[dict[str, Any]]:
+    """The steps of an action or of all jobs of a workflow."""
+    if "runs" in document:
+        return list(document["runs"]["steps"])
+    return [step for job in document["jobs"].values() for step in job["steps"]]
+
+
+@pytest.mark.parametrize("name", ["action.yml", ".github/workflows/ci.yml"])
+def test_nothing_of_a_checkout_is_run_in_place_of_pip(name: str) -> None:
+    text = (ROOT / name).read_text("utf-8")
+    document = yaml.safe_load(text)
+    for step in steps_of(document):
+        if uses := step.get("uses"):
+            assert re.fullmatch(r"[\w-]+/[\w-]+@[0-9a-f]{40}", uses), uses
+            assert re.search(rf"{re.escape(uses)}  # v\d+\.\d+\.\d+$", text, re.MULTILINE)  # for people
+        run = step.get("run", "")
+        assert not re.search(r"\bpython3?\s+(?!-I\b)", run)
+        assert not re.search(r"(^|[\s;&|])pip3?\s", run.replace("-m pip", ""))
+        if "pip install" in run:
+            assert step.get("working-directory") == "${{ runner.temp }}"
+            lines = [line for line in run.splitlines() if "pip install" in line]
+            assert all("--require-hashes" in line or "--no-deps" in line for line in lines)
+            isolated = [line for line in lines if "--no-deps" in line and "--no-index" not in line]
+            assert all("--no-build-isolation" in line for line in isolated)
+    if "jobs" in document:
+        assert document["permissions"] == {"contents": "read"}
+        assert not any("permissions" in job for job in document["jobs"].values())
 
 
 def test_the_action_is_a_composite_one_github_can_read() -> None:
