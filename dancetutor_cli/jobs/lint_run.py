@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.jobs.analyze import AnalyzeTask
@@ -22,6 +23,9 @@ from dancetutor_cli.lint.configuration import (
 )
 from dancetutor_cli.lint.presets import PresetChoice, choice_of
 from dancetutor_cli.meter.bill import AUTO
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.finding import Finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +142,11 @@ class LintRun:
         self._found += [key for _, _, key in found]
         known = self.request.update_baseline  # what is written now is known from now on
         left = [(f, chart) for f, chart, key in found if not known and not baseline.absorbs(key)]
-        charts = tuple(replace(chart, findings=tuple(f for f, of in left if of is chart)) for chart in result.charts)
-        return replace(result, findings=tuple(f for f, of in left if of is None), charts=charts)
+        of_chart: dict[int, list[Finding]] = {}
+        for finding, chart in left:
+            of_chart.setdefault(id(chart), []).append(finding)
+        charts = tuple(replace(chart, findings=tuple(of_chart.get(id(chart), ()))) for chart in result.charts)
+        return replace(result, findings=tuple(of_chart.get(id(None), ())), charts=charts)
 
     def _tell_what_ran(self, baseline: Baseline, result: FileResult) -> None:
         path = Path(result.path).absolute()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,7 +11,7 @@ from dancetutor_cli.chart import Chart, Song, load
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.errors import FileError
 
-Key = tuple[str, str, str]
+Key = tuple[str, str, int]
 
 
 def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
@@ -45,13 +46,13 @@ def _labels(charts: list[Chart]) -> str:
 def _by_key(song: Song) -> dict[Key, Chart]:
     """Charts, but of lights, by type and difficulty, and by their place among those that share both."""
     found: dict[Key, Chart] = {}
+    places: Counter[tuple[str, str]] = Counter()
     for chart in song.charts:
         if is_lights(chart.steps_type):
             continue
-        place = 0
-        while (key := (chart.steps_type, chart.difficulty, str(place))) in found:
-            place += 1
-        found[key] = chart
+        kind = (chart.steps_type, chart.difficulty)
+        found[*kind, places[kind]] = chart
+        places[kind] += 1
     return found
 
 
