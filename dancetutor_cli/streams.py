@@ -49,7 +49,10 @@ def open_streams() -> bool:
 
 
 def _written_by(kind: type[io.FileIO], stream: Any) -> Any:
-    """The same stream on a file of this kind, with no commands for CI in what others wrote. A console of Windows, which is never full, stays as it is."""
+    """The same stream on a file of this kind, in which no text of others is a command for CI.
+
+    A console of Windows, which is never full, stays as it is.
+    """
     if not isinstance(stream, io.TextIOWrapper):
         return stream
     has_buffer = type(stream.buffer) is io.BufferedWriter

@@ -12,7 +12,7 @@ import click
 
 from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.paths import GivenPath
+from dancetutor_cli.commands.paths import GivenPath, within_folders
 from dancetutor_cli.commands.records import into
 from dancetutor_cli.errors import UsageError, did_you_mean
 from dancetutor_cli.outputs import check_folder
@@ -111,7 +111,8 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         backup=wish.backup,
         diff=wish.diff,
     )
-    songs = _songs(_items(paths, wish.output, find_files(paths)))
+    files = find_files(paths) if wish.output is not None else within_folders(paths, find_files(paths))
+    songs = _songs(_items(paths, wish.output, files))
     talk = _Talk(order, wish.check, JoinedWarnings(every=wish.verbose))
     talk.begin()
     if not wish.strip:

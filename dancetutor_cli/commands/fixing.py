@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.paths import within_folders
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.library.chart_files import twin
 from dancetutor_cli.reports.diff import coloured
@@ -59,6 +60,8 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any])
     wanted = asked(options["fix"])
     _check(tasks, options)
     talk = _Talk(diff=options["diff"])
+    files = within_folders(options["paths"], [task.path for task in tasks])
+    tasks = [task for task in tasks if task.path in files]
     meant = {task.path.absolute() for task in tasks}
     for task in tasks:
         outcome = _fix(run, task, wanted, options)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,3 +26,17 @@ class GivenPath(click.Path):
         if value == "":
             self.fail("the name is empty; write . for the folder you are in", param, ctx)
         return super().convert(value, param, ctx)
+
+
+def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
+    """The files that may be written of those that a search has found; each link out of its folders is one line."""
+    from dancetutor_cli.library import without_links_out
+    from dancetutor_cli.reports.safe import safe
+
+    kept, links = without_links_out(paths, files)
+    for link in links:
+        where = safe(f"{link}: is a link to {os.path.realpath(link)}")
+        click.echo(
+            f"warning: {where}, outside the folder that is searched; it is left alone, name it to write it", err=True
+        )
+    return kept

@@ -55,7 +55,7 @@ def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
         moves.append(tuple(str(m) for m in _listed(path, row, "moves")))
     if table:
         raise FileError(path, f"{chart.label}: the chart has no row at beat {min(table) / TICKS_PER_BEAT:g}")
-    return Play(rows, limb, part, feet, facing, (), np.zeros((n, 0), dtype=np.int64), None, tuple(moves), str(path))
+    return Play(rows, limb, part, feet, facing, (), np.zeros((n, 0), dtype=np.int64), None, tuple(moves), path.name)
 
 
 def _chart_data(path: Path, chart: Chart) -> list[Any]:

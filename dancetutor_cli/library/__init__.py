@@ -9,13 +9,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dancetutor_cli.library.chart_files import find_files, one_song, twin
+    from dancetutor_cli.library.chart_files import find_files, one_song, twin, without_links_out
     from dancetutor_cli.library.music import music_file
     from dancetutor_cli.library.selection import select, select_one
 
-__all__ = ["find_files", "music_file", "one_song", "select", "select_one", "twin"]
+__all__ = ["find_files", "music_file", "one_song", "select", "select_one", "twin", "without_links_out"]
 _MODULES = {
-    "chart_files": ("find_files", "one_song", "twin"),
+    "chart_files": ("find_files", "one_song", "twin", "without_links_out"),
     "music": ("music_file",),
     "selection": ("select", "select_one"),
 }

@@ -34,6 +34,30 @@ def _below(folder: Path) -> Iterable[Path]:
     return [*files, *sorted(closed)] or [folder]
 
 
+def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Of what `find_files` has found: files to write, and links by which a search would leave its folders.
+
+    A folder of songs may be a stranger's, and a link in it lead to any file of the user's. Who names a link means it.
+    """
+    named = {os.path.abspath(path) for path in paths}  # noqa: PTH100 (links stay links)
+    folders = [path.resolve() for path in paths if os.path.isdir(path)]  # noqa: PTH112 (Path.is_dir may raise)
+    out = {
+        file
+        for file in files
+        if file.is_symlink() and os.path.abspath(file) not in named and _is_outside(file, folders)  # noqa: PTH100
+    }
+    return [file for file in files if file not in out], sorted(out)
+
+
+def _is_outside(link: Path, folders: Sequence[Path]) -> bool:
+    """Whether a link leads to something outside of all folders; one that leads nowhere is an error of its own."""
+    try:
+        target = link.resolve(strict=True)
+    except (OSError, RuntimeError):
+        return False
+    return not any(target.is_relative_to(folder) for folder in folders)
+
+
 def is_chart_name(name: str) -> bool:
     """Whether a file of this name in a song's folder is a chart file."""
     return name.lower().endswith(SONG_SUFFIXES) and not name.startswith(_RESOURCE_FORK)

@@ -31,7 +31,7 @@ _COMMAND = ("::", "##[")  # at the start of a line, for the log of a CI job
 class CsvReport:
     """Writes a header and one line a chart; files that could not be read go to `errors`.
 
-    Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay as they are.
+    Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay.
     """
 
     def __init__(self, stream: IO[str], errors: IO[str]) -> None:

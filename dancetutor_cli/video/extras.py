@@ -48,7 +48,7 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
                 "line": int(notes.line[note]),
             }
         )
-    data = {"schema": 1, "path": str(song.path), "chart": chart.label, "poses": entries}
+    data = {"schema": 1, "path": song.path.name, "chart": chart.label, "poses": entries}
     write_atomic(folder / INDEX, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 

@@ -62,7 +62,7 @@ class Pack:
         path = Path(result.path)
         title = safe(result.title) or safe_path(path.stem)
         if result.error is not None:
-            self._unreadable.append(safe_path(result.path))
+            self._unreadable.append(result.path)
             return
         rules = {finding.rule for finding in result.findings}
         if _MUSIC in rules:
@@ -85,6 +85,12 @@ class Pack:
         paths = [os.path.dirname(os.path.abspath(one.path)) for one in self._results.values()]  # noqa: PTH100, PTH120
         return os.path.commonpath(paths) if paths else "."
 
+    def _unread(self) -> Iterator[str]:
+        """Files that could not be read, by their paths below the folder of everything that was looked at."""
+        paths = [os.path.abspath(path) for path in (*self._unreadable, self.folder)]  # noqa: PTH100
+        above = os.path.commonpath([os.path.dirname(path) for path in paths[:-1]] + paths[-1:])  # noqa: PTH120
+        return (safe_path(os.path.relpath(path, above)) for path in paths[:-1])
+
     def charts(self) -> list[PackChart]:
         """Every chart that is danced, by song."""
         below, out = self.folder, []
@@ -102,7 +108,7 @@ class Pack:
             if songs:
                 yield f"{said}: {_some(songs)}"
         if self._unreadable:
-            yield f"cannot be read: {_some(self._unreadable)}"
+            yield f"cannot be read: {_some(list(self._unread()))}"
         yield from self._sync()
 
     def _missing_difficulties(self) -> Iterator[str]:
