@@ -17,6 +17,7 @@ from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.interruption import hear_again
 from dancetutor_cli.jobs.pool import Report, Task, open_workers
 
+EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
 KERNEL = "from dancetutor_cli.kernels import njit\n\n\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
 # Ctrl-C as LLVM hands over the machine code; what numba does without it is asked here, too
 PROGRAM = """
@@ -62,6 +63,18 @@ def test_ctrl_c_as_llvm_hands_machine_code_over(how: str, tmp_path: Path) -> Non
     command = [sys.executable, "-c", PROGRAM.format(how=how)]
     ran = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=120)
     assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "dancetutor: interrupted\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="ends by a signal, the POSIX way")
+@pytest.mark.parametrize(("name", "said"), [("dancetutor", True), ("dancetutor_cli.py", True), ("other.py", False)])
+def test_ctrl_c_before_the_program_can_catch_it(name: str, said: bool, tmp_path: Path) -> None:
+    """While the first of its modules is imported. A program that only uses the package has Python's own words."""
+    (tmp_path / name).write_text(EARLY)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    command = [sys.executable, "-P", str(tmp_path / name)]
+    ran = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=120)
+    assert ran.returncode == -signal.SIGINT and ("Traceback" in ran.stderr) != said
+    assert (ran.stderr == "dancetutor: interrupted\n") == said
 
 
 ENDING = """

@@ -44,8 +44,7 @@ def test_annotate_leaves_a_link_out_of_the_folder_alone(pack: Path, tmp_path: Pa
 
 @POSIX
 def test_fix_leaves_a_link_out_of_the_folder_alone(pack: Path, tmp_path: Path) -> None:
-    odd = SONG.replace("0010\n0001\n", "0010\n0001").replace("1000\n0100", "1000 \n0100")
-    spoilt = odd.replace("#BPMS:0=120;", "#BPMS:0=120;\n#STOPS:;\n#BGCHANGES:;").replace(":Hard:", ":hard :")
+    spoilt = SONG.replace(NOTES, "2001\nM000\n0010\n3000\n,\n4000\n0100\n0001\n0010\n")
     for file in (tmp_path / "outside.sm", pack / "song" / "x.sm"):
         file.write_text(spoilt)
     result = CliRunner().invoke(analyze, ["--fix", "safe", str(pack)], standalone_mode=False)
