@@ -11,7 +11,6 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import json
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -27,6 +26,7 @@ from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.kernel_arguments import HEAD, ITEMS, is_known, kinds_of, plain, table_of
 from dancetutor_cli.kernel_folder import CHECKSUM, SUFFIX, head, kernel_folder, places_of, shipped_folder
 from dancetutor_cli.kernel_target import target
+from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 RESULTS = 2  # words in which a kernel's results stand, at most; behind them numba's word about an exception
 MISFIT = -1000  # what the reading function gives if an object is not of the kind that it was made for
@@ -155,7 +155,7 @@ class Door:
     def _kept(self, digest: str) -> Iterator[Code]:
         for folder in self._folders():
             with suppress(OSError):
-                data = (folder / self._name(digest)).read_bytes()
+                data = read_file(folder / self._name(digest))
                 if is_sound(data, self._stamp()):
                     yield _unpacked(data)
 
@@ -163,14 +163,9 @@ class Door:
         if not kernel_folder().kept:
             return
         path = kernel_folder().of_module(self._source) / self._name(digest)
-        beside = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            beside.write_bytes(_packed(code, self._stamp()))
-            beside.replace(path)
-        except OSError:  # a full disk: the kernel is there, only not kept
-            with suppress(OSError):
-                beside.unlink(missing_ok=True)
+        with suppress(OSError):  # a full disk: the kernel is there, only not kept
+            if not use_folder(path.parent):
+                write_file(path, _packed(code, self._stamp()))
 
     @property
     def _source(self) -> Path:

@@ -8,17 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-import stat
-import sys
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from threading import get_ident
 
 from dancetutor_cli.kernel_target import fits_shipped, maker
 from dancetutor_cli.resources import PACKAGE
+from dancetutor_cli.run.trust import TREES, fault_of, read_file, temporary_folder, use_folder, users_folder
 
 CHECKSUM = 32  # bytes of SHA-256
 SUFFIX = ".door"  # of what `kernel_door` keeps; the rest is numba's: .nbi and .nbc
@@ -47,33 +44,45 @@ class KernelFolder:
 
 
 def kernel_folder() -> KernelFolder:
-    """Where this process keeps its kernels; looked for once, as long as `NUMBA_CACHE_DIR` stays what it is."""
-    return _kernel_folder(os.environ.get(VARIABLE))
+    """Where this process keeps its kernels: in the first place that nobody else can write, and this user can."""
+    named, users = _named(), users_folder("dancetutor")
+    places = [named, PACKAGE / "__pycache__", users and users / "kernels"]
+    called = [f"{named} ({VARIABLE})", f"the installation ({PACKAGE})", f"the user's cache ({places[2]})"]
+    refused: list[str] = []
+    for place, words in zip(places, called, strict=True):
+        if place is None:
+            continue
+        fault = _use_folder(place, os.environ.get(TREES, ""))
+        if not fault:
+            return KernelFolder(None if place == places[1] else place, fault=refused[0] if named and refused else "")
+        refused.append(f"{words} {fault}")
+    temporary = temporary_folder("dancetutor-kernels")
+    return KernelFolder(temporary, temporary is not None, " and ".join(refused))
 
 
 @cache
-def _kernel_folder(named: str | None) -> KernelFolder:
-    users = users_folder("dancetutor")
-    places = [Path(named) if named else None, PACKAGE / "__pycache__", users and users / "kernels"]
-    for place in places:
-        if place is not None and _usable(place):
-            fault = f"{named} ({VARIABLE}) cannot be written" if named and place != places[0] else ""
-            return KernelFolder(None if place == places[1] else place, fault=fault)
-    refused = [f"{named} ({VARIABLE})"] if named else []
-    refused += [f"the installation ({PACKAGE})", f"the user's cache ({places[2] or 'no home folder'})"]
-    temporary = _temporary()
-    return KernelFolder(temporary, temporary is not None, f"{' and '.join(refused)} cannot be written")
+def _use_folder(place: Path, trees: str) -> str:
+    """What `use_folder` says, which writes there; asked once."""
+    return use_folder(place)
 
 
 def places_of(source: Path) -> Iterator[Path]:
     """Where kernels of a module may have been kept, the likeliest first. Only the last is tried by writing there."""
-    named, users = os.environ.get(VARIABLE), users_folder("dancetutor")
-    if named:
-        yield KernelFolder(Path(named)).of_module(source)
-    yield source.parent / "__pycache__"
-    if users is not None:
-        yield KernelFolder(users / "kernels").of_module(source)
+    named, users = _named(), users_folder("dancetutor")
+    beside = KernelFolder(None).of_module(source)
+    places = [KernelFolder(place).of_module(source) for place in (named, users and users / "kernels") if place]
+    for place in (*places[: named is not None], beside, *places[named is not None :]):
+        if not fault_of(place):
+            yield place
     yield kernel_folder().of_module(source)
+
+
+def _named() -> Path | None:
+    """The folder that the user has named; resolved, so that what has been looked at is what is used."""
+    named = os.environ.get(VARIABLE)
+    if not named:
+        return None
+    return Path(os.path.realpath(named)) if Path(named).is_absolute() else Path(named)
 
 
 def shipped_folder(source: Path) -> Path | None:
@@ -84,7 +93,8 @@ def shipped_folder(source: Path) -> Path | None:
     folder = source.resolve().parent
     if not folder.is_relative_to(PACKAGE) or not shipped_root().is_dir() or not fits_shipped():
         return None
-    return shipped_root() / folder.relative_to(PACKAGE)
+    shipped = shipped_root() / folder.relative_to(PACKAGE)
+    return None if fault_of(shipped) else shipped
 
 
 def shipped_root() -> Path:
@@ -110,56 +120,16 @@ def head(stamp: str) -> bytes:
 
 def is_current(index: Path, stamp: str) -> bool:
     """Whether the kernels of an index file were made of this code, and by what is installed now."""
-    with index.open("rb") as file:
-        return file.read(3 * CHECKSUM)[CHECKSUM:] == head(stamp)
+    return _head_of(index) == head(stamp)
 
 
 def _is_readable(index: Path) -> bool:
     """Whether what is installed now made the kernels of an index file, of whichever code."""
-    with index.open("rb") as file:
-        return file.read(3 * CHECKSUM)[2 * CHECKSUM :] == maker()
+    return _head_of(index)[CHECKSUM:] == maker()
 
 
-def users_folder(name: str) -> Path | None:
-    """Where this system keeps a user's caches; None for a user without a home, as in a container."""
+def _head_of(file: Path) -> bytes:
     try:
-        if sys.platform == "win32":
-            return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / name
-        if sys.platform == "darwin":
-            return Path.home() / "Library" / "Caches" / name
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / name
-    except RuntimeError:
-        return None
-
-
-def _usable(folder: Path) -> bool:
-    """Whether files can be put there; makes the folder. Without `tempfile`, whose import takes as long as a chart."""
-    probe = folder / f".dancetutor-{os.getpid()}-{get_ident()}.tmp"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink(missing_ok=True)
-        return True
+        return read_file(file)[CHECKSUM : 3 * CHECKSUM]
     except OSError:
-        return False
-
-
-def _temporary() -> Path | None:
-    """A folder for temporary files that only this user can write: the machine code of others must not be run."""
-    import tempfile
-
-    owner = os.getuid() if hasattr(os, "getuid") else "user"
-    try:
-        folder = Path(tempfile.gettempdir()) / f"dancetutor-kernels-{owner}"
-        with suppress(FileExistsError):
-            folder.mkdir(mode=0o700)
-        return folder if _is_ours(folder) and _usable(folder) else None
-    except OSError:
-        return None
-
-
-def _is_ours(folder: Path) -> bool:
-    status = folder.lstat()
-    if not stat.S_ISDIR(status.st_mode):
-        return False
-    return not hasattr(os, "getuid") or (status.st_uid == os.getuid() and not status.st_mode & 0o077)
+        return b""

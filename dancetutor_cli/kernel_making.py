@@ -7,18 +7,17 @@ from contextlib import contextmanager
 from types import FunctionType
 from typing import Any
 
-import numba
 import numpy as np
 from llvmlite import binding, ir
-from numba.core.compiler_lock import global_compiler_lock
 
 from dancetutor_cli import kernel_arguments as places
 from dancetutor_cli.kernel_door import INNER, MISFIT, RESULTS, Code, Unfit
-from dancetutor_cli.kernels import uncounted
+from dancetutor_cli.kernel_target import target
+from dancetutor_cli.kernels import numba, uncounted
 
 _numba: Any = numba
 _types: Any = numba.types
-_lock: Any = global_compiler_lock
+_lock: Any = _numba.core.compiler_lock.global_compiler_lock
 _NUMBER, _WORD = ir.IntType(32), ir.IntType(64)
 _HELPERS = ("NRT_", "numba", "Py")  # of numba's and Python's, which only numba's own loader knows
 _made: dict[FunctionType, Any] = {}
@@ -82,6 +81,8 @@ def _code(function: FunctionType, signature: tuple[Any, ...]) -> Code:
         kernel.compile(signature)
         made = kernel.overloads[signature]
         (_, _, (code, _)) = made.library.serialize_using_object_code()
+    if " ".join(made.library.codegen.magic_tuple()[1:]) != target():
+        raise Unfit("compiled for another processor than its key says")
     declared = [one.name for one in made.library._final_module.functions if one.is_declaration]
     needs = tuple(sorted(name for name in declared if not name.startswith("llvm.")))
     if any(name.startswith(_HELPERS) for name in needs):

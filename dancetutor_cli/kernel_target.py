@@ -67,7 +67,8 @@ def target() -> str:
 @cache
 def maker() -> bytes:
     """A digest of what makes machine code of a kernel's source; 32 bytes. What another has made is not even read."""
-    return hashlib.sha256(f"{_FORM}, {maker_in_words()}".encode()).digest()
+    settings = {name: os.environ[name] for name in _OTHER_CODE if name in os.environ}
+    return hashlib.sha256(f"{_FORM}, {maker_in_words()}, {target()}, {settings}".encode()).digest()
 
 
 def maker_in_words() -> str:

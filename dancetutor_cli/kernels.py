@@ -16,7 +16,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numba
+from dancetutor_cli.quick_numba import without_current_folder
+
+with without_current_folder():
+    import numba as numba
+    from numba import float32 as float32
+    from numba import int32 as int32
+    from numba import int64 as int64
+    from numba import uint32 as uint32
+    from numba import uint64 as uint64
 from numba.core import caching as _caching
 from numba.core import event as _event
 from numba.core.runtime.nrt import rtsys as _runtime
@@ -26,6 +34,7 @@ from dancetutor_cli.kernel_folder import CHECKSUM, head, kernel_folder, shipped_
 from dancetutor_cli.quick_compiling import compile_quicker
 from dancetutor_cli.quick_numba import look_for_blas, without_scipy
 from dancetutor_cli.resources import PACKAGE
+from dancetutor_cli.run.trust import fault_of, read_file, use_folder, write_file
 
 caching: Any = _caching  # have types in some versions only, or in none
 event: Any = _event
@@ -141,13 +150,13 @@ class _File(caching.IndexDataCacheFile):  # type: ignore[misc]
 
     def _write(self, path: str, content: Any) -> None:
         data = head(self._source_stamp) + self._dump(content)
-        with self._open_for_write(path) as file:
-            file.write(hashlib.sha256(data).digest() + data)
+        if not use_folder(Path(path).parent):
+            write_file(Path(path), hashlib.sha256(data).digest() + data)
 
     def _checked(self, path: Path) -> Any:
         """What a file of ours holds; None if it is not there, not what was written, or made of other code."""
         try:
-            whole = path.read_bytes()
+            whole = b"" if fault_of(path.parent) else read_file(path)
         except OSError:
             return None
         digest, data, ours = whole[:CHECKSUM], whole[CHECKSUM:], head(self._source_stamp)

@@ -8,6 +8,7 @@ ask again. Kernels that are only fetched may need none of it.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
@@ -26,6 +27,23 @@ def without_scipy() -> Iterator[None]:
         yield
     finally:
         del sys.modules["scipy.linalg"]
+
+
+@contextmanager
+def without_current_folder() -> Iterator[None]:
+    """In here numba is imported, and reads no `.numba_config.yaml` in the current folder, then or later.
+
+    A stranger's file there would choose the processor that is compiled for. Where there is no YAML numba does without.
+    """
+    warnings.filterwarnings("ignore", message="A Numba config file is found")
+    yaml = sys.modules.get("yaml")
+    sys.modules["yaml"] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
+    try:
+        yield
+    finally:
+        del sys.modules["yaml"]
+        if yaml is not None:
+            sys.modules["yaml"] = yaml
 
 
 def look_for_blas() -> None:

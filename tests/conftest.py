@@ -10,6 +10,8 @@ import pytest
 from hypothesis import settings
 from module_file import tool
 
+from dancetutor_cli.run.trust import TREES
+
 os.environ.setdefault("DANCETUTOR_KERNELS", "compiled")  # whatever is compiled already, and in every process of a test
 settings.register_profile("any machine", deadline=None)  # what a busy machine takes says nothing of the code
 settings.load_profile("any machine")
@@ -54,3 +56,9 @@ def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the surroundings say of a terminal (pytest-xdist sets COLUMNS) must not change what is printed."""
     for name in ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture(autouse=True)
+def own_trees(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a command of one test has read is nothing to the next."""
+    monkeypatch.setenv(TREES, "[]")

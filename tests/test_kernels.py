@@ -19,6 +19,7 @@ from dancetutor_cli import kernel_folder, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.doctor import _cache
 from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.run import trust
 
 MODULE = """
 from dancetutor_cli.kernels import njit
@@ -51,9 +52,9 @@ def sums(values):
 def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Ask anew where kernels go, now and after the test."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    kernel_folder._kernel_folder.cache_clear()
+    kernel_folder._use_folder.cache_clear()
     yield
-    kernel_folder._kernel_folder.cache_clear()
+    kernel_folder._use_folder.cache_clear()
 
 
 @pytest.fixture
@@ -63,7 +64,9 @@ def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(kernel_folder, "PACKAGE", tmp_path / "file" / "package")
     for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(name, str(tmp_path / "file" / "home"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
+    monkeypatch.setattr(trust, "_TEMPORARY", ())
     (tmp_path / "tmp").mkdir()
     return tmp_path / "tmp"
 
@@ -87,7 +90,7 @@ def test_a_temporary_folder_of_somebody_else_is_not_used(nowhere: Path, capsys: 
     first = kernel_folder.kernel_folder().root
     assert first is not None
     first.chmod(0o777)
-    kernel_folder._kernel_folder.cache_clear()
+    kernel_folder._use_folder.cache_clear()
     assert not kernel_folder.kernel_folder().kept
     tell_of_compiling(PresetChoice())
     assert "compiles again" in capsys.readouterr().err
@@ -100,7 +103,7 @@ def test_a_user_without_a_home_has_no_cache_there(monkeypatch: pytest.MonkeyPatc
     for name in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(Path, "home", none)
-    assert kernel_folder.users_folder("dancetutor") is None
+    assert trust.users_folder("dancetutor") is None
 
 
 def test_the_folder_that_is_asked_for_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +171,7 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
     (tmp_path / "some_kernels.py").write_text(MODULE)
     code = (
         "from pathlib import Path; from dancetutor_cli import kernel_folder as k\n"
-        "k._usable = lambda folder: False\n"
+        "k.use_folder = lambda folder: 'cannot be written'; k.temporary_folder = lambda name: None\n"
         "import some_kernels; print(some_kernels.double(4), k.kernel_folder().kept)"
     )
     ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)

@@ -84,14 +84,11 @@ def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
 def test_what_came_serves_where_nothing_can_be_kept(
     package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(kernel_folder, "_usable", lambda folder: False)
-    kernel_folder._kernel_folder.cache_clear()
-    try:
-        assert not kernel_folder.kernel_folder().kept and hits(source_of(package))
-        tell_of_compiling(PresetChoice())
-        assert capsys.readouterr().err == ""
-    finally:
-        kernel_folder._kernel_folder.cache_clear()
+    monkeypatch.setattr(kernel_folder, "_use_folder", lambda *_: "cannot be written")
+    monkeypatch.setattr(kernel_folder, "temporary_folder", lambda name: None)
+    assert not kernel_folder.kernel_folder().kept and hits(source_of(package))
+    tell_of_compiling(PresetChoice())
+    assert capsys.readouterr().err == ""
 
 
 def other_maker(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,6 +19,7 @@ from dancetutor_cli.commands.sources import Source, sources
 from dancetutor_cli.errors import DancetutorError, UsageError
 from dancetutor_cli.outputs import check_file
 from dancetutor_cli.reports.formats import FORMATS
+from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.analyze import AnalyzeTask
@@ -38,7 +39,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True, holds_charts=True), metavar="PATH...")
 @selection_options
 @preset_option
 @click.option(
@@ -233,6 +234,8 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     report.begin()
     folder = None if options["no_cache"] else default_folder()
     cache = None if folder is None else ResultCache(folder)
+    if not options["no_cache"] and not options["quiet"] and (fault := results_folder()[1]):
+        click.echo(f"note: {fault}: results are not kept", err=True)
     for raw in analyze_all(tasks, options["jobs"], cache, _before_work):
         result = run.without_known(raw)
         tally.add(result)

@@ -77,7 +77,7 @@ class Result:
 
 
 @click.command()
-@click.argument("file", type=_FILE)
+@click.argument("file", type=GivenPath(holds_charts=True))
 @click.option("-o", "--output", type=_FILE, help=f"A {one_of(FORMATS)} file; default: SONG-difficulty.glb.")
 @click.option(
     "--fps",

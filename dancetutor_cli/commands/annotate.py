@@ -58,7 +58,7 @@ class AnnotateWish:
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=GivenPath(), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
     "--style", "styles", callback=_styles, metavar="STYLE[,STYLE]",
     help=f"Where to write the feet (theme: what comes next): {', '.join(STYLES)} [default: measure; with --strip all "

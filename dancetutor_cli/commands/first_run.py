@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ import click
 if TYPE_CHECKING:
     from dancetutor_cli.lint.presets import PresetChoice
 
-_NOT_KEPT = "nothing compiled is kept, and each run compiles again; set NUMBA_CACHE_DIR to a folder that can be written"
+_NOT_KEPT = "nothing compiled is kept, each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
 
 
 def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
@@ -21,11 +22,13 @@ def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = Non
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
-    from dancetutor_cli.kernel_folder import came_compiled, kernel_folder
+    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder
     from dancetutor_cli.play.compiled import interpret, is_compiled
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):
+        if VARIABLE in os.environ and not quiet and (fault := kernel_folder().fault):
+            click.echo(f"note: {fault}", err=True)
         return
     folder = kernel_folder()
     if folder.fault and not quiet and not came_compiled():

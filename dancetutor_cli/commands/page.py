@@ -53,7 +53,7 @@ class PageWish:
 
 
 @click.command()
-@click.argument("path", type=_FILE)
+@click.argument("path", type=GivenPath(holds_charts=True))
 @click.option(
     "-o",
     "--output",

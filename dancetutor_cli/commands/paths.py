@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from dancetutor_cli.run.trust import exclude
+
 
 class GivenPath(click.Path):
     """A path of the user's, as a `Path`.
@@ -17,15 +19,20 @@ class GivenPath(click.Path):
     `annotate ""` wrote into every file below it.
     """
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, *, holds_charts: bool = False, **options: Any) -> None:
+        """holds_charts : charts are read there, so that no code is taken from there."""
         super().__init__(path_type=Path, **options)
+        self._holds_charts = holds_charts
 
     def convert(
         self, value: str | os.PathLike[str], param: click.Parameter | None, ctx: click.Context | None
     ) -> str | bytes | os.PathLike[str]:
         if value == "":
             self.fail("the name is empty; write . for the folder you are in", param, ctx)
-        return super().convert(value, param, ctx)
+        path = super().convert(value, param, ctx)
+        if self._holds_charts and value != "-":
+            exclude(Path(os.fsdecode(path)))
+        return path
 
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:

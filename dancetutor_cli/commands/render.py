@@ -30,7 +30,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 
 
 @click.command()
-@click.argument("path", type=GivenPath())
+@click.argument("path", type=GivenPath(holds_charts=True))
 @click.option(
     "-o",
     "--output",

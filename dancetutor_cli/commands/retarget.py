@@ -39,7 +39,7 @@ class RetargetOptions:
 
 
 @click.command()
-@click.argument("file", type=_FILE)
+@click.argument("file", type=GivenPath(holds_charts=True))
 @click.option("-o", "--output", type=_FILE, required=True, help=f"A {one_of(SUFFIXES)} file.")
 @click.option(
     "--character",

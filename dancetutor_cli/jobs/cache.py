@@ -18,8 +18,8 @@ from dancetutor_cli.fingerprint import program_stamp
 from dancetutor_cli.jobs.analyze import AnalyzeTask
 from dancetutor_cli.jobs.result import FileResult
 from dancetutor_cli.jobs.result_file import from_bytes, to_bytes
-from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.library.feet_files import feet_fingerprint
+from dancetutor_cli.run.trust import results_folder
 from dancetutor_cli.suffixes import SONG_SUFFIXES
 
 _LARGEST = CHART_LIMIT  # bytes of a kept result
@@ -102,9 +102,7 @@ class ResultCache:
 
 def default_folder() -> Path | None:
     """Where this system keeps caches; DANCETUTOR_CACHE names another folder. None: nowhere."""
-    if named := os.environ.get("DANCETUTOR_CACHE"):
-        return Path(named) / "analyze"
-    folder = users_folder("dancetutor")
+    folder, _ = results_folder()
     return None if folder is None else folder / "analyze"
 
 

@@ -55,7 +55,7 @@ def _guarded(name: str, look: Callable[[], Check]) -> Check:
 def _cpu() -> Check:
     from importlib.metadata import version
 
-    import numba
+    from dancetutor_cli.kernels import numba
 
     return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {version('llvmlite')}")
 

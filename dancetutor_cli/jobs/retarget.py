@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -164,9 +163,7 @@ def tuning_of(body: Skeleton) -> Tuning:
 
 def _folder() -> Path | None:
     """Where tunings are kept; DANCETUTOR_CACHE names another folder, None: nowhere."""
-    from dancetutor_cli.kernel_folder import users_folder
+    from dancetutor_cli.run.trust import results_folder
 
-    if named := os.environ.get("DANCETUTOR_CACHE"):
-        return Path(named) / "bodies"
-    folder = users_folder("dancetutor")
+    folder, _ = results_folder()
     return None if folder is None else folder / "bodies"

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from dancetutor_cli.kernel_folder import SUFFIX, is_current, kernel_folder, places_of, shipped_folder
 from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
 _HERE = Path(__file__).parent
@@ -69,13 +70,13 @@ def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
         return True
     note = kernel_folder().of_module(_HERE / "solvers.py") / "interpreted"
     try:
-        before = int(note.read_text())
+        before = int(read_file(note))
     except (OSError, ValueError):
         before = 0
     if kernel_folder().kept and before > _OFTEN:
         return False
     with suppress(OSError):
-        note.parent.mkdir(parents=True, exist_ok=True)
-        note.write_text(str(before + much))
+        if not use_folder(note.parent):
+            write_file(note, str(before + much).encode())
     os.environ[VARIABLE] = "python"
     return True

@@ -8,10 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import int32, uint32
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
+from dancetutor_cli.kernels import inner_kernel, int32, njit, uint32
 
 # Weights of red, green and blue in 1/65536: BT.709, luma 16..235 and chroma 16..240 of 255.
 _KR, _KB = 0.2126, 0.0722

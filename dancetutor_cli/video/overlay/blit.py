@@ -10,10 +10,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import int64, uint64
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import int64, njit, uint64
 from dancetutor_cli.video.picture import Frame
 
 Sprite = NDArray[np.uint8]

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import float32, uint64
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.kernels import float32, njit, uint64
 from dancetutor_cli.video.scene.cpu.fragments import (
     BLOCK,
     BLUE,

@@ -1,0 +1,1 @@
+"""How the program runs on this machine: which folders it takes code from, and its compiled kernels."""

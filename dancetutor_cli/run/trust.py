@@ -1,0 +1,178 @@
+"""Which folders and files machine code is taken from: those of this user or of root that nobody else can write.
+
+Kept machine code and pickles do as they like once they are loaded, and whoever can write a file can write its checksum.
+So it matters who owns a file and every folder above it (as for ssh's keys), and that none of them came with the songs.
+Windows gives each user folders that others cannot write, and Python no way to look: there only paths are judged.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import sys
+from contextlib import suppress
+from pathlib import Path
+from threading import get_ident
+
+from dancetutor_cli.resources import PACKAGE
+
+CACHE_VARIABLE = "DANCETUTOR_CACHE"  # the user's choice of a folder for kept results
+TREES = "_DANCETUTOR_TREES"  # JSON: the trees that are read; in the environment, so that worker processes know, too
+_FLAGS = [getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY")]
+_TEMPORARY = (Path("/tmp"), Path("/var/tmp"))  # where the environment names no folder for temporary files
+_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+def exclude(path: Path) -> None:
+    """Take no code from a folder whose charts are read, or from the folder of such a file."""
+    try:
+        real = os.path.realpath(path)
+    except OSError:  # the current folder is gone, so nothing in it will be read
+        return
+    tree = real if os.path.isdir(real) else os.path.dirname(real)  # noqa: PTH112, PTH120
+    os.environ[TREES] = json.dumps(sorted({*_trees(), tree}))
+
+
+def fault_of(folder: Path) -> str:
+    """Why nothing is taken from a folder, which need not be there yet, as what its name begins; "" if it may be."""
+    if not folder.is_absolute():
+        return "is not an absolute path"
+    real = Path(os.path.realpath(folder))
+    if not real.is_relative_to(PACKAGE) and any(real.is_relative_to(tree) for tree in _trees()):
+        return "lies in a folder whose charts are read"
+    for place in (real, *real.parents):
+        try:
+            status = place.lstat()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except OSError as error:
+            return f"cannot be looked at: {error.strerror}"
+        if not stat.S_ISDIR(status.st_mode):
+            return "cannot be written"
+        if fault := _fault(status, may_be_shared=place != real):
+            return fault if place == real else f"{fault}, by its folder {place}"
+    return ""
+
+
+def use_folder(folder: Path) -> str:
+    """Make a folder for this user alone, if it is not there, and see that it can be written; as `fault_of`."""
+    if fault := fault_of(folder):
+        return fault
+    probe = folder / f".dancetutor-{os.getpid()}-{get_ident()}.tmp"
+    try:
+        for place in (*reversed(folder.parents), folder):
+            with suppress(FileExistsError):
+                if not place.is_dir():
+                    place.mkdir(mode=0o700)
+        os.close(os.open(probe, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+        probe.unlink()
+    except OSError:
+        return "cannot be written"
+    return fault_of(folder)
+
+
+def read_file(path: Path) -> bytes:
+    """The content of a regular file that nobody else can write. OSError for all others: no link, pipe or device."""
+    descriptor = os.open(path, os.O_RDONLY | sum(_FLAGS))
+    with open(descriptor, "rb") as file:  # noqa: PTH123
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode) or _fault(status):
+            raise PermissionError(f"{path} is no file of this user alone")
+        return file.read()
+
+
+def write_file(path: Path, data: bytes) -> None:
+    """Put a file that only this user can write where whatever has its name is now. OSError where that fails."""
+    beside = path.with_name(f"{path.name}.{os.getpid()}-{get_ident()}.tmp")
+    try:
+        with suppress(FileNotFoundError):
+            beside.unlink()
+        with open(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL | sum(_FLAGS), 0o600), "wb") as file:  # noqa: PTH123
+            file.write(data)
+        beside.replace(path)
+    except OSError:
+        with suppress(OSError):
+            beside.unlink(missing_ok=True)
+        raise
+
+
+def users_folder(name: str) -> Path | None:
+    """Where this system keeps a user's caches; None for a user without a home, as in a container."""
+    try:
+        if sys.platform == "win32":
+            folder = _absolute("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
+        elif sys.platform == "darwin":
+            folder = Path.home() / "Library" / "Caches"
+        else:
+            folder = _absolute("XDG_CACHE_HOME") or Path.home() / ".cache"
+    except RuntimeError:
+        return None
+    return folder / name if folder.is_absolute() else None
+
+
+def results_folder() -> tuple[Path | None, str]:
+    """Where results are kept, DANCETUTOR_CACHE or the user's cache; or None and why, "" where there is no home."""
+    named = os.environ.get(CACHE_VARIABLE)
+    folder = Path(named) if named else users_folder("dancetutor")
+    fault = "" if folder is None else fault_of(folder)
+    return (None, f"{folder} {fault}") if fault else (folder, "")
+
+
+def temporary_folder(name: str) -> Path | None:
+    """A folder for temporary files of this user alone, made if there is none; never in the current folder."""
+    if sys.platform == "win32":
+        from tempfile import gettempdir
+
+        places = [Path(gettempdir())]
+    else:
+        named = [_absolute(variable) for variable in ("TMPDIR", "TEMP", "TMP")]
+        places = [place for place in (*named, *_TEMPORARY) if place is not None]
+    try:
+        here = os.path.realpath(os.curdir)
+    except OSError:
+        here = ""
+    owner = os.getuid() if hasattr(os, "getuid") else "user"
+    for place in places:
+        if place.is_dir() and os.path.realpath(place) != here:
+            folder = place / f"{name}-{owner}"
+            if not use_folder(folder):
+                return folder
+    return None
+
+
+def _absolute(variable: str) -> Path | None:
+    """A folder that the environment names. A relative one is ignored, as the XDG specification says."""
+    folder = Path(os.environ.get(variable, ""))
+    return folder if folder.is_absolute() else None
+
+
+def _trees() -> list[str]:
+    trees: list[str] = json.loads(os.environ.get(TREES, "[]"))
+    return trees
+
+
+def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
+    """Who else can change a file or folder; "" if nobody. may_be_shared : each with files of their own, as in /tmp."""
+    if not hasattr(os, "geteuid"):
+        return ""
+    if status.st_uid not in (0, os.geteuid()):
+        return "belongs to somebody else"
+    if not status.st_mode & _OTHERS or (may_be_shared and status.st_mode & stat.S_ISVTX):
+        return ""
+    if not status.st_mode & stat.S_IWOTH and _is_private_group(status.st_gid):
+        return ""
+    return "can be written by others"
+
+
+def _is_private_group(number: int) -> bool:
+    """Whether this user, not root, is alone in a group, which has the user's name: so Debian and others do it."""
+    import grp
+    import pwd
+
+    try:
+        user, group = pwd.getpwuid(os.geteuid()), grp.getgrgid(number)
+    except KeyError:
+        return False
+    is_own = user.pw_uid != 0 and user.pw_gid == number and group.gr_name == user.pw_name
+    return is_own and set(group.gr_mem) <= {user.pw_name}
