@@ -18,7 +18,13 @@ from dancetutor_cli.interruption import hear_again
 from dancetutor_cli.jobs.pool import Report, Task, open_workers
 
 EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
-KERNEL = "from dancetutor_cli.kernels import njit\n\n\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
+KERNEL = """from dancetutor_cli.run.kernels.compiling import njit
+
+
+@njit(cache=True)
+def twice(x):
+    return 2 * x
+"""
 # Ctrl-C as LLVM hands over the machine code; what numba does without it is asked here, too
 PROGRAM = """
 import os, signal, sys

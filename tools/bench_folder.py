@@ -72,7 +72,7 @@ def child(folder: str) -> None:
             at = name.rfind(PACKAGE)
             if at >= 0:
                 room = list(Path(name[at + len(PACKAGE) :]).parts)
-                kernel = room == ["kernel_door.py"]
+                kernel = room[-1:] == ["native.py"]
                 rooms["play (kernels)" if kernel else room[0].removesuffix(".py")] += 1
                 return
             frame = frame.f_back

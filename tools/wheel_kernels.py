@@ -1,7 +1,7 @@
 """Compile the kernels into a wheel, which then is one for this Python and platform: a build hook of hatchling.
 
 `make wheel` asks for it; other wheels, sdists and editable installs know nothing of it. What is compiled is for a
-portable processor (`dancetutor_cli/kernel_target.py`), used only by the numba, llvmlite and Python that compiled it.
+portable processor (`run/kernels/target.py`), used only by the numba, llvmlite and Python that compiled it.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
 def compile_into(out: Path, root: Path) -> None:
     """Compile the kernels of the checkout `root` into folders below `out` that are named as their modules' folders."""
     sys.path.insert(0, str(root))  # of this checkout, whatever is installed
-    from dancetutor_cli.kernel_folder import MADE_BY, SUFFIX
-    from dancetutor_cli.kernel_target import LEVEL, fits_shipped, maker_in_words
+    from dancetutor_cli.run.kernels.store import MADE_BY, SUFFIX
+    from dancetutor_cli.run.kernels.target import LEVEL, fits_shipped, maker_in_words
 
     if not fits_shipped():
         sys.exit("kernels for others are compiled on a processor with AVX2, and without settings of numba's")
@@ -63,14 +63,14 @@ def compile_into(out: Path, root: Path) -> None:
         for made, where in _folders(cache, source / "dancetutor_cli"):
             (out / where).mkdir(parents=True)
             for file in sorted(made.iterdir()):
-                if file.suffix in (SUFFIX, ".nbi", ".nbc"):
+                if file.suffix == SUFFIX:
                     shutil.copyfile(file, out / where / file.name)
     (out / MADE_BY).write_text(f"{maker_in_words()}, {LEVEL}\n", "utf-8")
 
 
 def _folders(cache: Path, package: Path) -> Iterator[tuple[Path, Path]]:
     """Each folder of a cache, with the folder of the package whose kernels it has."""
-    from dancetutor_cli.kernel_folder import KernelFolder
+    from dancetutor_cli.run.kernels.store import KernelFolder
 
     for room in (package, *sorted(path for path in package.rglob("*") if path.is_dir())):
         made = KernelFolder(cache).of_module(room / "module.py")
@@ -83,7 +83,7 @@ def tag() -> str:
 
     Machine code of ours calls nothing of the system's C library but what Python and numba have loaded already.
     """
-    from dancetutor_cli.kernel_target import COMPILERS
+    from dancetutor_cli.run.kernels.target import COMPILERS
 
     said = [(distribution(name).read_text("WHEEL") or "").splitlines() for name in COMPILERS]
     tags = [[line.removeprefix("Tag: ").strip() for line in lines if line.startswith("Tag: ")] for lines in said]

@@ -22,8 +22,8 @@ def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = Non
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
-    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder
     from dancetutor_cli.play.compiled import interpret, is_compiled
+    from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):

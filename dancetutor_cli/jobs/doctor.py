@@ -55,7 +55,7 @@ def _guarded(name: str, look: Callable[[], Check]) -> Check:
 def _cpu() -> Check:
     from importlib.metadata import version
 
-    from dancetutor_cli.kernels import numba
+    from dancetutor_cli.run.kernels.compiling import numba
 
     return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {version('llvmlite')}")
 
@@ -126,8 +126,8 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
-    from dancetutor_cli.kernel_folder import VARIABLE, came_compiled, kernel_folder, kernels_in, shipped_root
     from dancetutor_cli.resources import PACKAGE
+    from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder, kernels_in, shipped_root
 
     folder, came = kernel_folder(), shipped_root()
     shipped = set(kernels_in(came))
@@ -158,7 +158,7 @@ def _kernels(count: int) -> str:
 
 def _made_by(shipped: Path) -> str:
     """What compiled the kernels of the package, in words."""
-    from dancetutor_cli.kernel_folder import MADE_BY
+    from dancetutor_cli.run.kernels.store import MADE_BY
 
     try:
         return " ".join((shipped / MADE_BY).read_text("utf-8").split())

@@ -88,7 +88,7 @@ def common_to_workers(kind: RendererKind) -> str:
 
     One worker does that alone, by `warm_up`, and the others fetch what it has compiled.
     """
-    from dancetutor_cli.kernels import is_kept
+    from dancetutor_cli.run.kernels.compiling import is_kept
     from dancetutor_cli.video.scene import renderer
     from dancetutor_cli.video.scene.cpu.shade import resolve
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.run.kernels.compiling import njit
 
 Array = NDArray[np.float64]
 REACH = 4  # nodes that a term touches at most, if nothing else is said: third differences

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.run.kernels.compiling import njit
 
 Array = NDArray[np.float64]
 MOVE_FREQUENCY = 2.0  # per second: moves are about so fast, and the lag is that at this frequency

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.numerics.banded import BandedLeastSquares, _factor, _solve_one
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6

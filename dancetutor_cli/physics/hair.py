@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.motion.settings import HairSettings
 from dancetutor_cli.numerics.smoothing import cubic
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.kinematics import world_transforms
 from dancetutor_cli.rig.limb import Vec, add, dot, length, qrot, scale, sub
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 JOINTS = ("braid1", "braid2", "braid3", "braid4")

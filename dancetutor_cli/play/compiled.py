@@ -11,11 +11,10 @@ import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
-from itertools import chain
 from pathlib import Path
 
-from dancetutor_cli.kernel_folder import SUFFIX, is_current, kernel_folder, places_of, shipped_folder
 from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.run.kernels.store import Kept, kernel_folder
 from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
@@ -37,18 +36,7 @@ def source_stamp() -> str:
 
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    source = _HERE / "solvers.py"
-    shipped = shipped_folder(source)
-    folders = [shipped] if shipped else []
-    wanted = f"{source.stem}.solve_{preset.model}.*{SUFFIX}"
-    try:
-        return any(
-            is_current(path, source_stamp())
-            for folder in chain(folders, places_of(source))
-            for path in folder.glob(wanted)
-        )
-    except OSError:
-        return True
+    return Kept(_HERE / "solvers.py", f"solve_{preset.model}", source_stamp()).is_there()
 
 
 def is_interpreted() -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.play import tables as columns
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -69,7 +69,7 @@ _PLACE = (1 << PLACE_BITS) - 1
 _KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _keep(count, out, t):  # type: ignore[no-untyped-def]
     """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
     counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
@@ -91,7 +91,7 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
     return first << 16 | count
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _room(t):  # type: ignore[no-untyped-def]
     """What has no room for the moves of one more pair, or DONE."""
     counts = t.counts
@@ -108,7 +108,7 @@ def _room(t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-@uncounted
+@inner_kernel
 def _slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
     """Where a pair stands in its table, or would."""
     at = slot_of(key, len(pairs))
@@ -117,7 +117,7 @@ def _slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
     return at
 
 
-@uncounted
+@inner_kernel
 def _rank(key):  # type: ignore[no-untyped-def]
     """Where a state (packed, int64) stands in its layer, above `_RANK_SHIFT`: of ways as cheap that meet again the one
     from the first state is taken. As people choose: the left foot has stepped last, and stands further to the left.
@@ -126,7 +126,7 @@ def _rank(key):  # type: ignore[no-untyped-def]
     return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
 
 
-@uncounted
+@inner_kernel
 def _sort(values, count):  # type: ignore[no-untyped-def]
     """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
     gap = 1
@@ -142,7 +142,7 @@ def _sort(values, count):  # type: ignore[no-untyped-def]
         gap //= 3
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
 
@@ -251,4 +251,4 @@ def explorer(rules: Any) -> Any:
             layer = np.int64(t.transition[chosen[r], TO_LAYER])
         return DONE
 
-    return uncounted(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))
+    return inner_kernel(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.tables import (
     DRILL_LENGTH,
     DRILL_SECONDS,
@@ -30,7 +30,7 @@ _STEPPED = 1 << 30  # while they are looked for: a row with steps
 assert len(EVENTS) < 30
 
 
-@uncounted
+@inner_kernel
 def name_neighbours(rows, found, rules):  # type: ignore[no-untyped-def]
     """Add to `found.events` what shows only from row to row. rows : `RowArrays`; of `found.limb` is looked at."""
     tick, second, limb, events = rows.tick, rows.second, found.limb, found.events
@@ -95,7 +95,7 @@ def name_neighbours(rows, found, rules):  # type: ignore[no-untyped-def]
         events[r] &= ~_STEPPED
 
 
-@uncounted
+@inner_kernel
 def _mark(events, first, last, event):  # type: ignore[no-untyped-def]
     """Add an event to the rows with steps from one to another."""
     for r in range(first, last + 1):

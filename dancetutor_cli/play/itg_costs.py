@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
 from dancetutor_cli.play.tables import DISTANCE_UNIT, EPSILON, LEFT, RIGHT
 from dancetutor_cli.play.vocabulary import EVENTS as NAMES
@@ -47,7 +47,7 @@ _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner 
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 
-@uncounted
+@inner_kernel
 def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
     """Panels that a foot is reserved for, as bits. panels : of `Geometry`"""
     held, place = s[LEFT_HELD + foot], s[foot]
@@ -55,7 +55,7 @@ def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
     return mask | 1 << panels[place, foot, 1] if held & 2 else mask
 
 
-@uncounted
+@inner_kernel
 def charge_hand(s, panel, terms, rules):  # type: ignore[no-untyped-def]
     """What it costs that a hand presses a panel, once the feet are where they are after the row."""
     g, w = rules.geometry, rules.weights
@@ -67,7 +67,7 @@ def charge_hand(s, panel, terms, rules):  # type: ignore[no-untyped-def]
         terms[HAND_BEHIND] += w[HAND_BEHIND]
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """What the feet of a row cost, not counting the pose. Facts and events.
 
@@ -115,7 +115,7 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
     return facts | min(distance, (1 << _DISTANCE_BITS) - 1), events
 
 
-@uncounted
+@inner_kernel
 def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
     """Where a foot on two panels points: outward in front, as it likes best, costs nothing."""
     g, w = rules.geometry, rules.weights
@@ -132,7 +132,7 @@ def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
         terms[BRACKET_OUT_BACK] += w[BRACKET_OUT_BACK]
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
     g, w = rules.geometry, rules.weights
@@ -160,7 +160,7 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
     return facts, events
 
 
-@uncounted
+@inner_kernel
 def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
     """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
     g, w = rules.geometry, rules.weights
@@ -183,7 +183,7 @@ def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ign
     return _F_NEAR if g.near[before[foot]] & pressed else _F_DOUBLESTEP, EVENT_DOUBLESTEP
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-def]
     """What facing and stance after the row cost. Facts and events."""
     g, w = rules.geometry, rules.weights
@@ -227,7 +227,7 @@ def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-de
     return facts, events
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-untyped-def]
     """A foot that stays on a mine has to get off it, and is lifted from then on; a foot that presses is down again."""
     g, w = rules.geometry, rules.weights
@@ -242,7 +242,7 @@ def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-un
             terms[LIFTED] += w[LIFTED]
 
 
-@uncounted
+@inner_kernel
 def charge_time(facts, ms, curves, terms):  # type: ignore[no-untyped-def]
     """Write what packed facts cost when the row before was so many milliseconds ago; returns the sum.
 

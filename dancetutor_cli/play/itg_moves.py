@@ -24,7 +24,7 @@ from dancetutor_cli.play.itg_costs import (
     charge_pose,
     held_by,
 )  # fmt: skip
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.play.tables import (
     ACTION,
@@ -66,20 +66,20 @@ class _Asked(NamedTuple):
     forced: Whole
 
 
-@uncounted
+@inner_kernel
 def start_itg(home):  # type: ignore[no-untyped-def]
     """Left and right foot on the panels of the starting stance, no last leg."""
     return home[0] | home[1] << 5
 
 
-@uncounted
+@inner_kernel
 def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
     """Reserve the parts of a foot that stand on the panels of `mask`. panels : of `Geometry`"""
     heel, toe = panels[s[foot], foot, 0], panels[s[foot], foot, 1]
     s[LEFT_HELD + foot] = mask >> heel & 1 | (mask >> toe & 1) << 1 if toe >= 0 else mask >> heel & 1
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def]
     """What a foot can press of `steps`: panels, and its place then, into `out.scratch`. Returns in how many ways."""
     s, ways, to = out.scratch[BEFORE], out.scratch[LEFT_WAYS + foot], out.scratch[LEFT_TO + foot]
@@ -104,7 +104,7 @@ def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def
     return m
 
 
-@uncounted
+@inner_kernel
 def _bits(mask):  # type: ignore[no-untyped-def]
     count = 0
     while mask:
@@ -113,7 +113,7 @@ def _bits(mask):  # type: ignore[no-untyped-def]
     return count
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-def]
     """Write one way to play a row.
 
@@ -180,7 +180,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
     return m + 1
 
 
-@uncounted
+@inner_kernel
 def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
     """Whether limbs press what overrides ask for (3 bits for each column, 0: any limb)."""
     for p in range(c):
@@ -190,7 +190,7 @@ def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
     return True
 
 
-@uncounted
+@inner_kernel
 def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
     """The panel of a mask that is furthest to the left, `side` -1, or right, 1; of two, the one further back; or -1."""
     found = -1
@@ -202,7 +202,7 @@ def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
     return found
 
 
-@uncounted
+@inner_kernel
 def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped.
 
@@ -240,7 +240,7 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
     """Every way to share a row between the feet that leaves the fewest steps to hands."""
     steps, kept, after, pressed = asked.steps, asked.kept, out.scratch[AFTER], out.scratch[PRESS]
@@ -266,7 +266,7 @@ def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
     """One step while one foot holds: the free foot may take over the hold, and the other one steps."""
     g, before, after, pressed = rules.geometry, out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
@@ -283,7 +283,7 @@ def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@uncounted
+@inner_kernel
 def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """All ways to play a row from a state, into `out`; returns their number, at least 1.
 

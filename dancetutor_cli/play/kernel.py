@@ -12,7 +12,7 @@ from dancetutor_cli.play import tables as columns
 from dancetutor_cli.play.happens import name_neighbours
 from dancetutor_cli.play.itg_costs import charge_time
 from dancetutor_cli.play.itg_moves import start_itg
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.state import PLACE_BITS
 from dancetutor_cli.play.store import (
     ACTION,
@@ -61,7 +61,7 @@ _KINDS = np.array(
 )
 
 
-@uncounted
+@inner_kernel
 def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of a packed row, which takes two words."""
     at = slot_of(row ^ more * 31, len(numbers))
@@ -77,7 +77,7 @@ def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@uncounted
+@inner_kernel
 def _any_from(cells, least):  # type: ignore[no-untyped-def]
     """Whether some cell (n, c) is at least so much."""
     n, c = cells.shape
@@ -88,7 +88,7 @@ def _any_from(cells, least):  # type: ignore[no-untyped-def]
     return found
 
 
-@uncounted
+@inner_kernel
 def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
     """Bits of the columns in which a roll goes on after each row (n,): the next step there is a virtual tap."""
     n, c = steps.shape
@@ -102,7 +102,7 @@ def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
                 coming = coming & ~(1 << p) | (steps[r, p] == 5) << p
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     """Pack every row and number it; False if the tables have no room for as many patterns."""
     steps, hold_end, mines, tick, forced = rows.steps, rows.hold_end, rows.mines, rows.tick, rows.forced
@@ -151,7 +151,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     return True
 
 
-@uncounted
+@inner_kernel
 def wait(rows):  # type: ignore[no-untyped-def]
     """Milliseconds since the last row with steps, for every row."""
     steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
@@ -164,14 +164,14 @@ def wait(rows):  # type: ignore[no-untyped-def]
                 waited = 0
 
 
-@uncounted
+@inner_kernel
 def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
     """1 + what facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
     timed_cost[ms, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
     return timed_cost[ms, facts]
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
 
@@ -218,7 +218,7 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     return len(pattern), DONE
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def trace(t, nodes, found):  # type: ignore[no-untyped-def]
     """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
     first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
@@ -238,7 +238,7 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
             part[r, p] = action >> PART_SHIFT + 2 * p & 3
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
     moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
@@ -260,7 +260,7 @@ def tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
     name_neighbours(rows, found, rules)
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
 
@@ -307,7 +307,7 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     return DONE
 
 
-@uncounted
+@inner_kernel
 def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
     """Get rows ready for the programme; False if the tables have no room for as many patterns."""
     if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
 from dancetutor_cli.play.explore import explorer
 from dancetutor_cli.play.itg_moves import expand_itg
-from dancetutor_cli.play.jit import door, uncounted
+from dancetutor_cli.play.jit import inner_kernel, kernel
 from dancetutor_cli.play.kernel import advance, begin, margins, tell, trace, wait
 from dancetutor_cli.play.store import (
     DONE,
@@ -54,10 +56,10 @@ def _way_finder(rules_of_model: Any) -> Any:
             trace(t, nodes, found)
         return row, wanted
 
-    return uncounted(FunctionType(find_way.__code__, {**globals(), "explore": explorer(rules_of_model)}, "find_way"))
+    return inner_kernel(FunctionType(find_way.__code__, {**globals(), "explore": explorer(rules_of_model)}, "find_way"))
 
 
-@uncounted
+@inner_kernel
 def _exchange(rows, edit):  # type: ignore[no-untyped-def]
     """Put what an edit says into its cell, and what was there into the edit."""
     r, p = edit[EDIT_ROW], edit[EDIT_COLUMN]
@@ -81,7 +83,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
                 edit = found.edit[number]
                 nodes.transition[:] = -1
                 _exchange(rows, edit)
-                _, wanted = find_way(rows, 0, t, nodes, making, found)
+                _, wanted = find_way(rows, np.int64(0), t, nodes, making, found)
                 _exchange(rows, edit)
                 if wanted != DONE or not t.wide[found.move[edit[EDIT_OF]], EVENTS] & DOUBLESTEP:
                     return number, wanted
@@ -100,7 +102,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
 
     own = FunctionType(solve.__code__, {**globals(), "find_way": _way_finder(rules_of_model)}, name)
     own.__qualname__ = name
-    return door(own)
+    return kernel(own, results=2)
 
 
 Solver = Callable[..., tuple[int, int]]

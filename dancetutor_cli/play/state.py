@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.tables import EPSILON
 
 LEFT_AT, RIGHT_AT = 0, 1  # places of the feet, see `tables.Geometry`
@@ -15,21 +15,21 @@ NUMBERS = 10
 PLACE_BITS = 5  # the places of the feet are the lowest bits of the packed state, then comes SIDE
 
 
-@uncounted
+@inner_kernel
 def pack(s):  # type: ignore[no-untyped-def]
     """The ten numbers in one: 5 + 5 + 2 + 2 + 2 + 2 + 4 + 4 + 1 + 1 bits."""
     low = s[0] | s[1] << 5 | s[2] << 10 | s[3] << 12 | s[4] << 14 | s[5] << 16
     return low | s[6] << 18 | s[7] << 22 | s[8] << 26 | s[9] << 27
 
 
-@uncounted
+@inner_kernel
 def unpack(key, s):  # type: ignore[no-untyped-def]
     """The numbers of a packed state into `s`."""
     s[0], s[1], s[2], s[3], s[4] = key & 31, key >> 5 & 31, key >> 10 & 3, key >> 12 & 3, key >> 14 & 3
     s[5], s[6], s[7], s[8], s[9] = key >> 16 & 3, key >> 18 & 15, key >> 22 & 15, key >> 26 & 1, key >> 27 & 1
 
 
-@uncounted
+@inner_kernel
 def turn(before, side, after):  # type: ignore[no-untyped-def]
     """From one facing to another: degrees turned (unsigned), whether it is a spin, side of the new facing."""
     back = abs(before) >= 180.0 - EPSILON

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.play.jit import door, uncounted
+from dancetutor_cli.play.jit import inner_kernel, kernel
 from dancetutor_cli.play.vocabulary import MOST_MS as MOST_MS
 
 # places in `counts`
@@ -151,13 +151,13 @@ class Found(NamedTuple):
     facing: NDArray[np.float64]
 
 
-@uncounted
+@inner_kernel
 def slot_of(value, size):  # type: ignore[no-untyped-def]
     """Where the search for a number in a hash table of a power of two starts."""
     return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
 
 
-@uncounted
+@inner_kernel
 def find(key, keys, numbers):  # type: ignore[no-untyped-def]
     """Number of a key; if it is not known, ~ the slot for it."""
     at = slot_of(key, len(numbers))
@@ -168,7 +168,7 @@ def find(key, keys, numbers):  # type: ignore[no-untyped-def]
     return ~at
 
 
-@uncounted
+@inner_kernel
 def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of a packed state; a new one is entered."""
     at = slot_of(key, len(numbers))
@@ -183,7 +183,7 @@ def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
     return number
 
 
-@uncounted
+@inner_kernel
 def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of packed facts about time; new ones are entered. Facts 0 are number 0."""
     if facts == 0:
@@ -200,7 +200,7 @@ def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@uncounted
+@inner_kernel
 def _mixed(terms):  # type: ignore[no-untyped-def]
     """One number from the costs by term. Products do not wait for each other: this is asked for every move."""
     mixed, factor = np.int64(0), np.int64(1000003)
@@ -210,7 +210,7 @@ def _mixed(terms):  # type: ignore[no-untyped-def]
     return mixed
 
 
-@uncounted
+@inner_kernel
 def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
     """Number of costs by term (t,); new ones are entered."""
     at = slot_of(_mixed(terms), len(numbers))
@@ -230,7 +230,7 @@ def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-d
     return number
 
 
-@uncounted
+@inner_kernel
 def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
     """Number of the layer of the first `count` of some states in order; a new one is entered."""
     layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts
@@ -257,7 +257,7 @@ def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
     return np.int64(number)
 
 
-@door
+@kernel
 def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
     """Enter the first `count` keys into an empty hash table of their numbers."""
     for number in range(count):
@@ -267,7 +267,7 @@ def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door
+@kernel
 def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
     """The same for row patterns."""
     for number in range(count):
@@ -277,7 +277,7 @@ def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door
+@kernel
 def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
     """The same for costs by term."""
     for number in range(count):
@@ -287,7 +287,7 @@ def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
         table[at] = number
 
 
-@door
+@kernel
 def fill_pairs(old, new):  # type: ignore[no-untyped-def]
     """Move all pairs into a larger empty table."""
     for i in range(len(old)):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.play.jit import uncounted
+from dancetutor_cli.play.jit import inner_kernel
 from dancetutor_cli.play.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, SIDE, pack, turn, unpack
 from dancetutor_cli.play.tables import (
     ACTION,
@@ -71,13 +71,13 @@ class _Limbs(NamedTuple):
     doublesteps: bool
 
 
-@uncounted
+@inner_kernel
 def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facing the screen, no last leg
     home = g.place.shape[0]
     return home | home << 5
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
     """What comes before the steps of a row: ended holds free their limbs; free legs on mines go home, one turn."""
     home = g.place.shape[0]
@@ -94,7 +94,7 @@ def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
     s[SIDE] = turn(before, s[SIDE], g.angle[s[LEFT_AT], s[RIGHT_AT]])[2]
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
     """What it costs that a hand presses a panel, by the pose after the move."""
     g, w = rules.geometry, rules.weights
@@ -114,7 +114,7 @@ def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
         terms[HAND_ASIDE] += w[HAND_ASIDE]
 
 
-@uncounted
+@inner_kernel
 def _place(s, press, holds):  # type: ignore[no-untyped-def]
     """The state after limbs pressed their panels (-1: none)."""
     for limb in range(4):
@@ -134,7 +134,7 @@ def _place(s, press, holds):  # type: ignore[no-untyped-def]
         s[LAST] = 2
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     """Write one way to play a row: scratch `PRESS` are the panels of the limbs, `BEFORE` the state before, after mines.
 
@@ -196,7 +196,7 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     return m + 1
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _fits(out, n, forced):  # type: ignore[no-untyped-def]
     """Whether the panels of the limbs are those that overrides ask for (3 bits for each column, 0: any limb)."""
     press, panels = out.scratch[PRESS], out.scratch[PANELS]
@@ -207,7 +207,7 @@ def _fits(out, n, forced):  # type: ignore[no-untyped-def]
     return True
 
 
-@uncounted(inline="always")
+@inner_kernel(inline="always")
 def _assign(out, asked, limbs, rules):  # type: ignore[no-untyped-def]
     """Every way to give exactly so many legs and hands different panels of the row, as far as overrides allow."""
     m, n = 0, asked.n
@@ -243,7 +243,7 @@ def _assign(out, asked, limbs, rules):  # type: ignore[no-untyped-def]
     return m
 
 
-@uncounted
+@inner_kernel
 def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
     """Limbs that overrides name, as bits, and how many steps they name a hand for."""
     limbs = hands = 0
@@ -255,7 +255,7 @@ def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
     return limbs, hands
 
 
-@uncounted
+@inner_kernel
 def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """All ways to play a row from a state, into `out`; returns their number, at least 1.
 

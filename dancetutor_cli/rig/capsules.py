@@ -8,8 +8,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.rig.limb import Vec, add, dot, length, scale, sub
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres

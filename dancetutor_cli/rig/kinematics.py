@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
 from dancetutor_cli.rig import quaternion as quat
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.run.kernels.compiling import njit
 
 Array = NDArray[np.float64]
 

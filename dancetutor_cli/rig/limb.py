@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from dancetutor_cli.kernels import inner_kernel
+from dancetutor_cli.run.kernels.compiling import inner_kernel
 
 Vec = tuple[float, float, float]
 Quat = tuple[float, float, float, float]

@@ -210,7 +210,7 @@ def test_only_drafts_trade_sound_for_time(tmp_path: Path, monkeypatch, quality: 
 
 @pytest.mark.parametrize("kept", [True, False])
 def test_one_worker_compiles_for_all(monkeypatch, kept):
-    monkeypatch.setattr("dancetutor_cli.kernels.is_kept", lambda kernel: kept)
+    monkeypatch.setattr("dancetutor_cli.run.kernels.compiling.is_kept", lambda kernel: kept)
     assert bool(film_segments.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.kernel_folder import head, kernel_folder
 from dancetutor_cli.lint.presets import PresetChoice
 from dancetutor_cli.play import compiled, load_preset
+from dancetutor_cli.run.kernels.store import Kept, kernel_folder
 
 
 @pytest.fixture
@@ -27,24 +27,24 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(compiled, "_HERE", here)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
     folder = kernel_folder().of_module(here / "solvers.py")
-    folder.mkdir()
+    folder.mkdir(mode=0o700)
     return folder
 
 
 def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
     for name in names:
-        (cache / name).write_bytes(bytes(32) + head(stamp or compiled.source_stamp()) + b"...")
+        Kept(compiled._HERE / "solvers.py", name, stamp or compiled.source_stamp()).write("", b"...")
 
 
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:
     itg, thesis = load_preset("itg"), load_preset("thesis")
     assert not compiled.is_compiled(itg)
-    fill(cache, "solvers.solve_itg.1.door")
+    fill(cache, "solve_itg")
     assert compiled.is_compiled(itg) and not compiled.is_compiled(thesis)
 
 
 def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
-    fill(cache, "solvers.solve_itg.1.door", stamp="ab" * 32)
+    fill(cache, "solve_itg", stamp="ab" * 32)
     assert not compiled.is_compiled(load_preset("itg"))
 
 
@@ -77,7 +77,7 @@ def test_little_is_solved_without_compiling_and_much_is_not(cache: Path, monkeyp
 def test_what_is_compiled_is_used(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "environ", {**os.environ})
     del os.environ[compiled.VARIABLE]
-    fill(cache, "solvers.solve_itg.1.door")
+    fill(cache, "solve_itg")
     assert not compiled.interpret([load_preset("itg")], lambda: pytest.fail("no file need be read for this"))
 
 
@@ -162,7 +162,7 @@ def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> No
     """A kernel module that is forgotten would leave old machine code in use after an edit."""
     room = Path(compiled.__file__).parent
     imports = re.compile(r"^from dancetutor_cli\.play(?:\.(\w+))? import (\w+)", re.MULTILINE)
-    uses_njit = re.compile(r"^from dancetutor_cli\.play\.jit import .*\b(?:door|uncounted)\b", re.MULTILINE)
+    uses_njit = re.compile(r"^from dancetutor_cli\.play\.jit import .*\b(?:inner_)?kernel\b", re.MULTILINE)
     wanted = {path.stem for path in room.glob("*.py") if uses_njit.search(path.read_text())}
     assert {"kernel", "explore"} <= wanted
     for name in list(wanted):

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.rig.dimensions import SPINE_SHARES
 from dancetutor_cli.rig.limb import (
     Quat,
@@ -28,6 +27,7 @@ from dancetutor_cli.rig.limb import (
     unit,
 )
 from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most

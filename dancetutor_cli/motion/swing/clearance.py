@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
 from dancetutor_cli.motion.foot_moves import STRAIGHT, Bulge
 from dancetutor_cli.motion.settings import StepSettings
 from dancetutor_cli.motion.swing.pace import swung, travelled
 from dancetutor_cli.motion.swing.panels import HALF_PANEL
 from dancetutor_cli.rig.dimensions import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, ball_to_ankle
 from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 LATE_PRICE = 1.0  # metres of a detour that being late by all of the way counts as

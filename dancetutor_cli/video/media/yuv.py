@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, int32, njit, uint32
+from dancetutor_cli.run.kernels.compiling import inner_kernel, int32, njit, uint32
 
 # Weights of red, green and blue in 1/65536: BT.709, luma 16..235 and chroma 16..240 of 255.
 _KR, _KB = 0.2126, 0.0722

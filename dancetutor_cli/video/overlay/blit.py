@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import int64, njit, uint64
+from dancetutor_cli.run.kernels.compiling import int64, njit, uint64
 from dancetutor_cli.video.picture import Frame
 
 Sprite = NDArray[np.uint8]

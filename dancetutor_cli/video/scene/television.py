@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.run.kernels.compiling import njit
 from dancetutor_cli.video.picture import Frame
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 from dancetutor_cli.video.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
 from dancetutor_cli.video.scene.prepare import BESIDE, PLANTED, SHADOW_FADE, Cast

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import float32, int32, njit, uint64
+from dancetutor_cli.run.kernels.compiling import float32, int32, njit, uint64
 from dancetutor_cli.video.scene.cpu.uncounted import inner_kernel
 from dancetutor_cli.video.scene.look import ToonLook
 from dancetutor_cli.video.scene.textures import LEVELS

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import float32, njit, uint64
+from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 from dancetutor_cli.video.scene.cpu.uncounted import kernel
 
 SNAP = 16.0

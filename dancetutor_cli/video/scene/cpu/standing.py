@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.run.kernels.compiling import njit
 from dancetutor_cli.video.scene.camera import NEAR, Camera
 from dancetutor_cli.video.scene.cpu.stage_colours import Paints, Place, paints_of, surface
 from dancetutor_cli.video.scene.look import Look

@@ -1,4 +1,4 @@
-"""How the dear kernels are compiled: without counting references to arrays (`kernels.uncounted`).
+"""How the dear kernels are compiled: without counting references to arrays (`compiling.uncounted`).
 
 `shade.resolve` takes a quarter less time so. A division by nothing is no error in them: looking for that keeps
 loops from being done several rounds at once.
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from dancetutor_cli.kernels import uncounted
+from dancetutor_cli.run.kernels.compiling import uncounted
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -21,6 +21,6 @@ def kernel(function: F) -> F:
 
 
 def inner_kernel(function: F) -> F:
-    """The same, one that only kernels call; see `kernels.inner_kernel`."""
+    """The same, one that only kernels call; see `compiling.inner_kernel`."""
     made: F = uncounted(function, error_model="numpy", no_cpython_wrapper=True)
     return made

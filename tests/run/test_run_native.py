@@ -1,7 +1,8 @@
-"""What a kernel behind a door sees of a call's arrays, what is kept of it, and what happens where it cannot be had."""
+"""What machine code sees of a call's arrays, what is kept of it, and what happens where it cannot be had."""
 
 from __future__ import annotations
 
+import json
 import pickle
 import sys
 from collections.abc import Iterator
@@ -15,18 +16,17 @@ import pytest
 from module_file import loaded
 from numpy.typing import NDArray
 
-from dancetutor_cli import kernel_arguments, kernel_door, kernel_folder, kernel_making, kernel_target
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.kernel_arguments import kinds_of
-from dancetutor_cli.kernel_door import Code, Door
+from dancetutor_cli.run.kernels import compiling, native, store, target
+from dancetutor_cli.run.kernels.native import Kernel, MachineCode
 
 MODULE = """
-from dancetutor_cli.kernel_door import inner
+from dancetutor_cli.run.kernels.native import inner_kernel
 
 def twice(x):
     return 2 * x
 
-twice = inner(twice)
+twice = inner_kernel(twice)
 
 def sums(pair, factor, out):
     whole = 0
@@ -37,6 +37,9 @@ def sums(pair, factor, out):
     if factor < 0:
         raise ValueError("below nothing")
     return twice(whole) * factor, len(out)
+
+def first(numbers):
+    return numbers[0]
 
 def enter(out):
     out[0] = 7
@@ -55,32 +58,33 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """Where these kernels are kept."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
     (tmp_path / "some_kernels.py").write_text(MODULE, "utf-8")
-    before = dict(kernel_door.INNER)
+    before = dict(native.INNER_KERNELS)
     yield tmp_path / "kept"
-    kernel_door.INNER.clear()
-    kernel_door.INNER.update(before)
+    native.INNER_KERNELS.clear()
+    native.INNER_KERNELS.update(before)
 
 
 @pytest.fixture
 def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the kernels that were compiled."""
-    names, compile_it = [], kernel_making.machine_code
+    names, compile_it = [], compiling.machine_code
 
-    def machine_code(function: FunctionType, args: tuple[Any, ...]) -> kernel_door.Code:
+    def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
         names.append(function.__name__)
-        return compile_it(function, args)
+        return compile_it(function, args, results)
 
-    monkeypatch.setattr(kernel_making, "machine_code", machine_code)
+    monkeypatch.setattr(compiling, "machine_code", machine_code)
     return names
 
 
-def door(folder: Path, name: str = "sums", stamp: str = "ab" * 32) -> Door:
-    """A door as a new process has it."""
-    return Door(getattr(loaded(folder.parent / "some_kernels.py"), name), lambda: stamp)
+def kernel(folder: Path, name: str = "sums", stamp: str = "ab" * 32) -> Kernel:
+    """A kernel as a new process has it."""
+    function = getattr(loaded(folder.parent / "some_kernels.py"), name)
+    return Kernel(function, lambda: stamp, {"sums": 2, "first": 1}.get(name, 0))
 
 
 def test_a_kernel_sees_the_arrays_as_they_are(folder: Path, compiled: list[str]) -> None:
-    sums, out = door(folder), np.zeros(2)
+    sums, out = kernel(folder), np.zeros(2)
     cells = np.arange(6, dtype=np.int32).reshape(2, 3)
     pair = Pair(cells, np.array([True, False]))
     assert sums(pair, 3, out) == (2 * 15 * 3, 2)
@@ -90,73 +94,81 @@ def test_a_kernel_sees_the_arrays_as_they_are(folder: Path, compiled: list[str])
     assert sums(Pair(cells[:1], pair.marked), 1, out) == (26, 2)  # other arrays, another place
     assert compiled == ["sums"]
     every_other = Pair(np.arange(24, dtype=np.int32).reshape(4, 6)[::2, ::2], pair.marked)
-    assert sums(every_other, 1, out) == (2 * int(every_other.cells.sum()), 2)
+    assert sums(every_other, 1, out) == (2 * int(every_other.cells.sum()), 2)  # as Python
+    cells.flags.writeable = False
+    assert sums(pair, 1, out) == (50, 2)
     narrow = Pair(cells.astype(np.int8), pair.marked)
     assert sums(narrow, 1, out) == (50, 2)
-    assert compiled == ["sums"] * 3
+    assert compiled == ["sums"] * 2
+    first = kernel(folder, "first")
+    assert first(np.array([9, 8])) == 9 and type(first(np.array([9]))) is int
 
 
 def test_what_is_kept_is_fetched_and_what_is_damaged_compiled_again(folder: Path, compiled: list[str]) -> None:
     values = np.zeros(3)
-    door(folder, "enter")(values)
+    kernel(folder, "enter")(values)
     assert values[0] == 7 and compiled == ["enter"]
-    (path,) = folder.rglob("*.door")
+    (path,) = folder.rglob("*.kernel")
     whole = path.read_bytes()
-    assert door(folder, "enter")(values) is None and compiled == ["enter"]
+    assert kernel(folder, "enter")(values) is None and compiled == ["enter"]
     flipped = bytearray(whole)
     flipped[-1] ^= 1
     for n, damaged in enumerate((b"", whole[:50], whole[: len(whole) // 2], whole[:-1], bytes(flipped)), 2):
         path.write_bytes(damaged)
         values[0] = 0
-        door(folder, "enter")(values)
+        kernel(folder, "enter")(values)
         assert values[0] == 7 and compiled == ["enter"] * n
-        assert door(folder, "enter")(values) is None and compiled == ["enter"] * n  # and kept
-    assert [one.suffix for one in path.parent.iterdir()] == [".door"]
+        assert kernel(folder, "enter")(values) is None and compiled == ["enter"] * n  # and kept
+    assert [one.suffix for one in path.parent.iterdir()] == [".kernel"]
 
 
 def test_what_was_made_of_other_code_or_for_another_processor_is_not_used(
     folder: Path, compiled: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     values = np.zeros(3)
-    door(folder, "enter")(values)
-    door(folder, "enter", "cd" * 32)(values)
+    kernel(folder, "enter")(values)
+    kernel(folder, "enter", "cd" * 32)(values)
     assert compiled == ["enter"] * 2
-    monkeypatch.setattr(kernel_door, "target", lambda: "another")
-    door(folder, "enter", "cd" * 32)(values)
+    for name, other in (("processor", ("another", "")), ("_version", "0.1"), ("_settings", {"NUMBA_OPT": "0"})):
+        before = target.maker()
+        with monkeypatch.context() as changed:
+            changed.setattr(target, name, lambda *_, other=other: other)
+            target.maker.cache_clear()
+            assert target.maker() != before, name
+        target.maker.cache_clear()
+    monkeypatch.setattr(store, "maker", lambda: bytes(32))
+    kernel(folder, "enter", "cd" * 32)(values)
     assert compiled == ["enter"] * 3
-    monkeypatch.setattr(kernel_folder, "maker", lambda: bytes(32))
-    door(folder, "enter", "cd" * 32)(values)
-    assert compiled == ["enter"] * 4
 
 
 def test_nothing_is_kept_where_there_is_no_place(
     folder: Path, compiled: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder.write_text("a file")
-    monkeypatch.setattr(kernel_door, "kernel_folder", lambda: kernel_folder.KernelFolder(folder))
+    monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(folder))
     values = np.zeros(3)
-    door(folder, "enter")(values)
+    kernel(folder, "enter")(values)
     assert values[0] == 7 and compiled == ["enter"]
 
 
 def test_an_exception_is_told_of(folder: Path) -> None:
     pair = Pair(np.ones((1, 1), dtype=np.int32), np.zeros(1, dtype=np.bool_))
     with pytest.raises(DancetutorError, match="the kernel sums raised"):
-        door(folder)(pair, -1, np.zeros(1))
+        kernel(folder)(pair, -1, np.zeros(1))
 
 
-def test_what_a_kernel_does_not_take_is_refused() -> None:
+def test_what_machine_code_does_not_take_runs_as_python(folder: Path, compiled: list[str]) -> None:
     unaligned = np.zeros(17, dtype=np.uint8)[1:].view(np.float64)
-    for argument, what in ((0.5, "float"), (1 << 63, "int"), (np.array(["a"]), "arrays of <U1"), (unaligned, "arrays")):
-        with pytest.raises(TypeError, match=f"takes no {what}"):
-            kinds_of(argument)
-
-
-class Swapped(NamedTuple):
-    """The same by other names."""
-
-    marked: NDArray[Any]
-    cells: NDArray[np.bool_]
+    for numbers, found in (
+        (unaligned, 0.0), (np.array(["a", "b"]), "a"), (np.arange(3, dtype=">i4")[1:], 1), ([5], 5),
+        (np.array([1 << 63], dtype=np.uint64), 1 << 63),
+    ):  # fmt: skip
+        first = kernel(folder, "first")
+        if isinstance(numbers, np.ndarray) and numbers.dtype == np.uint64:
+            continue  # a word has a sign, and a kernel says which numbers it gives
+        assert first(numbers) == found
+    kernel(folder, "first")(np.arange(3))
+    assert set(compiled) == {"first"}
 
 
 class Own(np.ndarray[Any, Any]):
@@ -164,7 +176,7 @@ class Own(np.ndarray[Any, Any]):
 
 
 def test_no_object_is_taken_for_what_it_is_not(folder: Path, compiled: list[str]) -> None:
-    sums, out = door(folder), np.zeros(4)
+    sums, out = kernel(folder), np.zeros(4)
     cells = np.arange(12, dtype=np.int32).reshape(4, 3)
     marked = np.zeros(4, dtype=np.bool_)
     for _ in range(2):  # after each kind of thing each other one
@@ -182,20 +194,18 @@ def test_no_object_is_taken_for_what_it_is_not(folder: Path, compiled: list[str]
         assert sums(Pair(cells, marked), 1 << 40, out) == (132 << 40, 4)
         assert sums(Pair(cells.view(Own), marked), 1, out) == (132, 4)
         assert sums(Pair(pickle.loads(pickle.dumps(cells)), marked), 1, out) == (132, 4)  # has a dtype of its own
-        with pytest.raises(TypeError):
+        with pytest.raises(DancetutorError, match="the kernel sums"):
             sums(Pair([1], marked), 1, out)
-    assert len(compiled) == 4  # those of each dtype, and of those with steps between
+    assert len(compiled) == 3  # those of each dtype; what has steps between runs as Python
     flat = np.zeros(6, dtype=np.int32)
     with pytest.raises(DancetutorError, match="the kernel sums"):
-        door(folder)(Pair(flat, marked), 1, out)  # has one dimension: no kernel can be made of that
+        kernel(folder)(Pair(flat, marked), 1, out)  # has one dimension: no kernel can be made of that
     with pytest.raises(DancetutorError, match="the kernel sums"):
-        door(folder)(Swapped(cells, marked), 1, out)
-    with pytest.raises(DancetutorError, match="the kernel sums"):
-        door(folder)(Pair(cells, marked), 1)
+        kernel(folder)(Pair(cells, marked), 1)
 
 
 def test_a_number_keeps_its_place_while_an_array_grows(folder: Path) -> None:
-    enter, values = door(folder, "enter"), np.zeros(3)
+    enter, values = kernel(folder, "enter"), np.zeros(3)
     enter(values)
     values.resize(1 << 20, refcheck=False)
     values[:] = 0
@@ -208,62 +218,51 @@ def fails(*args: object) -> Any:
     raise RuntimeError("no such processor")
 
 
-def lacking(function: FunctionType, args: tuple[Any, ...]) -> Code:
+def lacking(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
     """Machine code that calls what no process has."""
-    return Code("door_sums", 2, ("no_such_function",), (b"",))
+    return MachineCode("entry", ["no_such_function"], b"\x7fELF")
 
 
 @pytest.mark.parametrize(
     ("module", "name", "instead"),
     [
-        (kernel_making, "machine_code", fails),
-        (kernel_making, "machine_code", lacking),
-        (kernel_door, "_loaded", fails),
-        (kernel_door, "is_known", lambda: False),
-        (kernel_making, "_door", fails),
-        (kernel_making, "_door", lambda *_: "what LLVM does not understand"),
+        (compiling, "machine_code", fails),
+        (compiling, "machine_code", lacking),
+        (compiling, "uncounted", fails),
+        (native, "_load", fails),
     ],
 )
-@pytest.mark.parametrize("by_numba", [True, False])
-def test_where_no_door_can_be_made_the_kernel_runs_all_the_same(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, instead: Any, by_numba: bool
+def test_where_there_can_be_no_machine_code_the_kernel_runs_all_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, instead: Any
 ) -> None:
     monkeypatch.setattr(module, name, instead)
-    if not by_numba:
-        monkeypatch.setattr(kernel_making, "uncounted", fails)
-    sums, out = door(folder), np.zeros(2)
+    sums, out = kernel(folder), np.zeros(2)
     pair = Pair(np.arange(6, dtype=np.int32).reshape(2, 3), np.array([True, False]))
     assert sums(pair, 3, out) == (2 * 15 * 3, 2)
     assert out.tolist() == [1.5, 12.0]
     assert sums(pair._replace(cells=pair.cells.astype(np.int8)), np.int64(1), out) == (30, 2)
-    assert (sums._ordinary is sums.function) is not by_numba
-    assert not list(folder.rglob("*.door"))
+    assert not list(folder.rglob("*.kernel"))
     with pytest.raises(DancetutorError, match="the kernel sums raised"):
         sums(pair, -1, out)
 
 
 def test_what_is_kept_but_cannot_be_loaded_is_made_again(folder: Path, compiled: list[str]) -> None:
     values = np.zeros(3)
-    door(folder, "enter")(values)
-    (path,) = folder.rglob("*.door")
-    for n, (needs, part) in enumerate(((("no_such_function",), b""), ((), b"no machine code")), 2):
-        path.write_bytes(kernel_door._packed(Code("door_enter", 0, needs, (part,)), "ab" * 32))
+    kernel(folder, "enter")(values)
+    (path,) = folder.rglob("*.kernel")
+    kept = kernel(folder, "enter")._kept()
+    (name,) = ["<f81"]
+    for n, (needs, data) in enumerate(((["no_such_function"], b"\x7fELF"), ([], b"no machine code")), 2):
+        kept.write(name, json.dumps(["entry", needs]).encode() + b"\n" + data)
+        assert list(folder.rglob("*.kernel")) == [path]
         for _ in range(2):  # and kept
             values[0] = 0
-            door(folder, "enter")(values)
+            kernel(folder, "enter")(values)
             assert values[0] == 7 and compiled == ["enter"] * n
 
 
-def test_objects_are_known_only_if_they_are_as_machine_code_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert kernel_arguments.is_known()
-    for name in ("TYPE", "LENGTH", "ITEMS", "DATA", "DIMENSIONS", "NUMBERS", "FLAGS", "KIND"):
-        with monkeypatch.context() as moved:
-            moved.setattr(kernel_arguments, name, getattr(kernel_arguments, name) + 8)
-            assert not kernel_arguments.is_known.__wrapped__(), name
-
-
 def test_threads_do_not_disturb_each_other(folder: Path) -> None:
-    sums = door(folder)
+    sums = kernel(folder)
     sums(Pair(np.ones((1, 1), dtype=np.int32), np.zeros(1, dtype=np.bool_)), 1, np.zeros(1))
     found: dict[int, set[int]] = {}
 
@@ -285,6 +284,4 @@ def test_threads_do_not_disturb_each_other(folder: Path) -> None:
 def test_versions_are_read_off_the_names_of_folders() -> None:
     from importlib.metadata import version
 
-    assert [kernel_target._version(name) for name in kernel_target.COMPILERS] == [
-        version(name) for name in kernel_target.COMPILERS
-    ]
+    assert [target._version(name) for name in target.COMPILERS] == [version(name) for name in target.COMPILERS]

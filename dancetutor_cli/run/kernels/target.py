@@ -16,64 +16,61 @@ from importlib import import_module
 from typing import Any
 
 COMPILERS = ("numba", "llvmlite")
-_FORM = 6  # of what `kernels` writes, and of the options by which it compiles; count it up with either
+_FORM = 7  # of what `store` keeps, and of the options by which it is compiled; count it up with either
 LEVEL = "x86-64-v3"  # LLVM's name of the processor
 _ABILITIES = (
     *("avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf"),
     *("sse3", "sse4.1", "sse4.2", "ssse3", "xsave"),
 )
 _NAME, _FEATURES = "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"
-_PORTABLE = {_NAME: LEVEL, _FEATURES: ",".join(f"+{one}" for one in _ABILITIES)}
+_PORTABLE = (LEVEL, ",".join(f"+{one}" for one in _ABILITIES))
 # numba's settings that make other code of the same source
-_OTHER_CODE = tuple(
+_SETTINGS = tuple(
     f"NUMBA_{one}" for one in ("OPT", "BOUNDSCHECK", "DEBUGINFO", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX")
 )
 
 
-def pin() -> None:
-    """Compile for the portable processor, in this process and its workers, unless the user has named one.
+def pin(config: Any) -> None:
+    """Let numba compile for the portable processor, in this process and its workers, unless the user has named one.
 
-    To be called before the first kernel is made.
+    config : `numba.core.config`; to be called before the first kernel is made
     """
-    from numba.core import config as _config
-
-    config: Any = _config  # has types in some versions only
-    named = config.CPU_NAME is not None or config.CPU_FEATURES is not None  # in a file of numba's, maybe
-    if not named and _is_able():
-        os.environ.update(_PORTABLE)
+    if processor() == _PORTABLE:
+        os.environ.update(zip((_NAME, _FEATURES), _PORTABLE, strict=True))
         config.reload_config()
+
+
+def processor() -> tuple[str, str]:
+    """LLVM's names of the processor and of the abilities that are compiled for."""
+    name, features = os.environ.get(_NAME), os.environ.get(_FEATURES)
+    if name is None and features is None and _is_able():
+        return _PORTABLE
+    from llvmlite import binding
+
+    if features is None:
+        features = "" if name is not None and name.lower() == "generic" else _host_features()
+    return (binding.get_host_cpu_name() if name is None else name), features
 
 
 def fits_shipped() -> bool:
     """Whether this process compiles as those kernels were compiled that come with the package."""
-    if any(name in os.environ for name in _OTHER_CODE):
-        return False
-    named = {name: os.environ[name] for name in _PORTABLE if name in os.environ}
-    return named == _PORTABLE or (not named and _is_able())
-
-
-def target() -> str:
-    """The processor that this process compiles for: what was compiled for another is none of its business."""
-    named = [os.environ.get(name, "") for name in _PORTABLE]
-    if any(named):
-        return " ".join(named)
-    if _is_able():
-        return " ".join(_PORTABLE.values())
-    from llvmlite import binding
-
-    return f"{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}"
+    return not _settings() and processor() == _PORTABLE
 
 
 @cache
 def maker() -> bytes:
-    """A digest of what makes machine code of a kernel's source; 32 bytes. What another has made is not even read."""
-    settings = {name: os.environ[name] for name in _OTHER_CODE if name in os.environ}
-    return hashlib.sha256(f"{_FORM}, {maker_in_words()}, {target()}, {settings}".encode()).digest()
+    """A digest of what makes machine code of a kernel's source, and for which processor. What differs is not read."""
+    words = f"{_FORM}, {maker_in_words()}, {processor()}, {_settings()}, {sys.platform}"
+    return hashlib.sha256(words.encode()).digest()
 
 
 def maker_in_words() -> str:
     """What compiles here; all of this must be the same where it is used."""
     return ", ".join([*(f"{name} {_version(name)}" for name in COMPILERS), f"Python {sys.implementation.cache_tag}"])
+
+
+def _settings() -> dict[str, str]:
+    return {name: os.environ[name] for name in _SETTINGS if name in os.environ}
 
 
 def _version(name: str) -> str:
@@ -99,10 +96,14 @@ def _is_able() -> bool:
     """Whether this processor can run what is compiled for the portable one."""
     if platform.machine().lower() not in ("x86_64", "amd64"):
         return False
+    features = _host_features().split(",")
+    return all(f"+{one}" in features for one in _ABILITIES)
+
+
+def _host_features() -> str:
     from llvmlite import binding
 
     try:
-        features = binding.get_host_cpu_features()
+        return str(binding.get_host_cpu_features().flatten())
     except RuntimeError:  # LLVM does not know
-        return False
-    return all(features.get(one, False) for one in _ABILITIES)
+        return ""

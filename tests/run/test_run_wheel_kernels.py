@@ -18,27 +18,27 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 from module_file import loaded
 
-from dancetutor_cli import kernel_folder, kernel_target, kernels
 from dancetutor_cli.commands.first_run import tell_of_compiling
 from dancetutor_cli.jobs.doctor import _cache
 from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.run.kernels import compiling, store, target
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 MODULE = """
-from dancetutor_cli.kernels import njit
+from dancetutor_cli.run.kernels.compiling import njit
 
 @njit(cache=True)
 def double(x):
     return 2 * x
 """
 able = pytest.mark.skipif(
-    not kernel_target.fits_shipped(), reason="this processor, or a setting of numba's, has kernels of its own"
+    not target.fits_shipped(), reason="this processor, or a setting of numba's, has kernels of its own"
 )
 
 
 def hits(path: Path) -> bool:
     """Whether a module's kernel was fetched; that it counts right in any case."""
-    for cached in (kernels.stamp_of, kernel_target.maker):
+    for cached in (compiling.stamp_of, target.maker):
         cached.cache_clear()
     module = loaded(path)
     assert module.double(4) == 8
@@ -52,15 +52,15 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (package / "room").mkdir(parents=True)
     source = package / "room" / "some_kernels.py"
     source.write_text(MODULE, "utf-8")
-    monkeypatch.setattr(kernel_folder, "PACKAGE", package)
+    monkeypatch.setattr(store, "PACKAGE", package)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "build"))
     assert not hits(source)
     came = package / "_data" / "kernels" / "room"
-    shutil.copytree(kernel_folder.kernel_folder().of_module(source), came)
-    (came.parent / kernel_folder.MADE_BY).write_text("numba 0.1,\nPython 3", "utf-8")
+    shutil.copytree(store.kernel_folder().of_module(source), came)
+    (came.parent / store.MADE_BY).write_text("numba 0.1,\nPython 3", "utf-8")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
     yield package
-    for cached in (kernels.stamp_of, kernel_target.maker):
+    for cached in (compiling.stamp_of, target.maker):
         cached.cache_clear()
 
 
@@ -69,14 +69,14 @@ def source_of(package: Path) -> Path:
 
 
 def mine(package: Path) -> list[Path]:
-    return list((package.parent / "mine").rglob("*.nb?"))
+    return list((package.parent / "mine").rglob("*.kernel"))
 
 
 @able
 def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
     assert hits(source_of(package)) and mine(package) == []
-    assert kernels.is_kept(loaded(source_of(package)).double)
-    assert kernel_folder.came_compiled()
+    assert compiling.is_kept(loaded(source_of(package)).double)
+    assert store.came_compiled()
     assert _cache().state == "ok" and _cache().message.startswith("1 kernel came compiled, ")
 
 
@@ -84,15 +84,15 @@ def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
 def test_what_came_serves_where_nothing_can_be_kept(
     package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(kernel_folder, "_use_folder", lambda *_: "cannot be written")
-    monkeypatch.setattr(kernel_folder, "temporary_folder", lambda name: None)
-    assert not kernel_folder.kernel_folder().kept and hits(source_of(package))
+    monkeypatch.setattr(store, "_use_folder", lambda *_: "cannot be written")
+    monkeypatch.setattr(store, "temporary_folder", lambda name: None)
+    assert not store.kernel_folder().kept and hits(source_of(package))
     tell_of_compiling(PresetChoice())
     assert capsys.readouterr().err == ""
 
 
 def other_maker(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernel_target, "_version", lambda name: "0.1")
+    monkeypatch.setattr(target, "_version", lambda name: "0.1")
 
 
 def other_python(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -110,31 +110,31 @@ def other_settings(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def other_processor(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("NUMBA_CPU_NAME")
     monkeypatch.delenv("NUMBA_CPU_FEATURES")
-    monkeypatch.setattr(kernel_target, "_is_able", lambda: False)
+    monkeypatch.setattr(target, "_is_able", lambda: False)
 
 
 def flipped(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for path in (package / "_data" / "kernels").rglob("*.nb?"):
+    for path in (package / "_data" / "kernels").rglob("*.kernel"):
         data = bytearray(path.read_bytes())
         data[len(data) // 2] ^= 1
         path.write_bytes(data)
 
 
 def cut(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for path in (package / "_data" / "kernels").rglob("*.nbc"):
+    for path in (package / "_data" / "kernels").rglob("*.kernel"):
         path.write_bytes(path.read_bytes()[:-1])
 
 
 def a_strangers_folder(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not below the package is never looked at for kernels that came with it."""
-    monkeypatch.setattr(kernel_folder, "PACKAGE", package / "other")
+    monkeypatch.setattr(store, "PACKAGE", package / "other")
     shutil.copytree(package / "_data", package / "other" / "_data")
 
 
 @able
 @pytest.mark.parametrize(
     "spoil",
-    [other_maker, other_python, other_code, other_settings, other_processor, flipped, cut, a_strangers_folder],
+    [other_maker, other_python, other_code, other_settings, flipped, cut, a_strangers_folder],
 )
 def test_what_does_not_fit_is_compiled_here_without_a_word(
     spoil: Callable[[Path, pytest.MonkeyPatch], None],
@@ -149,9 +149,19 @@ def test_what_does_not_fit_is_compiled_here_without_a_word(
 
 
 @able
+def test_what_is_compiled_for_another_processor_than_its_key_says_is_not_kept(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """numba chooses once; here it was imported before, as by a program that uses this package."""
+    other_processor(package, monkeypatch)
+    for _ in range(2):
+        assert not hits(source_of(package)) and not mine(package)
+
+
+@able
 def test_doctor_says_what_those_kernels_were_made_by(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernel_target, "_version", lambda name: "0.1")
-    kernel_target.maker.cache_clear()
+    monkeypatch.setattr(target, "_version", lambda name: "0.1")
+    target.maker.cache_clear()
     assert _cache().message.startswith("those of the package are for numba 0.1, Python 3: not used; ")
 
 
@@ -160,9 +170,9 @@ def test_doctor_says_what_those_kernels_were_made_by(package: Path, monkeypatch:
 def test_kernels_are_for_a_portable_processor_unless_one_is_named(said: dict[str, str]) -> None:
     plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     code = (
-        "from dancetutor_cli import kernels, kernel_target\n"
+        "from dancetutor_cli.run.kernels import compiling, target\n"
         "from numba.core.registry import cpu_target\n"
-        "print(kernel_target.fits_shipped(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
+        "print(target.fits_shipped(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], env=plain | said, cwd=ROOT, check=True, capture_output=True, text=True
@@ -176,7 +186,7 @@ def test_kernels_are_for_a_portable_processor_unless_one_is_named(said: dict[str
 USE = """
 import numpy as np
 import dancetutor_cli
-from dancetutor_cli.kernels import is_kept
+from dancetutor_cli.run.kernels.compiling import is_kept
 from dancetutor_cli.rig.kinematics import _forward, world_transforms
 from dancetutor_cli.rig.skeleton import dancer_skeleton
 
@@ -215,19 +225,19 @@ def test_a_platform_wheel_brings_its_kernels(tmp_path: Path, monkeypatch: pytest
     site = tmp_path / "site"
     with zipfile.ZipFile(wheel) as file:
         file.extractall(site)
-    came = [path.relative_to(site).as_posix() for path in site.rglob("*.nb?")]
-    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/rig"} and len(came) == 2
+    came = [path.relative_to(site).as_posix() for path in site.rglob("*.kernel")]
+    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/rig"} and len(came) == 1
     said = next(site.glob("*.dist-info/WHEEL")).read_text("utf-8")
     assert "Root-Is-Purelib: false" in said
     plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     env = plain | {"PYTHONPATH": str(site), "NUMBA_CACHE_DIR": str(tmp_path / "mine")}
     ran = really_run([sys.executable, "-c", USE], env=env, cwd=tmp_path, check=True, capture_output=True, text=True)
     assert ran.stdout.startswith("True 1") and str(site) in ran.stdout
-    assert list((tmp_path / "mine").rglob("*.nb?")) == []
+    assert list((tmp_path / "mine").rglob("*.kernel")) == []
 
 
 def test_the_extra_names_what_the_locked_environment_compiles_with() -> None:
     said = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]["compiled"]
     lock = (ROOT / "requirements.lock").read_text("utf-8")
-    assert {one.partition("==")[0] for one in said} == set(kernel_target.COMPILERS)
+    assert {one.partition("==")[0] for one in said} == set(target.COMPILERS)
     assert all(f"\n{one} " in lock or lock.startswith(f"{one} ") for one in said)

@@ -1,0 +1,274 @@
+"""Compiles kernels with numba: `njit` of this module in place of numba's, and what `native` calls. Alone imports numba.
+
+numba gives up where it finds no folder that it can write, and where a file that it has written is cut short. With
+`njit` of this module both only mean that a kernel is compiled again: `store` keeps what it compiles.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import re
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from importlib import import_module
+from itertools import count
+from pathlib import Path
+from types import FunctionType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from llvmlite import binding
+
+from dancetutor_cli.resources import PACKAGE
+from dancetutor_cli.run.kernels import target
+from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
+from dancetutor_cli.run.kernels.store import Kept
+
+_ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports scipy.linalg, once
+
+
+@contextmanager
+def without_module(name: str) -> Iterator[None]:
+    """In here there is no module of a name to import, whether it has been imported before or not."""
+    module = sys.modules.get(name)
+    sys.modules[name] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
+    try:
+        yield
+    finally:
+        del sys.modules[name]
+        if module is not None:
+            sys.modules[name] = module
+
+
+# numba reads `.numba_config.yaml` in the current folder, as it is imported and whenever it compiles. A stranger's file
+# there would choose the processor that is compiled for. Where there is no YAML, numba does without it, and warns.
+warnings.filterwarnings("ignore", message="A Numba config file is found")
+with without_module("yaml"):
+    import numba as numba
+    from numba import float32 as float32
+    from numba import int32 as int32
+    from numba import int64 as int64
+    from numba import uint32 as uint32
+    from numba import uint64 as uint64
+
+    _core: Any = import_module("numba.core")  # has types in some versions only
+_extending: Any = import_module("numba.extending")
+_arrays: Any = import_module("numba.np.arrayobj")
+_runtime: Any = import_module("numba.core.runtime.nrt").rtsys
+_results: Any = import_module("numba.core.compiler").CompileResult
+_dumps: Any = import_module("numba.core.serialize").dumps
+_types: Any = numba.types
+_plain: Any = numba.njit  # what it says of its options has not all that are used here
+target.pin(_core.config)
+
+
+@contextmanager
+def _without_scipy() -> Iterator[None]:
+    """numba imports `scipy.linalg`, for a third of a second, to see whether there is BLAS for what no kernel uses."""
+    if "scipy.linalg" in sys.modules or _ASKS_FOR_BLAS in sys.modules:
+        yield
+        return
+    with without_module("scipy.linalg"):
+        yield
+
+
+def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
+    """`numba.njit`; with `cache=True` the kernel is kept in `store`."""
+    if function is None:
+        return lambda later: _njit(later, **options)
+    is_kept = options.pop("cache", False)
+    compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
+    if is_kept:
+        compiled._cache = _KeptOverloads(function)
+    return compiled
+
+
+if TYPE_CHECKING:
+    from numba import njit as njit  # a kernel has the types that it says, as with numba's own
+else:
+    njit = _njit
+F = TypeVar("F")
+
+
+def inner_kernel(function: F) -> F:
+    """A kernel that only kernels call, never Python: there it would crash.
+
+    It is compiled into each of them, and they are kept. tests/test_kernels.py looks at all modules for such calls.
+    """
+    made: F = _njit(no_cpython_wrapper=True)(function)
+    return made
+
+
+def uncounted(function: Callable[..., Any] | None = None, **options: Any) -> Any:
+    """`njit` for a kernel that makes no arrays and only looks at those it is given: references to them are not counted.
+
+    numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each, also inside of
+    loops: in the solver's rules that took half of the time.
+    """
+    if function is None:
+        return lambda later: uncounted(later, **options)
+    try:
+        return _njit(function, _nrt=False, **options)
+    except (KeyError, TypeError):  # the option may go
+        return _njit(function, **options)
+
+
+class _KeptOverloads:
+    """What a function of numba's asks for what is kept of it, in place of numba's own files."""
+
+    cache_path = None  # which numba's statistics tell
+
+    def __init__(self, function: Any) -> None:
+        source = Path(function.__code__.co_filename)
+        self.kept = Kept(source, function.__name__, stamp_of(source))
+        cells = [cell.cell_contents for cell in function.__closure__ or ()]
+        self._function = f"{function.__qualname__} {function.__code__.co_firstlineno} {_dumps(cells).hex()}"
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Kept machine code needs what arrays are made with, and nothing that numba knows of Python's functions.
+
+        To gather that takes a process a sixth of a second, and where something must be compiled numba does it then.
+        """
+        _runtime.initialize(context)
+        with _without_scipy():
+            if _is_for_target(context.codegen()):
+                for body in self.kept.read(f"{self._function} {signature}"):
+                    try:
+                        return _results._rebuild(context, *pickle.loads(body))
+                    except Exception:
+                        continue
+            import_module(_ASKS_FOR_BLAS)
+        return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Without the list of types in words: half of a file, which nobody reads."""
+        if _is_for_target(result.library.codegen) and not result.library.has_dynamic_globals:
+            body = _dumps(result._replace(type_annotation="")._reduce())
+            self.kept.write(f"{self._function} {signature}", body)
+
+
+def _is_for_target(codegen: Any) -> bool:
+    """Whether numba compiles for the processor that stands in what is kept; whoever imported it first decides that."""
+    return tuple(codegen.magic_tuple()[1:]) == target.processor()
+
+
+def is_kept(kernel: Any) -> bool:
+    """Whether machine code of a kernel, as it is now, is there from an earlier run or came with the package."""
+    overloads = getattr(kernel, "_cache", None)
+    return isinstance(overloads, _KeptOverloads) and overloads.kept.is_there()
+
+
+def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
+    """Compile a kernel for arguments like these, as `native` calls it."""
+    with _without_scipy():
+        import_module(_ASKS_FOR_BLAS)
+    names: dict[str, Any] = {"array_at": _array_at, "int64": np.int64}
+    names["kernel"] = uncounted(function, no_cpython_wrapper=True)
+    places = count(RESULTS)
+    call = f"kernel({', '.join(_expression(one, places, names) for one in args)})"
+    given = f"{', '.join(f'words[{n}]' for n in range(results))} = " if results else ""
+    lines = [
+        "def entry(address):",
+        f"    words = array_at(address, ({next(places)},), int64)",
+        f"    {given}{call}",
+    ]
+    exec("\n".join(lines), names)
+    signature = (_types.int64,)
+    compiled = uncounted(names["entry"], no_cpython_wrapper=True)
+    with _inner_kernels(function):
+        compiled.compile(signature)
+    module = binding.parse_assembly(compiled.inspect_llvm(signature))
+    declared = [one.name for one in module.functions if one.is_declaration and not one.name.startswith("llvm.")]
+    name, features = target.processor()
+    host = binding.Target.from_triple(binding.get_process_triple())
+    machine = host.create_target_machine(name, features, opt=3, reloc="static", codemodel="jitdefault", jit=True)
+    entry = compiled.overloads[signature].fndesc.llvm_func_name
+    return MachineCode(entry, sorted(declared), machine.emit_object(module))
+
+
+def _expression(argument: Any, places: Iterator[int], names: dict[str, Any]) -> str:
+    """How an argument is made of the words that stand for it; names : where the expression's names are found."""
+    if isinstance(argument, tuple):
+        name = f"{type(argument).__name__}_{id(type(argument))}" if hasattr(argument, "_fields") else ""
+        names[name] = type(argument)
+        return f"{name}({' '.join(f'{_expression(one, places, names)},' for one in argument)})"
+    place = f"words[{next(places)}]"
+    if not isinstance(argument, np.ndarray):
+        return place
+    names[argument.dtype.name] = argument.dtype.type
+    shape = " ".join(f"words[{next(places)}]," for _ in range(argument.ndim))
+    return f"array_at({place}, ({shape}), {argument.dtype.name})"
+
+
+@_extending.intrinsic
+def _array_at(context: Any, address: Any, shape: Any, number: Any) -> Any:
+    """In kernels: an array of numbers of a type, row by row from an address on, which nothing of numba's owns."""
+    kind = _types.Array(number.dtype, len(shape), "C")
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(kind)(context, builder)
+        size = context.get_constant(_types.intp, np.dtype(str(kind.dtype)).itemsize)
+        lengths, strides = _core.cgutils.unpack_tuple(builder, args[1]), [size]
+        for length in lengths[:0:-1]:
+            strides.insert(0, builder.mul(strides[0], length))
+        data = builder.inttoptr(args[0], array.data.type)
+        _arrays.populate_array(array, data, lengths, strides[: len(lengths)], size, None)
+        return array._getvalue()
+
+    return kind(address, shape, number), generate
+
+
+@contextmanager
+def _inner_kernels(caller: FunctionType) -> Iterator[None]:
+    """In here the inner kernels, plain functions for everybody else, are what numba makes of them, in their modules."""
+    spaces = {id(one.__globals__): one.__globals__ for one in (*INNER_KERNELS, caller)}
+    replaced = [
+        (space, name, value)
+        for space in spaces.values()
+        for name, value in list(space.items())
+        if isinstance(value, FunctionType) and value in INNER_KERNELS
+    ]
+    for space, name, value in replaced:
+        space[name] = _of_inner_kernel(value)
+    try:
+        yield
+    finally:
+        for space, name, value in replaced:
+            space[name] = value
+
+
+@cache
+def _of_inner_kernel(function: FunctionType) -> Any:
+    return uncounted(function, **INNER_KERNELS[function])
+
+
+_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b|\buncounted\b")  # the middle two are `video.scene.cpu.uncounted`
+_IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
+_WORD = re.compile(r"\w+")
+_CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
+
+
+@cache
+def stamp_of(source: Path) -> str:
+    """A digest of a module with kernels and of what else of the package they may be made of."""
+    return hashlib.sha256(b"".join(path.read_bytes() for path in made_of(source))).hexdigest()
+
+
+def made_of(source: Path, package: Path = PACKAGE) -> list[Path]:
+    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
+    found, new = {source.resolve()}, [source.resolve()]
+    while new:
+        for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
+            room = package / name.replace(".", "/")
+            modules = [room.with_suffix(".py"), *(room / f"{word}.py" for word in _WORD.findall(names))]
+            for path in modules:
+                if path in found or name.startswith("run.") or not path.is_file():
+                    continue
+                if _CONSTANT.search(names) or _KERNEL.search(path.read_text("utf-8")):
+                    found.add(path)
+                    new.append(path)
+    return sorted(found)

@@ -1,0 +1,201 @@
+"""Kernels that Python calls without numba, whose import takes longer than all else that a command does for a chart.
+
+What is kept of such a kernel is one object file. LLVM alone (llvmlite) loads it in a few milliseconds, `ctypes` calls
+it, with one array of whole numbers: two places for results, then each argument in order, tuples opened. A number stands
+for itself, an array as the address of its first item, by the buffer protocol, and its shape. Where no such code is kept
+`compiling` makes it; where that fails, and for arguments that it does not take, the function runs as Python.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from operator import index
+from pathlib import Path
+from threading import Lock
+from types import FunctionType
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.kernels.store import Kept
+
+RESULTS = 2  # places for what a kernel gives, before its arguments
+_OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
+_start: Any = (ctypes.c_char * 0).from_buffer  # nothing of an array but where it begins, so that empty ones do, too
+_address = ctypes.addressof
+_Unused: Any = ctypes.c_void_p * 2  # where a kernel puts what it gives (nothing), and numba an exception's number
+_prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
+
+INNER_KERNELS: dict[FunctionType, dict[str, Any]] = {}  # those that kernels call, with options for `uncounted`
+F = TypeVar("F", bound=Callable[..., Any])
+Kind = tuple[np.dtype[Any], int] | None  # of an array: its numbers and dimensions, row by row; None: a whole number
+
+
+def inner_kernel(function: F, **options: Any) -> F:
+    """A kernel that kernels call. For everybody else it stays the function that it is."""
+    assert isinstance(function, FunctionType)
+    INNER_KERNELS[function] = options
+    return function
+
+
+class MachineCode(NamedTuple):
+    """An object file. entry : the function to call; needs : names of functions that this process must have"""
+
+    entry: str
+    needs: list[str]
+    data: bytes
+
+
+class Loaded(NamedTuple):
+    """Machine code that can be called. kinds : of its arguments in order; engine : LLVM's, which holds it"""
+
+    kinds: tuple[Kind, ...]
+    run: Callable[[Any, Any, int], int]
+    engine: Any
+
+
+class Kernel:
+    """A function of whole numbers, numpy arrays, and named tuples of those, that runs as machine code.
+
+    It gives nothing, a whole number, or a tuple of two.
+    """
+
+    def __init__(self, function: FunctionType, stamp: Callable[[], str], results: int = 0) -> None:
+        """stamp : a digest of the function's source and of what goes into it; results : how many it gives."""
+        self.function = function
+        self._stamp, self._results = stamp, results
+        self._last: Loaded | None = None
+        self._loaded: dict[str, Loaded | None] = {}
+        self._lock = Lock()
+
+    def __call__(self, *args: Any) -> Any:
+        """What the function gives. DancetutorError if it raises: machine code cannot say what."""
+        arguments: list[Any] = []
+        _open(args, arguments)
+        words = _words(arguments, self._last)
+        if words is None:
+            with self._lock:
+                self._last = self._loaded_for(args, arguments)
+            words = _words(arguments, self._last)
+        if words is None or self._last is None:
+            return self._as_python(args)
+        if status := self._last.run(_Unused(), _Unused(), _address(_start(words))):
+            raise self._error(status)
+        given = words[:RESULTS].tolist()
+        return None if self._results == 0 else given[0] if self._results == 1 else tuple(given)
+
+    def _as_python(self, args: tuple[Any, ...]) -> Any:
+        try:
+            with np.errstate(over="ignore"):  # numbers of hash functions wrap round
+                return self.function(*args)
+        except Exception as error:
+            raise self._error(error) from error
+
+    def _error(self, cause: object) -> DancetutorError:
+        return DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({cause})")
+
+    def _loaded_for(self, args: tuple[Any, ...], arguments: list[Any]) -> Loaded | None:
+        """Machine code for such arguments, fetched or made; None if there can be none."""
+        try:
+            kinds = tuple(map(_kind, arguments))
+        except TypeError:
+            return None
+        name = " ".join("i" if kind is None else f"{kind[0].str}{kind[1]}" for kind in kinds)
+        if name not in self._loaded:
+            self._loaded[name] = self._fetched(name, kinds) or self._made(name, kinds, args)
+        return self._loaded[name]
+
+    def _fetched(self, name: str, kinds: tuple[Kind, ...]) -> Loaded | None:
+        for body in self._kept().read(name):
+            with suppress(Exception):  # whatever LLVM raises of what was made on another system
+                line, _, data = body.partition(b"\n")
+                entry, needs = json.loads(line)
+                return _load(MachineCode(entry, needs, data), kinds)
+        return None
+
+    def _made(self, name: str, kinds: tuple[Kind, ...], args: tuple[Any, ...]) -> Loaded | None:
+        try:
+            from dancetutor_cli.run.kernels.compiling import machine_code
+
+            code = machine_code(self.function, args, self._results)
+            loaded = _load(code, kinds)
+        except Exception:  # whatever numba and LLVM raise
+            return None
+        self._kept().write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
+        return loaded
+
+    def _kept(self) -> Kept:
+        return Kept(Path(self.function.__code__.co_filename), self.function.__name__, self._stamp())
+
+
+def _open(arguments: Iterable[Any], into: list[Any]) -> None:
+    """Numbers and arrays in order, those in tuples, too."""
+    for one in arguments:
+        if isinstance(one, tuple):
+            _open(one, into)
+        else:
+            into.append(one)
+
+
+def _kind(argument: Any) -> Kind:
+    """TypeError for what machine code does not take."""
+    if not isinstance(argument, np.ndarray):
+        index(argument)
+        return None
+    if argument.dtype.kind not in "biuf" or not argument.dtype.isnative:
+        raise TypeError(f"a kernel takes no arrays of {argument.dtype}")
+    return np.dtype(argument.dtype.str), argument.ndim
+
+
+def _words(arguments: list[Any], loaded: Loaded | None) -> NDArray[np.int64] | None:
+    """What machine code gets; None if it is for other arguments, or one is too large or does not lie in a row."""
+    words = [0] * RESULTS
+    try:
+        for one, kind in zip(arguments, loaded.kinds if loaded else (), strict=True):
+            if kind is None:
+                words.append(index(one))
+                continue
+            dtype, dimensions = kind
+            try:
+                address = _address(_start(one))
+            except TypeError:
+                address = _address_to_read(one)
+            shape = one.shape
+            if one.dtype != dtype or len(shape) != dimensions or address % dtype.itemsize:
+                return None
+            words.append(address)
+            words += shape
+        return np.array(words, dtype=np.int64)
+    except (AttributeError, TypeError, ValueError, OverflowError):
+        return None
+
+
+def _address_to_read(array: NDArray[Any]) -> int:
+    """Where items begin that must not be written. TypeError if they do not lie row by row."""
+    if array.flags.writeable or not array.flags.c_contiguous:
+        raise TypeError("not in a row")
+    return array.ctypes.data
+
+
+def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> Loaded:
+    """Hand an object file to LLVM. ImportError if this process lacks what it needs."""
+    from llvmlite import binding
+
+    if not code.data.startswith(_OBJECT_FILES) or not all(map(binding.address_of_symbol, code.needs)):
+        raise ImportError("no machine code for this process")  # of which LLVM would end it
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    triple = binding.get_process_triple()
+    machine = binding.Target.from_triple(triple).create_target_machine(jit=True)
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(f'target triple = "{triple}"'), machine)
+    engine.add_object_file(binding.ObjectFileRef.from_data(code.data))
+    engine.finalize_object()
+    address = engine.get_function_address(code.entry)
+    if not address:
+        raise ImportError(f"no function {code.entry}")
+    return Loaded(kinds, _prototype(address), engine)  # other threads of Python wait, as with numba
