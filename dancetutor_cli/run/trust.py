@@ -167,12 +167,12 @@ def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
 
 def _is_private_group(number: int) -> bool:
     """Whether this user, not root, is alone in a group, which has the user's name: so Debian and others do it."""
-    import grp
-    import pwd
-
     try:
+        import grp
+        import pwd
+
         user, group = pwd.getpwuid(os.geteuid()), grp.getgrgid(number)
-    except KeyError:
+    except (ImportError, KeyError):
         return False
     is_own = user.pw_uid != 0 and user.pw_gid == number and group.gr_name == user.pw_name
     return is_own and set(group.gr_mem) <= {user.pw_name}
