@@ -15,7 +15,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.commands import cli
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.interruption import hear_again
-from dancetutor_cli.jobs.pool import Report, Task, open_workers
+from dancetutor_cli.run.pool import Report, Task, open_workers
 
 EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
 KERNEL = """from dancetutor_cli.run.kernels.compiling import njit
@@ -54,7 +54,7 @@ cli.main = run
 main([])
 """
 DIRECTLY = "print(twice(3))"
-AS_WORK = """from dancetutor_cli.jobs.pool import Task, open_workers
+AS_WORK = """from dancetutor_cli.run.pool import Task, open_workers
     workers = open_workers(1, print)
     workers.submit(Task(1, lambda report: twice(3)))
     print(*workers.done())"""

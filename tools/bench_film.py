@@ -63,8 +63,8 @@ def child(output: str, kind: str) -> None:
     """Render a part of the demo song with workers of this process and print what was seen, as JSON."""
     from dancetutor_cli.jobs.film_plan import prepare
     from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
+    from dancetutor_cli.run.pool import default_jobs
     from dancetutor_cli.video.media.encoder import Encoding
 
     request = _request(kind)
@@ -181,9 +181,9 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.jobs.film_list import BatchRequest, film_list
     from dancetutor_cli.jobs.film_request import FilmRequest
     from dancetutor_cli.jobs.film_segments import common_to_workers
-    from dancetutor_cli.jobs.pool import default_jobs
-    from dancetutor_cli.jobs.processes import ProcessWorkers
     from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.run.pool import default_jobs
+    from dancetutor_cli.run.processes import ProcessWorkers
     from dancetutor_cli.video.film_look import FilmLook
     from dancetutor_cli.video.layout import load_layout
     from dancetutor_cli.video.media.encoder import Encoding

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.pool import Task, default_jobs, open_workers
+from dancetutor_cli.run.pool import Task, default_jobs, open_workers
 
 ROOT = Path(__file__).resolve().parent.parent
 CORPUS = ROOT / "build" / "corpus" / "dev"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.bake.grips import grips_of
 from dancetutor_cli.bake.keys import Keys, doubtful, key_times, refined
-from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, Ragdoll, Span, in_turn, joined, needed, pieces_of
+from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, RagdollStyle, Span, in_turn, joined, needed, pieces_of
 from dancetutor_cli.bake.settle import heels_may_rise, mass_of, settle, targets_at
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.errors import DancetutorError
@@ -71,7 +71,6 @@ def bake(
     *,
     fps: float = 60.0,
     section: Span | None = None,
-    each: Each = in_turn,
     **manner: Unpack[Manner],
 ) -> Motion:
     """Make the dancer play a chart.
@@ -83,7 +82,6 @@ def bake(
     fps : frames per second of the result, which gets extra keys at every contact
     section : (start, end) in seconds of the music; None: from before the first step to after the last. It is cut out
         of the dance of the whole chart
-    each : does the pieces of a long song, in turn or in several processes; the result is the same
     manner : as in `Manner`
 
     Returns
@@ -95,7 +93,7 @@ def bake(
     DancetutorError if the play has no steps or the section is empty.
     """
     plan, context = planned(timing, play, pad, **manner)
-    return bake_plan(plan, context, fps, section, each)
+    return bake_plan(plan, context, fps, section)
 
 
 def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> Plan:
@@ -131,7 +129,10 @@ def mines_of(play: Play, pad: Pad) -> Array:
 
 
 def bake_plan(plan: Plan, context: Context, fps: float, section: Span | None = None, each: Each = in_turn) -> Motion:
-    """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there."""
+    """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there.
+
+    each : does the pieces of a long song, in turn or in several processes; the result is the same
+    """
     pieces = pieces_of(plan, context, fps)
     return cut(pieces, section or (pieces[0].kept[0], pieces[-1].kept[1]), each).motion
 
@@ -169,7 +170,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
     )
     motion = _motion(piece, keys, notes)
     add_hair(skeleton, motion.times, motion.rotations, motion.root, settings.hair)
-    return BakedPiece(motion) if piece.ragdoll is None else _followed(motion, piece.ragdoll, settings)
+    return BakedPiece(motion) if piece.ragdoll is None else _followed(motion, piece, piece.ragdoll)
 
 
 def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
@@ -178,13 +179,20 @@ def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
     return Motion(context.skeleton, piece.fps, *keys, piece.contacts, context.bar, grips, piece.ground, notes)
 
 
-def _followed(motion: Motion, ragdoll: Ragdoll, settings: MotionSettings) -> BakedPiece:
-    """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise."""
+def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece:
+    """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise.
+
+    What befalls her beside the piece's end is told by the piece in which it does: the other one sees less of it.
+    """
     from dancetutor_cli.physics.pipeline import through_ragdoll
 
-    passed = through_ragdoll(motion, ragdoll.style, ragdoll.wishes.within(motion.times[0], motion.times[-1]))
-    add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, settings.hair)
-    return BakedPiece(passed.motion, passed.distances)
+    wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept
+    passed = through_ragdoll(motion, ragdoll.style, wishes)
+    add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, piece.context.settings.hair)
+    seconds = [*(trip.second for trip in wishes.trips), *(push.second for push in wishes.pushes)]
+    lines = zip(seconds, passed.motion.notes[len(motion.notes) :], strict=True)
+    notes = (*motion.notes, *(line for second, line in lines if first <= second < last))
+    return BakedPiece(replace(passed.motion, notes=notes), passed.distances)
 
 
 def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.bake.keys import Keys
-from dancetutor_cli.bake.pieces import MARGIN, OVERLAP, Piece, Ragdoll, Span, piece_of, track_from
+from dancetutor_cli.bake.pieces import MARGIN, OVERLAP, Piece, RagdollStyle, Span, piece_of, track_from
 from dancetutor_cli.motion.baked import Cut, Motion
 from dancetutor_cli.motion.context import Context
 from dancetutor_cli.motion.plan import FootTrack, Plan
@@ -26,6 +26,8 @@ from dancetutor_cli.rig import quaternion as quat
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 CROSSING = 1.0  # seconds in which an end becomes the dance
+OWN_FEET = 0.8  # share of the dance below which feet are where the end has them
+SAME_PLACE = 0.002  # metres
 LONG_AGO = 60.0  # seconds before a cut at which what has happened before it is put
 NOW = 1e-6  # seconds
 
@@ -91,13 +93,13 @@ def exit_of(plan: Plan, until: float) -> Plan:
     )
 
 
-def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: Ragdoll | None) -> Piece:
+def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:
     """The piece of an entrance: it stands before the cut, and dances on until it has become the dance."""
     baked = (cut.start - MARGIN, min(cut.steps_from + CROSSING, cut.end) + MARGIN)
     return piece_of(plan, context, fps, (baked, baked, OVERLAP), ragdoll)
 
 
-def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: Ragdoll | None = None) -> Piece:
+def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: RagdollStyle | None = None) -> Piece:
     """The piece of an exit. span : from which second on it is the exit, to the end of the cut"""
     baked = (span[0] - CROSSING - OVERLAP, span[1])
     return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
@@ -143,12 +145,18 @@ def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
 
 
 def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> tuple[Array, Array]:
-    """Poses that are a share of the dance's and else of others', with feet that are so, too."""
+    """Poses that are a share of the dance's and else of others'. Their feet are the others', for they differ only where
+    a foot is on its way to a step that is left out; one that was on it already turns back."""
     skeleton = dance.skeleton
     mine, theirs = feet_of(skeleton, poses[0], poses[1]), feet_of(skeleton, others[0], others[1])
+    own = smooth((share - OWN_FEET) / (1.0 - OWN_FEET))
+    beside = int(np.argmax(share))  # the key beside the dance, where feet are elsewhere only on a long way
+    away = np.linalg.norm(mine.places[beside] - theirs.places[beside], axis=1) > SAME_PLACE
+    own = own[:, None] * away
     feet = AnkleTracks(
-        theirs.places + share[:, None, None] * (mine.places - theirs.places),
-        quat.slerp(theirs.turns, mine.turns, share[:, None]),
+        theirs.places + own[..., None] * (mine.places - theirs.places), quat.slerp(theirs.turns, mine.turns, own)
     )
     rotations = quat.slerp(others[0], poses[0], share[:, None])
+    toes = [skeleton.index(f"{side}_metatarsal") for side in "lr"]
+    rotations[:, toes] = quat.slerp(others[0][:, toes], poses[0][:, toes], own)
     return repinned(skeleton, (rotations, others[1] + share[:, None] * (poses[1] - others[1])), feet)

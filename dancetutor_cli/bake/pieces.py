@@ -40,7 +40,7 @@ BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 
 
 @dataclass(frozen=True, slots=True)
-class Ragdoll:
+class RagdollStyle:
     """The style in which a ragdoll follows the dancer, and what befalls her."""
 
     style: Style
@@ -64,7 +64,7 @@ class Piece:
     baked: Span
     kept: Span
     span: Span
-    ragdoll: Ragdoll | None = None
+    ragdoll: RagdollStyle | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ def whole_span(plan: Plan, context: Context) -> Span:
     return min(0.0, plan.first - walk.lead_in), max(plan.last + walk.lead_out, left)
 
 
-def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: Ragdoll | None = None) -> list[Piece]:
+def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | None = None) -> list[Piece]:
     """All pieces of a dance, in order of time."""
     start, end = whole_span(plan, context)
     pieces = []
@@ -101,7 +101,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: Ragdoll | None 
 
 
 def piece_of(
-    plan: Plan, context: Context, fps: float, times: tuple[Span, Span, float], ragdoll: Ragdoll | None = None
+    plan: Plan, context: Context, fps: float, times: tuple[Span, Span, float], ragdoll: RagdollStyle | None = None
 ) -> Piece:
     """One piece. times : what is baked, what of that is kept, and seconds that are planned beyond its end"""
     (before, last), kept, after = times

@@ -165,7 +165,7 @@ def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None)
             yield from annotate_song(song, order)
         return
     from dancetutor_cli.jobs.annotate import annotate_task
-    from dancetutor_cli.jobs.pool import Task, open_workers
+    from dancetutor_cli.run.pool import Task, open_workers
 
     workers = open_workers(min(wanted, len(songs)), lambda key, n: None)
     try:
@@ -187,7 +187,7 @@ def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None)
 def _fitting_jobs(songs: int) -> int:
     if songs < _MANY:
         return 1
-    from dancetutor_cli.jobs.pool import default_jobs
+    from dancetutor_cli.run.pool import default_jobs
 
     return default_jobs()
 

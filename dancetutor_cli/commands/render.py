@@ -216,9 +216,9 @@ def _make(
     request: FilmRequest, subject: FilmSubject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.jobs.film_plan import Prepared, prepare
-    from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.jobs.render import make_film
     from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.run.pool import default_jobs
     from dancetutor_cli.video import extras
     from dancetutor_cli.video.media.encoder import Encoding
     from dancetutor_cli.video.media.film_formats import PICTURES

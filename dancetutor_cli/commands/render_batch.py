@@ -21,8 +21,8 @@ from dancetutor_cli.workflow_commands import json_without_commands
 if TYPE_CHECKING:
     from dancetutor_cli.jobs.batch import FilmOutcome
     from dancetutor_cli.jobs.film_list import BatchRequest, UnreadableFile
-    from dancetutor_cli.jobs.pool import Workers
     from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.run.pool import Workers
     from dancetutor_cli.video.choices import RendererKind
 
 
@@ -33,9 +33,9 @@ def render_batch(
     from dancetutor_cli.jobs.batch import Batch
     from dancetutor_cli.jobs.film_list import film_list
     from dancetutor_cli.jobs.film_records import find_records
-    from dancetutor_cli.jobs.pool import default_jobs
     from dancetutor_cli.reports.progress import FilmProgress
     from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.run.pool import default_jobs
 
     if options["scheduler"]:  # its workers have a working folder of their own
         path, output = path.absolute(), (output or Path("videos")).absolute()
@@ -102,12 +102,12 @@ def _batch(
 
 def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
     from dancetutor_cli.jobs.film_segments import common_to_workers, frames_of
-    from dancetutor_cli.jobs.pool import open_workers
+    from dancetutor_cli.run.pool import open_workers
 
     if scheduler is None:
         common = common_to_workers(kind) if jobs > 1 else ""
         return open_workers(jobs, lambda _key, count: progress.advance(count), common)
-    from dancetutor_cli.jobs.cluster import ClusterWorkers
+    from dancetutor_cli.run.cluster import ClusterWorkers
 
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.bake.bake import bake_piece, cut, planned
 from dancetutor_cli.bake.ends import entered, entrance_of, entrance_piece, exit_of, exit_piece, left, rest_from
-from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, Ragdoll, in_turn, pieces_of, whole_span
+from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.two import pad_of_both, place_on, sides_of, together
 from dancetutor_cli.errors import DancetutorError, UsageError
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Dancer:
+class Performer:
     """One of those who dance: whose part she plays, and what she does on her own pad.
 
     play, plan : at seconds of the music as it is heard, without notes that nobody plays
@@ -53,7 +53,7 @@ class Performance:
     rate: float
     timing: Timing
     pad: Pad
-    dancers: tuple[Dancer, ...]
+    dancers: tuple[Performer, ...]
 
     @property
     def span(self) -> tuple[float, float]:
@@ -74,20 +74,20 @@ class Performance:
         ragdoll = self._ragdoll(wanted)
         return [self._motion(one, wanted, ragdoll, (each, walks_off)) for one in self.dancers]
 
-    def _motion(self, dancer: Dancer, wanted: Cut, ragdoll: Ragdoll | None, how: tuple[Each, bool]) -> BakedPiece:
+    def _motion(self, who: Performer, wanted: Cut, style: RagdollStyle | None, how: tuple[Each, bool]) -> BakedPiece:
         (each, walks_off), fps = how, self.request.fps
-        plan, context = dancer.plan, dancer.context
-        done = cut(pieces_of(plan, context, fps, ragdoll), (wanted.start, wanted.end), each)
+        plan, context = who.plan, who.context
+        done = cut(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), each)
         motion = done.motion
         if (entrance := entrance_of(plan, wanted)) is not None:
-            piece = entrance_piece(entrance, context, fps, wanted, ragdoll)
+            piece = entrance_piece(entrance, context, fps, wanted, style)
             motion = entered(motion, _one(each, piece), wanted)
         if (until := rest_from(plan, wanted, walks_off)) is not None:
-            piece = exit_piece(exit_of(plan, until), context, fps, (until, wanted.end), ragdoll)
+            piece = exit_piece(exit_of(plan, until), context, fps, (until, wanted.end), style)
             motion = left(motion, _one(each, piece), until, wanted)
         return replace(done, motion=motion)
 
-    def _ragdoll(self, wanted: Cut) -> Ragdoll | None:
+    def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
         if self.request.style is None:
             return None
         from dancetutor_cli.physics.pipeline import wishes_of
@@ -98,7 +98,7 @@ class Performance:
         for name, second in befalls:
             if not wanted.start <= second <= wanted.end:
                 raise UsageError(f"{name} {second:g}: the motion lasts from {wanted.start:.3f} s to {wanted.end:.3f} s")
-        return Ragdoll(load_style(self.request.style), wishes)
+        return RagdollStyle(load_style(self.request.style), wishes)
 
 
 def _one(each: Each, piece: Piece) -> Motion:
@@ -148,7 +148,7 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
             timing, play, own, settings=settings, bar=request.bar, gait=request.gait, sides=side, let_go=gone
         )
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
-        dancers.append(Dancer(one, own, play, plan, context, place))
+        dancers.append(Performer(one, own, play, plan, context, place))
     return Performance(request, rate, timing, pad, tuple(dancers))
 
 
@@ -186,7 +186,7 @@ def pooled(jobs: int = 1) -> Each:
 
 
 def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
-    from dancetutor_cli.jobs.pool import Task, open_workers
+    from dancetutor_cli.run.pool import Task, open_workers
 
     if len(pieces) == 1:
         yield function(pieces[0])

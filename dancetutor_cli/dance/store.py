@@ -19,9 +19,9 @@ import numpy as np
 
 from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece
 from dancetutor_cli.fingerprint import fingerprint, program_stamp
-from dancetutor_cli.kernel_folder import users_folder
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.physics.distances import Distances
+from dancetutor_cli.run.trust import kept_folder
 
 LARGEST = 512_000_000  # bytes of all that is kept; the oldest go first
 _ARRAYS = ("times", "rotations", "root")
@@ -30,16 +30,8 @@ Function = Callable[[Piece], BakedPiece]
 
 def kept(each: Each) -> Each:
     """Does pieces of work as `each` does, but those that are kept already; keeps the others."""
-    folder = dances_folder()
+    folder = kept_folder("dances")
     return each if folder is None else partial(_kept, folder, each)
-
-
-def dances_folder() -> Path | None:
-    """Where baked pieces are kept; DANCETUTOR_CACHE names another folder for caches. None: nowhere."""
-    if named := os.environ.get("DANCETUTOR_CACHE"):
-        return Path(named) / "dances"
-    folder = users_folder("dancetutor")
-    return None if folder is None else folder / "dances"
 
 
 def _kept(folder: Path, each: Each, function: Function, pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
@@ -88,7 +80,6 @@ def _write(path: Path, one: BakedPiece, piece: Piece) -> None:
         words["points"] = distances.names
         arrays |= {"distance_times": distances.times, "distances": distances.values}
     with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(suffix=".part", dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as file:

@@ -58,8 +58,8 @@ def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
 
 
 def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
-    from dancetutor_cli.jobs.pool import Task as Work
-    from dancetutor_cli.jobs.pool import default_jobs, open_workers
+    from dancetutor_cli.run.pool import Task as Work
+    from dancetutor_cli.run.pool import default_jobs, open_workers
 
     count = jobs or default_jobs()
     workers = open_workers(count, lambda key, n: None)

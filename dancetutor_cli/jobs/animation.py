@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.bake.pieces import Each, in_turn
-from dancetutor_cli.dance.performance import Dancer, Performance
+from dancetutor_cli.dance.performance import Performance, Performer
 from dancetutor_cli.motion.baked import Cut
 
 if TYPE_CHECKING:
@@ -97,5 +97,5 @@ class AnimatedDancer:
         return (line,) if line else ()
 
     @property
-    def _dancer(self) -> Dancer:
+    def _dancer(self) -> Performer:
         return self.animation.performance.dancers[self.number]

@@ -17,7 +17,7 @@ from dancetutor_cli.jobs import film_work
 from dancetutor_cli.jobs.film_records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.jobs.film_segments import render_segment
 from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome, Opened
-from dancetutor_cli.jobs.pool import Finished, Task, Workers
+from dancetutor_cli.run.pool import Finished, Task, Workers
 
 __all__ = ["Batch", "FilmJob", "FilmOutcome"]
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.two import place_on
 from dancetutor_cli.errors import UsageError
 from dancetutor_cli.jobs.counted_in import play_without, quiet_after, quiet_in
 from dancetutor_cli.motion.baked import Motion, shifted
@@ -55,14 +56,14 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
             performance = perform(solved, dance, rate)
             motions[rate] = _given(request, performance) if request.motions else _cut(request, performance, clock)
     told, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
-    places = {rate: _placed(request, solved, some) for rate, some in told.items()}
-    return FilmDance(solved, plays, play_of_all(solved, plays), pad_of(solved), places, on_mines)
+    shown = play_without(play_without(play_of_all(solved, plays), quiet), after)  # rows of which nothing is left, too
+    return FilmDance(solved, plays, shown, pad_of(solved), told, on_mines)
 
 
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
-    """What the film shows of a performance, each dancer on her own pad."""
-    cut = clock.cut_at(performance.rate)
-    return tuple(one.motion for one in performance.motions(cut, pooled(), request.background))
+    """What the film shows of a performance, each dancer where she stands on the pad under all."""
+    done = performance.motions(clock.cut_at(performance.rate), pooled(), request.background)
+    return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 
 def _given(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
@@ -77,16 +78,6 @@ def _given(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]
     return tuple(read_npz(path) for path in request.motions)
 
 
-def _placed(request: FilmRequest, solved: Sequence[Solved], motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """Motions where their dancers stand on the pad under all; those of files stand there already."""
-    if len(solved) == 1 or request.motions:
-        return tuple(motions)
-    from dancetutor_cli.dance.two import place_on
-
-    whole, pairs = pad_of(solved), zip(solved, motions, strict=True)
-    return tuple(shifted(motion, *place_on(whole, one.chart, one.pad)) for one, motion in pairs if one.pad is not None)
-
-
 def _mines(
     motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
@@ -94,6 +85,7 @@ def _mines(
     from dancetutor_cli.bake import mines_of
     from dancetutor_cli.bake.quality.ground import feet_on_mines, told_mines
 
+    pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []
     for rate, some in motions.items():
@@ -101,6 +93,8 @@ def _mines(
         for motion, (one, play) in zip(some, plays, strict=True):
             assert one.pad is not None
             mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
+            if len(plays) > 1:
+                mines += [0.0, *place_on(pad, one.chart, one.pad)]
             under = feet_on_mines(motion, mines)
             told.append(replace(motion, notes=(*motion.notes, *told_mines(mines[under >= 0, 0]))))
             if rate == fastest:

@@ -23,7 +23,7 @@ from typing import Any
 from dancetutor_cli.bounded import read_json
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.files import encoded, write_atomic
-from dancetutor_cli.private_folder import private_folder
+from dancetutor_cli.run.trust import exclude, kept_folder, results_folder
 
 WORK = ".dancetutor-"  # how the folder of a film in work begins; behind it 32 random hexadecimal digits
 _WORK_NAME = re.compile(re.escape(WORK) + "[0-9a-f]{32}")
@@ -94,9 +94,13 @@ def _checked(data: Any) -> FilmRecord:
 
 
 def find_records(foreign: tuple[Path, ...] = ()) -> tuple[FilmRecords, str]:
-    """The records of this user, and "" or why there can be none; foreign : as `private_folder` takes it."""
-    folder, fault = private_folder("films", foreign)
-    return FilmRecords(folder), fault
+    """The records of this user, and "" or why there can be none.
+
+    foreign : folders with what others may have written, such as a pack; a cache that a variable puts there is not used
+    """
+    for path in foreign:
+        exclude(path)
+    return FilmRecords(kept_folder("films")), results_folder()[1]
 
 
 def new_work_name() -> str:

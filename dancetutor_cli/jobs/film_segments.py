@@ -16,7 +16,7 @@ import numpy as np
 
 from dancetutor_cli.errors import FileError
 from dancetutor_cli.jobs.film_records import digest_of
-from dancetutor_cli.jobs.pool import Report, Task
+from dancetutor_cli.run.pool import Report, Task
 from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.film_formats import PICTURES
 

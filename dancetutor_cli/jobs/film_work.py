@@ -11,7 +11,7 @@ from dancetutor_cli.files import place_of
 from dancetutor_cli.jobs.film_records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
 from dancetutor_cli.jobs.film_request import FilmRequest, look_up
 from dancetutor_cli.jobs.film_segments import PlanFile, Segment, segments, write_plan
-from dancetutor_cli.jobs.pool import Report
+from dancetutor_cli.run.pool import Report
 from dancetutor_cli.video.media.encoder import Encoding, join
 from dancetutor_cli.video.media.film_formats import PICTURES
 

@@ -72,7 +72,7 @@ def page_jobs(request: PageRequest, folder: Path) -> tuple[list[PageJob], list[t
 
 def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
     """Make pages, in several processes; outcomes come as they are done."""
-    from dancetutor_cli.jobs.pool import Task, open_workers
+    from dancetutor_cli.run.pool import Task, open_workers
 
     workers = open_workers(min(processes, max(len(jobs), 1)), lambda key, n: None)
     try:

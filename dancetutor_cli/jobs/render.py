@@ -15,7 +15,7 @@ from dancetutor_cli.files import place_of
 from dancetutor_cli.jobs import film_segments as drawing
 from dancetutor_cli.jobs import film_work as work
 from dancetutor_cli.jobs.film_plan import Prepared
-from dancetutor_cli.jobs.pool import Task, Workers, open_workers
+from dancetutor_cli.run.pool import Task, Workers, open_workers
 from dancetutor_cli.video.choices import RendererKind
 from dancetutor_cli.video.media.encoder import Encoding
 from dancetutor_cli.video.media.ffmpeg import EncoderError

@@ -143,10 +143,11 @@ def tuning_of(body: Skeleton) -> Tuning:
     from dancetutor_cli.physics.style import NEUTRAL, load_style
     from dancetutor_cli.physics.tuning import Tuning, tuned
     from dancetutor_cli.resources import config_path
+    from dancetutor_cli.run.trust import kept_folder
 
     digest = hashlib.sha256(body.offsets.round(6).tobytes())
     digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
-    folder = _folder()
+    folder = kept_folder("bodies")
     path = None if folder is None else folder / f"{digest.hexdigest()[:32]}.json"
     if path is not None:
         with suppress(FileError):
@@ -156,14 +157,5 @@ def tuning_of(body: Skeleton) -> Tuning:
     tuning = tuned(body, load_style(NEUTRAL))
     if path is not None:
         with suppress(OSError, FileError):
-            path.parent.mkdir(parents=True, exist_ok=True)
             write_atomic(path, json.dumps(tuning.as_json(), indent=1).encode())
     return tuning
-
-
-def _folder() -> Path | None:
-    """Where tunings are kept; DANCETUTOR_CACHE names another folder, None: nowhere."""
-    from dancetutor_cli.run.trust import results_folder
-
-    folder, _ = results_folder()
-    return None if folder is None else folder / "bodies"

@@ -119,6 +119,12 @@ def results_folder() -> tuple[Path | None, str]:
     return (None, f"{folder} {fault}") if fault else (folder, "")
 
 
+def kept_folder(name: str) -> Path | None:
+    """The folder of that name in `results_folder`, made if it is not there; None where there can be none."""
+    folder, _ = results_folder()
+    return None if folder is None or use_folder(folder / name) else folder / name
+
+
 def temporary_folder(name: str) -> Path | None:
     """A folder for temporary files of this user alone, made if there is none; never in the current folder."""
     if sys.platform == "win32":

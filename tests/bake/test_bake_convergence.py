@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, chart, pad, play
 
-from dancetutor_cli.bake import bake, report
+from dancetutor_cli.bake import bake, bake_plan, planned, report
+from dancetutor_cli.bake.pieces import whole_span
 from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.numerics import qp
 from dancetutor_cli.numerics.banded import BandedLeastSquares
@@ -57,11 +58,13 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
         return found if most else replace(found, found=False, x=np.full_like(found.x, np.nan))
 
     monkeypatch.setattr(qp, "solve", once)
-    motion = bake(chart().timing, play(MEDLEY), pad(), section=(3.0, 6.0))
+    plan, context = planned(chart().timing, play(MEDLEY), pad())
+    motion = bake_plan(plan, context, 60.0, (3.0, 6.0))
     assert [note.split(" no path of ")[1].split(" keeps")[0] for note in motion.notes] == [
         "her balance", "the height of her body"
     ]  # fmt: skip
-    assert all(note.startswith("from 3.0 s to 6.0 s") for note in motion.notes)
+    start, end = whole_span(plan, context)  # a section is cut out of the piece that it is in, here all of the dance
+    assert all(note.startswith(f"from {start:.1f} s to {end:.1f} s") for note in motion.notes)
     assert np.isfinite(motion.root).all() and given_up.count(qp.MORE_ROUNDS) == given_up.count(0)
     errors = {figure.name: figure.value for figure in report(motion).figures}
     assert errors["contact error"] < 1.0

@@ -13,6 +13,7 @@ from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
 from dancetutor_cli.motion.baked import Cut, Motion
+from dancetutor_cli.resources import charts_path
 
 HEAD = "#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :\n"
 # A measure lasts two seconds, so its first row is at an even one.
@@ -97,3 +98,10 @@ def test_where_nobody_has_stepped_yet_the_dance_itself_begins(
     early = Cut(float(whole.times[0]), END, steps_from=0.0)
     (one,) = performance.motions(early, walks_off=False)
     assert apart(one.motion, whole, early.start, END) == 0.0
+
+
+@pytest.mark.parametrize("end", [17.81, 27.54])
+def test_a_foot_that_was_on_its_way_does_not_slide_back(end: float) -> None:
+    wanted = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=2))
+    (one,) = perform(solve(wanted), wanted).motions(Cut(end - 4.0, end + 1.5, steps_until=end), walks_off=False)
+    assert report(one.motion)["plant slide"].met, report(one.motion)["plant slide"]

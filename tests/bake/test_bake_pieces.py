@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from bake_plays import MEDLEY, chart, pad, play, stream
 
-from dancetutor_cli.bake import bake, pieces, plan_of, report
+from dancetutor_cli.bake import bake, bake_plan, pieces, plan_of, planned, report
 from dancetutor_cli.bake.pieces import piece_ends, trimmed
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.dance.performance import pooled
+from dancetutor_cli.dance.performance import _pooled
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.motion.baked import Motion
 from dancetutor_cli.motion.settings import default_settings
@@ -62,7 +63,8 @@ def test_pieces_end_where_nobody_moves(short: None) -> None:
 
 
 def test_any_number_of_processes_gives_the_same_bytes(short: None) -> None:
-    alone, shared = (bake(chart().timing, play(EVENTS), pad(), each=pooled(jobs)) for jobs in (1, 2))
+    plan, context = planned(chart().timing, play(EVENTS), pad())
+    alone, shared = (bake_plan(plan, context, 60.0, each=partial(_pooled, jobs)) for jobs in (1, 2))
     assert alone.rotations.tobytes() == shared.rotations.tobytes()
     assert alone.root.tobytes() == shared.root.tobytes() and alone.times.tobytes() == shared.times.tobytes()
 

@@ -132,3 +132,12 @@ def test_mines_under_feet_are_seen_in_files_of_two_as_in_the_dance(tmp_path: Pat
     animate(tmp_path, song)
     own, given = (danced(film(song, *(tmp_path / f"dance-p{n}.npz" for n in files))) for files in ((), (1, 2)))
     assert len(own.on_mines) == 1 and given.on_mines == own.on_mines
+
+
+def test_a_push_beside_a_seam_is_told_once(short: None, tmp_path: Path) -> None:
+    """Both pieces have it, and see not as much of what follows."""
+    performance = of_a_stream(tmp_path)
+    seam = pieces.piece_ends(performance.dancers[0].plan, *performance.span)[2]
+    pushed = of_a_stream(tmp_path, style="neutral", push=(f"{seam - 0.275}:300:left",))
+    (part,) = pushed.motions(Cut(seam - 2.0, seam + 2.0))
+    assert len(part.motion.notes) == 1, part.motion.notes

@@ -17,8 +17,8 @@ from dancetutor_cli.jobs.batch import Batch
 from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
 from dancetutor_cli.jobs.film_records import WORK
 from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome
-from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.run.pool import Finished, SerialWorkers
 from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import load_layout
 from dancetutor_cli.video.media.encoder import Encoding

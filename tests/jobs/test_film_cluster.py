@@ -16,10 +16,10 @@ from test_film_batch import NOTES, batch_request, write_song
 
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.jobs.batch import Batch
-from dancetutor_cli.jobs.cluster import ClusterWorkers
 from dancetutor_cli.jobs.film_list import film_list
 from dancetutor_cli.jobs.film_segments import frames_of
-from dancetutor_cli.jobs.pool import SerialWorkers
+from dancetutor_cli.run.cluster import ClusterWorkers
+from dancetutor_cli.run.pool import SerialWorkers
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process the POSIX way")

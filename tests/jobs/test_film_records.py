@@ -17,8 +17,7 @@ from dancetutor_cli.jobs.film_records import WORK, FilmRecord, find_records
 from dancetutor_cli.jobs.film_request import look_up
 from dancetutor_cli.jobs.film_segments import PlanFile, segments
 from dancetutor_cli.jobs.film_work import FilmJob
-from dancetutor_cli.jobs.pool import SerialWorkers
-from dancetutor_cli.private_folder import private_folder, writable_by_others
+from dancetutor_cli.run.pool import SerialWorkers
 
 STATE_FILES = ("plan.pickle", "sound.wav", "film.mp4", "segments.txt", "segment_00000.mp4")
 posix = pytest.mark.skipif(os.name == "nt", reason="links and modes are POSIX")
@@ -159,25 +158,3 @@ def test_a_record_that_makes_no_sense_is_none(job: FilmJob, own_records: Path) -
         assert find_records()[0].read(job.output) == FilmRecord()
     path.write_text('{"key": "k", "folders": ["..", ".dancetutor-x"], "digests": {"0": "../x"}, "size": null}')
     assert find_records()[0].read(job.output) == FilmRecord("k")
-
-
-@posix
-def test_only_a_folder_that_others_cannot_write_is_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    cache = tmp_path / "cache"
-    monkeypatch.setenv("DANCETUTOR_CACHE", str(cache))
-    folder, fault = private_folder("films")
-    assert folder == cache / "films" and not fault and folder.stat().st_mode & 0o777 == 0o700
-    assert "lies inside" in private_folder("films", (tmp_path,))[1]
-    open_to_all = tmp_path / "open"
-    open_to_all.mkdir()
-    open_to_all.chmod(0o777)
-    (open_to_all / "mine").mkdir(mode=0o700)
-    closed_above = not tmp_path.parent.stat().st_mode & 0o011
-    assert closed_above == (writable_by_others(open_to_all / "mine") == "")
-    monkeypatch.setenv("DANCETUTOR_CACHE", "somewhere")
-    assert private_folder("films") == (None, "somewhere (DANCETUTOR_CACHE) is a relative path")
-    monkeypatch.delenv("DANCETUTOR_CACHE")
-    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
-    monkeypatch.setenv("HOME", str(tmp_path))
-    if os.uname().sysname == "Linux":
-        assert private_folder("films")[0] == tmp_path / ".cache" / "dancetutor" / "films"

@@ -17,9 +17,9 @@ from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
 from dancetutor_cli.jobs.analyze_all import _batches, analyze_all
 from dancetutor_cli.jobs.cache import ResultCache
 from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.jobs.pool import Finished, SerialWorkers
 from dancetutor_cli.jobs.result_file import to_bytes
 from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.pool import Finished, SerialWorkers
 
 NOTES = "#TITLE:{};\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
 
@@ -165,7 +165,7 @@ def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest
             yield from (Finished(task.key, error=UnavailableError("killed")) for task in self._queue)
 
     monkeypatch.setattr("dancetutor_cli.jobs.analyze_all._WORTH_WORKERS", 1)
-    monkeypatch.setattr("dancetutor_cli.jobs.pool.open_workers", lambda jobs, report: Dying(report))
+    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
     cache = ResultCache(tmp_path / "cache")
     (result,) = analyze_all([LintRun(LintRequest()).task(song)], 2, cache)
     assert result.error and "killed" in result.error and not (tmp_path / "cache").exists()
@@ -190,7 +190,7 @@ def test_of_files_sent_together_only_the_one_that_breaks_a_worker_is_lost(
         path.write_text(NOTES.format(n))
         tasks.append(LintRun(LintRequest()).task(path))
     whole = list(analyze_all(tasks, 1, None))
-    monkeypatch.setattr("dancetutor_cli.jobs.pool.open_workers", lambda jobs, report: Dying(report))
+    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
     found = list(analyze_all(tasks, 2, None))
     assert [n for n, one in enumerate(found) if one.error] == [5] and "killed" in str(found[5].error)
     assert [*found[:5], *found[6:]] == [*whole[:5], *whole[6:]]

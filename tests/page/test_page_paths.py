@@ -8,9 +8,9 @@ import zlib
 from pathlib import Path
 
 from click.testing import CliRunner
+from dancetutor_cli.jobs.bake import BakeTask
 
 from dancetutor_cli.commands import cli
-from dancetutor_cli.jobs.bake import BakeTask
 from dancetutor_cli.jobs.page import PageTask, make_page
 from dancetutor_cli.library.selection import Selection
 

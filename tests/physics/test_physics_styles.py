@@ -10,7 +10,7 @@ from bake_mirror import mirrored_motion
 
 from dancetutor_cli.bake import MotionReport, report
 from dancetutor_cli.bake.bake import bake_piece, planned
-from dancetutor_cli.bake.pieces import MARGIN, Ragdoll, Span, piece_of
+from dancetutor_cli.bake.pieces import MARGIN, RagdollStyle, Span, piece_of
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.library.selection import Selection
@@ -42,7 +42,7 @@ class Passage:
 
     def motion(self, style: str | None = None) -> Motion:
         """Baked as a piece of its own: the ragdoll need not follow her through the whole song."""
-        ragdoll = None if style is None else Ragdoll(load_style(style), Wishes())
+        ragdoll = None if style is None else RagdollStyle(load_style(style), Wishes())
         return bake_piece(piece_of(self.plan, self.context, 60.0, (self.span, self.span, MARGIN), ragdoll)).motion
 
 

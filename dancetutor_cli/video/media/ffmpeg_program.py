@@ -18,6 +18,7 @@ from dancetutor_cli.bounded import MEGABYTE, read_json
 from dancetutor_cli.errors import DancetutorError, UnavailableError
 from dancetutor_cli.extras import how_to_add
 from dancetutor_cli.files import write_atomic
+from dancetutor_cli.run.trust import kept_folder
 
 VARIABLE = "IMAGEIO_FFMPEG_EXE"
 NAME = "ffmpeg.exe" if os.name == "nt" else "ffmpeg"
@@ -68,17 +69,12 @@ def lacking(program: Path) -> list[str]:
     missing = _ask(program)
     if kept is not None:
         with suppress(DancetutorError, OSError):
-            kept.parent.mkdir(parents=True, exist_ok=True)
             write_atomic(kept, json.dumps({"key": key, "lacking": missing}).encode())
     return missing
 
 
 def _kept_in() -> Path | None:
-    from dancetutor_cli.kernel_folder import users_folder
-
-    if named := os.environ.get("DANCETUTOR_CACHE"):
-        return Path(named) / "ffmpeg.json"
-    folder = users_folder("dancetutor")
+    folder = kept_folder("programs")
     return None if folder is None else folder / "ffmpeg.json"
 
 

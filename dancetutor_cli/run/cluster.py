@@ -7,7 +7,7 @@ from typing import Any
 
 from dancetutor_cli.errors import UnavailableError
 from dancetutor_cli.extras import how_to_add
-from dancetutor_cli.jobs.pool import Finished, Task, WorkFailedError, attempt
+from dancetutor_cli.run.pool import Finished, Task, WorkFailedError, attempt
 
 TIMEOUT = 10  # seconds to find the scheduler
 RETRIES = 3  # how often a piece of work is begun again when its worker is lost
@@ -20,7 +20,7 @@ def perform(task: Task) -> Finished:
 
 
 class ClusterWorkers:
-    """`jobs.pool.Workers` on a Dask scheduler. Pieces whose worker is lost are done again by another one.
+    """`run.pool.Workers` on a Dask scheduler. Pieces whose worker is lost are done again by another one.
 
     A piece of work writes its file under another name and renames it, so that one that is done twice is there once.
     Reports are only made when a piece is done: `frames(task)` says how many frames it was.

@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs.pool import Finished, Task, WorkFailedError, attempt
+from dancetutor_cli.run.pool import Finished, Task, WorkFailedError, attempt
 from dancetutor_cli.startup import collect_seldom, leave_garbage
 
 SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
@@ -84,7 +84,7 @@ def _server(common: str) -> Any:
     from multiprocessing import forkserver
 
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["dancetutor_cli.jobs.preload"])
+    context.set_forkserver_preload(["dancetutor_cli.run.preload"])
     try:
         with _nothing_from_here(), _said(SHARED, common), _uninterrupted():
             forkserver.ensure_running()
