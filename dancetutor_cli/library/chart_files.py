@@ -50,12 +50,12 @@ def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[lis
 
 
 def _is_outside(link: Path, folders: Sequence[Path]) -> bool:
-    """Whether a link leads to something outside of all folders; one that leads nowhere is an error of its own."""
+    """Whether a link leads to a file outside of all folders; one to nowhere or to a device is an error of its own."""
     try:
         target = link.resolve(strict=True)
     except (OSError, RuntimeError):
         return False
-    return not any(target.is_relative_to(folder) for folder in folders)
+    return target.is_file() and not any(target.is_relative_to(folder) for folder in folders)
 
 
 def is_chart_name(name: str) -> bool:

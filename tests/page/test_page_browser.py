@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import write_song
 from dance_requests import solved_one
 from page_chromium import NOW, Browser, pad_script, said, text
+from page_song import write_song
 from PIL import Image
 
 from dancetutor_cli.library.selection import Selection

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import TITLE, write_song
+from page_song import TITLE, write_song
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.dance.request import DanceRequest

@@ -8,10 +8,10 @@ import zlib
 from pathlib import Path
 
 from click.testing import CliRunner
-from dancetutor_cli.jobs.bake import BakeTask
 
 from dancetutor_cli.commands import cli
-from dancetutor_cli.jobs.page import PageTask, make_page
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.jobs.page import PageRequest, make_page
 from dancetutor_cli.library.selection import Selection
 
 NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
@@ -37,9 +37,9 @@ def test_feet_of_a_file_are_named_without_its_folder(tmp_path: Path) -> None:
     song, feet = write_song(folder), folder / "feet.json"
     said = CliRunner().invoke(cli, ["analyze", "--format", "json", "--exit-zero", str(song)])
     feet.write_text(said.stdout)
-    for task in (BakeTask(song, Selection(), fps=10.0, play_file=feet), BakeTask(song, Selection(), fps=10.0)):
-        beside = None if task.play_file else str(feet)
-        data = everything(make_page(PageTask(task, beside=beside, character="mannequin")).html)
+    for dance in (DanceRequest(song, Selection(), fps=10.0, play=feet), DanceRequest(song, Selection(), fps=10.0)):
+        beside = None if dance.play else str(feet)
+        data = everything(make_page(PageRequest(dance, beside=beside, character="mannequin")).html)
         assert b"feet" in data and b"privatefolder" not in data
 
 

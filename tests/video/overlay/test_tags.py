@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from dancetutor_cli.video.film_look import FilmLook
 from dancetutor_cli.video.layout import layout_names, load_layout
 from dancetutor_cli.video.media.film_formats import FORMATS
 from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.video.overlay import sprites, text
 from dancetutor_cli.video.overlay.blit import Sprite
 from dancetutor_cli.video.overlay.highway import Highway
 from dancetutor_cli.video.overlay.tags import row_tags
@@ -25,6 +26,17 @@ CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
 TAGS = ("crossover ×12", "footswitch", "full crossover ×2", "left foot again ×14", "no foot left",
         "heel on down-right, toe on centre ×3")  # fmt: skip
 COLUMNS = ["dance-single", "pump-single", "dance-solo", "pump-halfdouble", "dance-double", "pump-double"]
+
+
+@pytest.fixture(autouse=True)
+def no_other_fonts(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A sign that the built-in font lacks is as wide as the system's font has it: 9.98 px of 10 in DejaVu Sans."""
+    monkeypatch.setattr(text, "system_fonts", lambda: ())
+    for known in (text._font_of, text._runs):
+        known.cache_clear()
+    yield
+    for known in (text._font_of, text._runs):
+        known.cache_clear()
 
 
 def tagged(steps: str, name: str, wide: int, tags: tuple[str, ...]) -> Highway:
