@@ -19,8 +19,7 @@ from dancetutor_cli.resources import PACKAGE, config_path
 if TYPE_CHECKING:
     from hashlib import _Hash
 
-NAMED = "named"  # metadata of a field: its value is a name in this folder of configs/, or the path of a file
-CHARACTERS = "characters"  # the same of characters, which are elsewhere
+NAMED = "named"  # metadata of a field: its value is one of these names, or in this folder of configs/, or else a file
 _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # files of the program that make results
 _TEXT = "utf-8", "surrogateescape"
 
@@ -37,10 +36,9 @@ def _add(digest: _Hash, value: Any) -> None:
     digest.update(type(value).__name__.encode())
     if is_dataclass(value):
         for field in fields(value):
-            folder = field.metadata.get(NAMED)
-            one = getattr(value, field.name)
+            named, one = field.metadata.get(NAMED), getattr(value, field.name)
             digest.update(field.name.encode())
-            _add(digest, one if folder is None or one is None or one in _names(folder) else Path(one))
+            _add(digest, one if named is None or one is None or one in _names(named) else Path(one))
     elif isinstance(value, tuple | list):
         digest.update(b"%d" % len(value))
         for part in value:
@@ -55,13 +53,9 @@ def _add(digest: _Hash, value: Any) -> None:
         digest.update(repr(value).encode(*_TEXT) + b"\0")
 
 
-def _names(folder: str) -> Collection[str]:
+def _names(named: str | Collection[str]) -> Collection[str]:
     """Values of a field that are names of parts of the program."""
-    if folder == CHARACTERS:
-        from dancetutor_cli.character import BUILT_IN
-
-        return BUILT_IN
-    return {path.stem for path in config_path(folder).glob("*.yaml")}
+    return {path.stem for path in config_path(named).glob("*.yaml")} if isinstance(named, str) else named
 
 
 def file_hash(path: Path) -> str:

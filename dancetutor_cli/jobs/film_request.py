@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dancetutor_cli.character import BUILT_IN
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of
-from dancetutor_cli.fingerprint import CHARACTERS, NAMED
+from dancetutor_cli.fingerprint import NAMED
 from dancetutor_cli.library.music import find_music
 from dancetutor_cli.video.clock import Clock
 from dancetutor_cli.video.film_look import FilmLook
@@ -39,7 +40,7 @@ class FilmRequest:
     sync: float = 0.0
     mute: bool = False
     practice: Practice = field(default_factory=Practice)
-    character: str = field(default="dancer", metadata={NAMED: CHARACTERS})
+    character: str = field(default="dancer", metadata={NAMED: BUILT_IN})
     background: bool = False
     motions: tuple[Path, ...] = ()
 
